@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* In the order of `toile help`. */
+/* Commands in the order of `toile help`. */
 static const struct tl_command commands[] = {
     {"view", "view [SCENE] [OPTIONS]",
      "Opens the review window: orbit, play, pull on the cloth, change fabric and light.",

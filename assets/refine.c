@@ -10,18 +10,18 @@
 /* An edge to be halved, a < b. Its index among all such edges is that of its midpoint, after the old
  * vertices.
  */
-struct edge {
+struct split_edge {
     uint32_t a, b;
 };
 
-struct edges {
+struct split_edges {
     size_t count;
-    struct edge *items; /* sorted, each once */
+    struct split_edge *items; /* sorted, each once */
 };
 
 /* One triangle with the midpoints of its sides: middles[i] between corners i and i + 1, or NO_MIDDLE. */
 #define NO_MIDDLE UINT32_MAX
-struct face {
+struct split_face {
     uint32_t corners[3], middles[3];
 };
 
@@ -41,20 +41,20 @@ float tl_mesh_longest_edge(const tl_mesh *mesh)
 
 static int compare_edges(const void *first, const void *second)
 {
-    const struct edge *p = first, *q = second;
+    const struct split_edge *p = first, *q = second;
     if (p->a != q->a)
         return p->a < q->a ? -1 : 1;
     return p->b < q->b ? -1 : p->b > q->b;
 }
 
-static struct edge edge_of(uint32_t a, uint32_t b)
+static struct split_edge edge_of(uint32_t a, uint32_t b)
 {
-    return a < b ? (struct edge){a, b} : (struct edge){b, a};
+    return a < b ? (struct split_edge){a, b} : (struct split_edge){b, a};
 }
 
-static struct edges find_long_edges(const tl_mesh *mesh, float longest_m)
+static struct split_edges find_long_edges(const tl_mesh *mesh, float longest_m)
 {
-    struct edges edges = {.items = TL_NEW_ARRAY(struct edge, mesh->index_count)};
+    struct split_edges edges = {.items = TL_NEW_ARRAY(struct split_edge, mesh->index_count)};
     size_t found = 0;
     for (size_t i = 0; i < mesh->index_count; i++) {
         uint32_t a = mesh->indices[i], b = mesh->indices[i % 3 == 2 ? i - 2 : i + 1];
@@ -68,17 +68,17 @@ static struct edges find_long_edges(const tl_mesh *mesh, float longest_m)
     return edges;
 }
 
-static uint32_t middle_of(const struct edges *edges, size_t vertex_count, uint32_t a, uint32_t b)
+static uint32_t middle_of(const struct split_edges *edges, size_t vertex_count, uint32_t a, uint32_t b)
 {
-    const struct edge sought = edge_of(a, b);
-    const struct edge *found =
+    const struct split_edge sought = edge_of(a, b);
+    const struct split_edge *found =
         bsearch(&sought, edges->items, edges->count, sizeof *edges->items, compare_edges);
     return found ? (uint32_t)(vertex_count + (size_t)(found - edges->items)) : NO_MIDDLE;
 }
 
-static struct face face_at(const tl_mesh *mesh, const struct edges *edges, size_t index)
+static struct split_face face_at(const tl_mesh *mesh, const struct split_edges *edges, size_t index)
 {
-    struct face face;
+    struct split_face face;
     for (size_t i = 0; i < 3; i++) {
         face.corners[i] = mesh->indices[index + i];
         face.middles[i] = middle_of(edges, mesh->vertex_count, mesh->indices[index + i],
@@ -87,7 +87,7 @@ static struct face face_at(const tl_mesh *mesh, const struct edges *edges, size_
     return face;
 }
 
-static size_t pieces_of(const struct face *face)
+static size_t pieces_of(const struct split_face *face)
 {
     size_t pieces = 1;
     for (int i = 0; i < 3; i++)
@@ -106,12 +106,12 @@ static uint32_t *put_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c)
 /* Rotates a triangle so that, of one or two halved sides, the first is side 0, and of two the second is
  * side 1.
  */
-static struct face turned(const struct face *face)
+static struct split_face turned(const struct split_face *face)
 {
     int first = 0;
     while (face->middles[first] == NO_MIDDLE || face->middles[(first + 2) % 3] != NO_MIDDLE)
         first++;
-    struct face result;
+    struct split_face result;
     for (int i = 0; i < 3; i++) {
         result.corners[i] = face->corners[(first + i) % 3];
         result.middles[i] = face->middles[(first + i) % 3];
@@ -120,7 +120,7 @@ static struct face turned(const struct face *face)
 }
 
 /* `mesh` has the middles' positions. */
-static uint32_t *split_face(const tl_mesh *mesh, const struct face *face, uint32_t *out)
+static uint32_t *split_face(const tl_mesh *mesh, const struct split_face *face, uint32_t *out)
 {
     size_t pieces = pieces_of(face);
     if (pieces == 1)
@@ -130,7 +130,7 @@ static uint32_t *split_face(const tl_mesh *mesh, const struct face *face, uint32
             out = put_triangle(out, face->middles[(i + 2) % 3], face->corners[i], face->middles[i]);
         return put_triangle(out, face->middles[0], face->middles[1], face->middles[2]);
     }
-    const struct face at = turned(face);
+    const struct split_face at = turned(face);
     uint32_t a = at.corners[0], b = at.corners[1], c = at.corners[2], m = at.middles[0], n = at.middles[1];
     if (pieces == 2) {
         out = put_triangle(out, a, m, c);
@@ -186,7 +186,7 @@ static float held_by_both(float a, float b)
     return fminf(a, b);
 }
 
-static void add_middles(tl_model *model, const struct edges *edges)
+static void add_middles(tl_model *model, const struct split_edges *edges)
 {
     tl_mesh *mesh = &model->mesh;
     size_t count = mesh->vertex_count;
@@ -210,9 +210,10 @@ static void add_middles(tl_model *model, const struct edges *edges)
 
 /* ---- One pass ---- */
 
-static struct face *list_faces(const tl_mesh *mesh, const struct edges *edges, size_t *index_count)
+static struct split_face *list_faces(const tl_mesh *mesh, const struct split_edges *edges,
+                                     size_t *index_count)
 {
-    struct face *faces = TL_NEW_ARRAY(struct face, mesh->index_count / 3);
+    struct split_face *faces = TL_NEW_ARRAY(struct split_face, mesh->index_count / 3);
     *index_count = 0;
     for (size_t f = 0; f < mesh->index_count / 3; f++) {
         faces[f] = face_at(mesh, edges, 3 * f);
@@ -221,7 +222,7 @@ static struct face *list_faces(const tl_mesh *mesh, const struct edges *edges, s
     return faces;
 }
 
-static void split_parts(tl_mesh *mesh, const struct face *faces, size_t index_count)
+static void split_parts(tl_mesh *mesh, const struct split_face *faces, size_t index_count)
 {
     uint32_t *indices = TL_NEW_ARRAY(uint32_t, index_count), *out = indices;
     for (size_t p = 0; p < mesh->part_count; p++) {
@@ -238,10 +239,10 @@ static void split_parts(tl_mesh *mesh, const struct face *faces, size_t index_co
 }
 
 /* Halves every edge that is too long, once. False when the mesh would get too large. */
-static bool refine_once(tl_model *model, const struct edges *edges)
+static bool refine_once(tl_model *model, const struct split_edges *edges)
 {
     size_t index_count;
-    struct face *faces = list_faces(&model->mesh, edges, &index_count);
+    struct split_face *faces = list_faces(&model->mesh, edges, &index_count);
     bool fits = model->mesh.vertex_count + edges->count <= TL_LIMIT_MESH_VERTICES &&
                 index_count <= TL_LIMIT_MESH_INDICES;
     if (fits) {
@@ -268,7 +269,7 @@ static double least_triangles(const tl_mesh *mesh, double longest_m)
 bool tl_garment_refine(tl_garment *garment, float longest_m, tl_error *error)
 {
     tl_model *model = &garment->model;
-    struct edges edges = find_long_edges(&model->mesh, longest_m);
+    struct split_edges edges = find_long_edges(&model->mesh, longest_m);
     if (edges.count > 0)
         rig_destroy(&model->rig);
     bool fits = 3 * least_triangles(&model->mesh, (double)longest_m) <= (double)TL_LIMIT_MESH_INDICES;

@@ -198,7 +198,7 @@ bool tl_folder_make(const char *path, tl_error *error)
     return true;
 }
 
-char *tl_path_beside(const char *base_file, const char *relative)
+char *tl_path_relative_to(const char *base_file, const char *relative)
 {
     const char *slash = base_file ? strrchr(base_file, '/') : NULL;
     if (relative[0] == '/' || !slash)

@@ -46,7 +46,7 @@ bool tl_folder_make(const char *path, tl_error *error);
 
 /* `relative` seen from the folder that holds `base_file`; absolute paths are returned as they are. New
  * string. */
-char *tl_path_beside(const char *base_file, const char *relative);
+char *tl_path_relative_to(const char *base_file, const char *relative);
 
 /* True when `path` ends in `.extension` (no dot given), ignoring case. */
 bool tl_path_has_extension(const char *path, const char *extension);

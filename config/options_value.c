@@ -279,7 +279,7 @@ static char *read_path(const struct tl_option *row, const char *text, const char
         return refuse(row, text, "is no name known here");
     if (name || text[0] == '\0')
         return read_text(row, text, field);
-    char *path = tl_path_beside(base_file, text);
+    char *path = tl_path_relative_to(base_file, text);
     char *reason = read_text(row, path, field);
     free(path);
     return reason;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct reader {
+struct yaml_reader {
     struct tl_yaml yaml;
     const struct tl_binding *bindings;
     size_t count;
@@ -20,7 +20,7 @@ struct reader {
 };
 
 /* Remembers that something is given on `line`; false when it was given before. */
-static bool give(const struct reader *reader, size_t *given, const char *key, size_t line)
+static bool give(const struct yaml_reader *reader, size_t *given, const char *key, size_t line)
 {
     if (*given)
         return tl_fail(reader->yaml.error, TL_USAGE,
@@ -31,7 +31,7 @@ static bool give(const struct reader *reader, size_t *given, const char *key, si
 }
 
 /* The current event is an option's name; its value follows. */
-static bool read_option(struct reader *reader, const struct tl_binding *binding)
+static bool read_option(struct yaml_reader *reader, const struct tl_binding *binding)
 {
     size_t line = tl_yaml_line(&reader->yaml);
     if (reader->yaml.event.type != YAML_SCALAR_EVENT)
@@ -52,7 +52,7 @@ static bool read_option(struct reader *reader, const struct tl_binding *binding)
     return set;
 }
 
-static bool fail_no_table(const struct reader *reader, const char *key, size_t line)
+static bool fail_no_table(const struct yaml_reader *reader, const char *key, size_t line)
 {
     const char *dot = strchr(key, '.');
     if (dot)
@@ -66,7 +66,7 @@ static bool fail_no_table(const struct reader *reader, const char *key, size_t l
 
 /* The binding that the table's name in the current event belongs to, given for the first time; NULL on
  * failure. The next event, already current, is its mapping or an empty scalar. */
-static const struct tl_binding *read_table_name(struct reader *reader)
+static const struct tl_binding *read_table_name(struct yaml_reader *reader)
 {
     size_t line = tl_yaml_line(&reader->yaml);
     char *name = tl_copy_string(tl_yaml_text(&reader->yaml));
@@ -88,11 +88,11 @@ static const struct tl_binding *read_table_name(struct reader *reader)
 
 /* ---- The section of records ---- */
 
-static bool read_records(struct reader *reader, const struct tl_record_place *above, int depth);
+static bool read_records(struct yaml_reader *reader, const struct tl_record_place *above, int depth);
 
 /* The current event is the name of what is at `depth` in the section: a record, a part or a key; what
  * belongs to it follows. */
-static bool read_record(struct reader *reader, const struct tl_record_place *above, int depth)
+static bool read_record(struct yaml_reader *reader, const struct tl_record_place *above, int depth)
 {
     if (reader->yaml.event.type != YAML_SCALAR_EVENT)
         return tl_yaml_fail(&reader->yaml, tl_yaml_line(&reader->yaml),
@@ -119,7 +119,7 @@ static bool read_record(struct reader *reader, const struct tl_record_place *abo
 }
 
 /* The current event begins a mapping of names at `depth`, or is empty. */
-static bool read_records(struct reader *reader, const struct tl_record_place *above, int depth)
+static bool read_records(struct yaml_reader *reader, const struct tl_record_place *above, int depth)
 {
     static const char *const expected[] = {
         "expected names, each with its parts, indented below",
@@ -139,14 +139,14 @@ static bool read_records(struct reader *reader, const struct tl_record_place *ab
     return false;
 }
 
-static bool is_section(const struct reader *reader)
+static bool is_section(const struct yaml_reader *reader)
 {
     return reader->section && reader->yaml.event.type == YAML_SCALAR_EVENT &&
            strcmp(tl_yaml_text(&reader->yaml), reader->section->name) == 0;
 }
 
 /* The current event is the section's name. */
-static bool read_section(struct reader *reader)
+static bool read_section(struct yaml_reader *reader)
 {
     const struct tl_record_place place = {.file = reader->yaml.name};
     size_t line = tl_yaml_line(&reader->yaml);
@@ -155,7 +155,7 @@ static bool read_section(struct reader *reader)
 }
 
 /* The current event is a table's name; its mapping follows. */
-static bool read_table(struct reader *reader)
+static bool read_table(struct yaml_reader *reader)
 {
     if (reader->yaml.event.type != YAML_SCALAR_EVENT)
         return tl_yaml_fail(&reader->yaml, tl_yaml_line(&reader->yaml),
@@ -176,7 +176,7 @@ static bool read_table(struct reader *reader)
 
 static bool read_root(void *context)
 {
-    struct reader *reader = context;
+    struct yaml_reader *reader = context;
     const yaml_event_t *event = &reader->yaml.event;
     if (tl_yaml_is_empty(&reader->yaml))
         return true;
@@ -204,7 +204,7 @@ bool tl_options_read_yaml_with(const struct tl_binding *bindings, size_t count,
 {
     if (size > TL_LIMIT_YAML_BYTES)
         return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
-    struct reader reader = {.bindings = bindings, .count = count, .section = section};
+    struct yaml_reader reader = {.bindings = bindings, .count = count, .section = section};
     if (!tl_yaml_begin(&reader.yaml, name, data, size, error))
         return false;
     reader.given = TL_NEW_ARRAY(size_t *, count);

@@ -8,6 +8,6 @@
 
 /* Returns the resources. Lifetime: borrowed, until the renderer is destroyed. Only resources in `valid`
  * belong to the last frame. */
-const struct tl_resources *tl_renderer_look_inside(const tl_renderer *renderer);
+const struct tl_resources *tl_renderer_frame_resources(const tl_renderer *renderer);
 
 #endif

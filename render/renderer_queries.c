@@ -4,7 +4,7 @@
 #include "render/inside.h"
 #include "render/renderer_internal.h"
 
-const struct tl_resources *tl_renderer_look_inside(const tl_renderer *renderer)
+const struct tl_resources *tl_renderer_frame_resources(const tl_renderer *renderer)
 {
     return &renderer->resources;
 }

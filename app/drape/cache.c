@@ -65,7 +65,7 @@ static char *path_of(const struct tl_cache_key *key)
 /* ---- Files ---- */
 
 /* Before the data. */
-struct header {
+struct drape_header {
     char magic[8];
     struct tl_cache_key key;
     uint64_t size, checksum;
@@ -73,7 +73,7 @@ struct header {
 
 static bool is_intact(const struct tl_cache_key *key, const char *file, size_t size)
 {
-    struct header header;
+    struct drape_header header;
     if (size < sizeof header)
         return false;
     memcpy(&header, file, sizeof header);
@@ -93,7 +93,7 @@ static char *read_file(const char *path, size_t *size, bool *found)
     if (!*found)
         return NULL;
     if (fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0 &&
-        (uint64_t)status.st_size <= used.limit_bytes + sizeof(struct header)) {
+        (uint64_t)status.st_size <= used.limit_bytes + sizeof(struct drape_header)) {
         size_t length = 0;
         ssize_t got = 1;
         *size = (size_t)status.st_size;
@@ -115,9 +115,9 @@ bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size)
     char *path = path_of(key), *file = read_file(path, &file_size, &found);
     bool intact = file && is_intact(key, file, file_size);
     if (intact) {
-        *size = file_size - sizeof(struct header);
+        *size = file_size - sizeof(struct drape_header);
         *data = tl_alloc(*size, 1);
-        memcpy(*data, file + sizeof(struct header), *size);
+        memcpy(*data, file + sizeof(struct drape_header), *size);
         utimensat(AT_FDCWD, path, NULL, 0); /* used now: it is the last to be removed */
     } else if (found) {
         tl_info("%s: is damaged: it is removed from the cache", path);
@@ -191,7 +191,7 @@ void tl_cache_store(const struct tl_cache_key *key, const void *data, size_t siz
 {
     if (!used.folder || size > used.limit_bytes)
         return;
-    struct header header = {.key = *key, .size = size, .checksum = tl_hash(TL_HASH_START, data, size)};
+    struct drape_header header = {.key = *key, .size = size, .checksum = tl_hash(TL_HASH_START, data, size)};
     memcpy(header.magic, MAGIC, sizeof header.magic);
     char *path = path_of(key);
     struct tl_writer writer = {0};

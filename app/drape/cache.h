@@ -27,7 +27,7 @@ bool tl_cache_is_used(void);
 struct tl_cache_key {
     uint64_t words[2];
 };
-/* An empty key, and one that goes on with bytes. */
+/* An empty key, and a key extended by bytes. */
 struct tl_cache_key tl_cache_key_begin(void);
 void tl_cache_key_add(struct tl_cache_key *key, const void *bytes, size_t size);
 

@@ -35,8 +35,8 @@ static bool has_pose(const struct tl_drape_request *request)
     return request->avatar && request->clip >= 0;
 }
 
-/* From the rest pose to the clip's first pose, vertex by vertex on straight lines. Without a cloth the
- * collider alone makes its moves, which a cloth that is restored counts on. */
+/* Moves the avatar from the rest pose to the clip's first pose, each vertex along a straight line. Without a
+ * cloth only the collider moves, to the state that a restored cloth requires. */
 static bool pose_in(const struct tl_drape_request *request, tl_collider *collider, tl_cloth *cloth,
                     tl_error *error)
 {
@@ -73,8 +73,8 @@ static void add_mesh(struct tl_cache_key *key, const tl_mesh *mesh)
     }
 }
 
-/* All that a drape depends on: the sources of what makes it and how they were compiled, the options, the
- * garment, and the wearer in both of the poses that it has while it is dressed. */
+/* Hashes all inputs of a drape: the sources of the code that computes it and their compilation, the options,
+ * the garment, and the wearer in both of the poses that it has while it is dressed. */
 static struct tl_cache_key key_of(const struct tl_drape_request *request)
 {
     struct tl_cache_key key = tl_cache_key_begin();

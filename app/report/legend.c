@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* In dots. */
+/* Sizes in pixels. */
 enum {
     MARGIN = 5,
     PADDING = 5,

@@ -29,7 +29,7 @@ struct box {
     double x0, y0, x1, y1;
 };
 
-struct drawing {
+struct plot_drawing {
     FILE *out;
     const struct tl_plot_options *options;
     double height;
@@ -91,7 +91,7 @@ static struct axis make_axis(double low, double high, bool logarithmic, bool tig
     return axis;
 }
 
-static void find_axes(struct drawing *drawing, const struct tl_plot *plot)
+static void find_axes(struct plot_drawing *drawing, const struct tl_plot *plot)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (size_t s = 0; s < plot->series_count; s++)
@@ -160,7 +160,7 @@ static size_t find_ticks(const struct axis *axis, bool whole, struct tick ticks[
                      : count; /* a range within one decade holds too few of the round numbers */
 }
 
-static void print_y_ticks(const struct drawing *drawing)
+static void print_y_ticks(const struct plot_drawing *drawing)
 {
     struct tick ticks[TICKS_MAX];
     size_t count = find_ticks(&drawing->y, drawing->options->y_is_count, ticks);
@@ -175,7 +175,7 @@ static void print_y_ticks(const struct drawing *drawing)
     }
 }
 
-static void print_axes(const struct drawing *drawing, const struct tl_plot *plot)
+static void print_axes(const struct plot_drawing *drawing, const struct tl_plot *plot)
 {
     struct tick ticks[TICKS_MAX];
     FILE *out = drawing->out;
@@ -216,13 +216,13 @@ static const char *const marks[TL_PLOT_STYLES] = {
     "M-2.5 -5.5H2.5V5.5H-2.5z",
 };
 
-static void occupy(struct drawing *drawing, struct box box)
+static void occupy(struct plot_drawing *drawing, struct box box)
 {
     drawing->occupied[drawing->occupied_count++] = box;
 }
 
 /* Joins the points; an area is closed along the lower end of y. */
-static void print_line(const struct drawing *drawing, const struct tl_plot *plot,
+static void print_line(const struct plot_drawing *drawing, const struct tl_plot *plot,
                        const struct tl_plot_series *series, size_t style)
 {
     bool steps = drawing->options->kind == TL_PLOT_STEPS, areas = drawing->options->kind == TL_PLOT_AREAS;
@@ -253,7 +253,7 @@ static void print_line(const struct drawing *drawing, const struct tl_plot *plot
         fputs("\"/>\n", drawing->out);
 }
 
-static void print_bars(const struct drawing *drawing, const struct tl_plot *plot,
+static void print_bars(const struct plot_drawing *drawing, const struct tl_plot *plot,
                        const struct tl_plot_series *series, size_t style)
 {
     double floor_y = place(&drawing->y, drawing->y.low);
@@ -272,7 +272,7 @@ static void print_bars(const struct drawing *drawing, const struct tl_plot *plot
     }
 }
 
-static void print_shade(const struct drawing *drawing)
+static void print_shade(const struct plot_drawing *drawing)
 {
     if (drawing->options->shaded_to > drawing->x.low)
         fprintf(drawing->out,
@@ -281,7 +281,7 @@ static void print_shade(const struct drawing *drawing)
                 drawing->height - BOTTOM - TOP);
 }
 
-static void print_guides(const struct drawing *drawing)
+static void print_guides(const struct plot_drawing *drawing)
 {
     const struct tl_plot_options *options = drawing->options;
     for (size_t i = 0; i < options->guide_count; i++) {
@@ -297,7 +297,7 @@ static void print_guides(const struct drawing *drawing)
     }
 }
 
-static void print_marks(struct drawing *drawing, const struct tl_plot *plot,
+static void print_marks(struct plot_drawing *drawing, const struct tl_plot *plot,
                         const struct tl_plot_series *series, size_t style)
 {
     for (size_t i = 0; i < series->count; i++) {
@@ -313,7 +313,7 @@ static void print_marks(struct drawing *drawing, const struct tl_plot *plot,
     }
 }
 
-static bool overlaps(const struct drawing *drawing, struct box box)
+static bool overlaps(const struct plot_drawing *drawing, struct box box)
 {
     if (box.x0 < LEFT || box.x1 > WIDTH || box.y0 < 0 || box.y1 > drawing->height - BOTTOM)
         return true;
@@ -327,7 +327,7 @@ static bool overlaps(const struct drawing *drawing, struct box box)
 
 /* Writes a name beside its point, at the first of eight places where it covers no mark or other name. Without
  * such a place the name only shows when the point is hovered. */
-static void print_name(struct drawing *drawing, const struct tl_plot_point *point)
+static void print_name(struct plot_drawing *drawing, const struct tl_plot_point *point)
 {
     static const double sides[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
     const double gap = 7;
@@ -347,7 +347,7 @@ static void print_name(struct drawing *drawing, const struct tl_plot_point *poin
     }
 }
 
-static void print_names(struct drawing *drawing, const struct tl_plot *plot)
+static void print_names(struct plot_drawing *drawing, const struct tl_plot *plot)
 {
     for (size_t s = 0; s < plot->series_count; s++)
         for (size_t i = 0; !plot->series[s].front && i < plot->series[s].count; i++) {
@@ -387,7 +387,7 @@ static bool has_marks(const struct tl_plot_series *series, enum tl_plot_kind kin
 }
 
 /* Areas are drawn before the grid, so that its lines show on them; other series are drawn after it. */
-static void print_series(struct drawing *drawing, const struct tl_plot *plot)
+static void print_series(struct plot_drawing *drawing, const struct tl_plot *plot)
 {
     enum tl_plot_kind kind = drawing->options->kind;
     for (size_t s = plot->series_count; s-- > 0 && kind == TL_PLOT_AREAS;)
@@ -409,10 +409,10 @@ void tl_plot_print(FILE *out, const struct tl_plot *plot, const struct tl_plot_o
     size_t points = 0;
     for (size_t s = 0; s < plot->series_count; s++)
         points += plot->series[s].count;
-    struct drawing drawing = {.out = out,
-                              .options = options,
-                              .height = options->height > 0 ? options->height : HEIGHT,
-                              .occupied = TL_NEW_ARRAY(struct box, 2 * points)};
+    struct plot_drawing drawing = {.out = out,
+                                   .options = options,
+                                   .height = options->height > 0 ? options->height : HEIGHT,
+                                   .occupied = TL_NEW_ARRAY(struct box, 2 * points)};
     find_axes(&drawing, plot);
     if (plot->series_count > 1 || options->kind == TL_PLOT_LINES)
         print_legend(out, plot);
@@ -425,14 +425,14 @@ void tl_plot_print(FILE *out, const struct tl_plot *plot, const struct tl_plot_o
     free(drawing.occupied);
 }
 
-struct ranked {
+struct ranked_point {
     size_t index;
     double x, y;
 };
 
 static int compare_ranked(const void *a, const void *b)
 {
-    const struct ranked *first = a, *second = b;
+    const struct ranked_point *first = a, *second = b;
     if (first->x != second->x)
         return first->x < second->x ? -1 : 1;
     return (first->y > second->y) - (first->y < second->y);
@@ -440,11 +440,11 @@ static int compare_ranked(const void *a, const void *b)
 
 size_t tl_pareto_front(const struct tl_plot_point *points, size_t count, size_t *best)
 {
-    struct ranked *ranked = TL_NEW_ARRAY(struct ranked, count);
+    struct ranked_point *ranked = TL_NEW_ARRAY(struct ranked_point, count);
     size_t usable_count = 0, front = 0;
     for (size_t i = 0; i < count; i++)
         if (isfinite(points[i].x) && isfinite(points[i].y))
-            ranked[usable_count++] = (struct ranked){i, points[i].x, points[i].y};
+            ranked[usable_count++] = (struct ranked_point){i, points[i].x, points[i].y};
     qsort(ranked, usable_count, sizeof *ranked, compare_ranked);
     double lowest = INFINITY;
     for (size_t i = 0; i < usable_count; i++)

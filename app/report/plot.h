@@ -48,7 +48,7 @@ struct tl_plot_guide {
     const char *name;
 };
 
-/* How a plot is drawn; {0} is a plot of lines with the default height. */
+/* Style of a plot; {0} is a plot of lines with the default height. */
 struct tl_plot_options {
     enum tl_plot_kind kind;
     double bar_width;                   /* in x; for bars */

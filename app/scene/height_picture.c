@@ -27,7 +27,7 @@ bool tl_height_picture_load(const char *path, tl_image *out, tl_error *error)
     return true;
 }
 
-/* In metres over the fabric's middle. */
+/* Converts heights to metres above the fabric's middle plane. */
 static tl_image heights_of(const tl_image *picture, float depth_m)
 {
     tl_image heights = tl_bake_heights(picture, 0, 1);

@@ -57,19 +57,19 @@ static struct tl_path_key key_of(const struct tl_settings *scene)
 
 /* -- reading -- */
 
-struct reader {
+struct path_reader {
     struct tl_yaml yaml;
     struct tl_path *path;
     struct tl_path_key key; /* being read; what it leaves out stays */
 };
 
-static bool fail_here(const struct reader *reader, const char *what)
+static bool fail_here(const struct path_reader *reader, const char *what)
 {
     return tl_yaml_fail(&reader->yaml, tl_yaml_line(&reader->yaml), what);
 }
 
 /* The current event is a field's name; its value follows. */
-static bool read_field(struct reader *reader, bool given[TL_COUNT(key_rows)])
+static bool read_field(struct path_reader *reader, bool given[TL_COUNT(key_rows)])
 {
     struct tl_yaml *yaml = &reader->yaml;
     size_t line = tl_yaml_line(yaml);
@@ -94,7 +94,7 @@ static bool read_field(struct reader *reader, bool given[TL_COUNT(key_rows)])
     return set;
 }
 
-static bool check_key(const struct reader *reader, size_t line)
+static bool check_key(const struct path_reader *reader, size_t line)
 {
     const struct tl_path *path = reader->path;
     const struct tl_path_key *key = &reader->key, *before = path->keys ? &path->keys[path->count - 1] : NULL;
@@ -111,7 +111,7 @@ static bool check_key(const struct reader *reader, size_t line)
 }
 
 /* The current event begins a key. */
-static bool read_key(struct reader *reader)
+static bool read_key(struct path_reader *reader)
 {
     bool given[TL_COUNT(key_rows)] = {false};
     size_t line = tl_yaml_line(&reader->yaml);
@@ -130,7 +130,7 @@ static bool read_key(struct reader *reader)
     return false;
 }
 
-static bool read_keys(struct reader *reader)
+static bool read_keys(struct path_reader *reader)
 {
     if (!tl_yaml_next(&reader->yaml))
         return false;
@@ -147,7 +147,7 @@ static bool read_keys(struct reader *reader)
 
 static bool read_root(void *context)
 {
-    struct reader *reader = context;
+    struct path_reader *reader = context;
     if (reader->yaml.event.type != YAML_MAPPING_START_EVENT)
         return fail_here(reader, "expected `keys:` and a list of keys: this is no camera path");
     for (bool read = false; tl_yaml_next(&reader->yaml); read = true) {
@@ -176,7 +176,7 @@ static void aim_keys(struct tl_path *path, const struct tl_camera_params *scene)
 bool tl_path_load(const char *file, const struct tl_settings *scene, struct tl_path *out, tl_error *error)
 {
     struct tl_path path = {0};
-    struct reader reader = {.path = &path, .key = key_of(scene)};
+    struct path_reader reader = {.path = &path, .key = key_of(scene)};
     char *data = NULL;
     size_t size = 0;
     if (!tl_file_read_small(file, TL_LIMIT_YAML_BYTES, &data, &size, error))

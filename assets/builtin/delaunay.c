@@ -6,21 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct triangle {
+struct delaunay_triangle {
     uint32_t v[3];
     double centre_x, centre_y, radius2; /* of the circumcircle */
 };
 
 struct triangle_list {
-    struct triangle *items;
+    struct delaunay_triangle *items;
     size_t count, capacity;
 };
 
-struct edge {
+struct delaunay_edge {
     uint32_t a, b;
 };
 
-static void push(struct triangle_list *list, const struct triangle *triangle)
+static void push(struct triangle_list *list, const struct delaunay_triangle *triangle)
 {
     if (list->count == list->capacity) {
         list->capacity = list->capacity ? 2 * list->capacity : 256;
@@ -37,9 +37,9 @@ static double twice_area(const struct tl_point *p, const uint32_t v[3])
 
 /* Makes a counter-clockwise triangle with its circumcircle. A degenerate triangle gets a huge circle, so that
  * the next point removes it. */
-static struct triangle make_triangle(const struct tl_point *p, uint32_t a, uint32_t b, uint32_t c)
+static struct delaunay_triangle make_triangle(const struct tl_point *p, uint32_t a, uint32_t b, uint32_t c)
 {
-    struct triangle t = {.v = {a, b, c}};
+    struct delaunay_triangle t = {.v = {a, b, c}};
     double area = twice_area(p, t.v);
     if (area < 0) {
         t.v[1] = c;
@@ -57,7 +57,7 @@ static struct triangle make_triangle(const struct tl_point *p, uint32_t a, uint3
 
 static int compare_edges(const void *left, const void *right)
 {
-    const struct edge *a = left, *b = right;
+    const struct delaunay_edge *a = left, *b = right;
     if (a->a != b->a)
         return a->a < b->a ? -1 : 1;
     return (a->b > b->b) - (a->b < b->b);
@@ -67,11 +67,11 @@ static int compare_edges(const void *left, const void *right)
  * boundary of the hole to it. An edge that two removed triangles share is inside the hole: it occurs twice
  * and is dropped. */
 static void insert_point(const struct tl_point *p, uint32_t index, struct triangle_list *open,
-                         struct triangle_list *done, struct edge **rim, size_t *rim_capacity)
+                         struct triangle_list *done, struct delaunay_edge **rim, size_t *rim_capacity)
 {
     size_t rim_count = 0, kept = 0;
     for (size_t i = 0; i < open->count; i++) {
-        struct triangle t = open->items[i];
+        struct delaunay_triangle t = open->items[i];
         double dx = p[index].x - t.centre_x, dy = p[index].y - t.centre_y;
         if (dx > 0 && dx * dx > t.radius2) {
             push(done, &t); /* points are sorted by x: no later one can lie in this circle */
@@ -87,7 +87,7 @@ static void insert_point(const struct tl_point *p, uint32_t index, struct triang
         }
         for (int k = 0; k < 3; k++) {
             uint32_t a = t.v[k], b = t.v[(k + 1) % 3];
-            (*rim)[rim_count++] = (struct edge){a < b ? a : b, a < b ? b : a};
+            (*rim)[rim_count++] = (struct delaunay_edge){a < b ? a : b, a < b ? b : a};
         }
     }
     open->count = kept;
@@ -98,7 +98,7 @@ static void insert_point(const struct tl_point *p, uint32_t index, struct triang
             i++;
             continue;
         }
-        struct triangle t = make_triangle(p, (*rim)[i].a, (*rim)[i].b, index);
+        struct delaunay_triangle t = make_triangle(p, (*rim)[i].a, (*rim)[i].b, index);
         push(open, &t);
     }
 }
@@ -146,9 +146,10 @@ size_t tl_delaunay(const struct tl_point *points, size_t count, uint32_t (**tria
     qsort(order, count, sizeof *order, compare_x);
 
     struct triangle_list open = {0}, done = {0};
-    struct edge *rim = NULL;
+    struct delaunay_edge *rim = NULL;
     size_t rim_capacity = 0;
-    struct triangle first = make_triangle(all, (uint32_t)count, (uint32_t)count + 1, (uint32_t)count + 2);
+    struct delaunay_triangle first =
+        make_triangle(all, (uint32_t)count, (uint32_t)count + 1, (uint32_t)count + 2);
     push(&open, &first);
     for (size_t i = 0; i < count; i++)
         insert_point(all, order[i].index, &open, &done, &rim, &rim_capacity);

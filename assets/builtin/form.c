@@ -51,11 +51,11 @@ static const struct profile_point neck_cap[] = {
 #define NECK_CAP_Z 0.004 /* the neck leans forward */
 
 /* Heights of the torso's rings: denser where the surface turns over, at the hem and on the shoulders. */
-struct span {
+struct ring_span {
     double end;
     int rings;
 };
-static const struct span torso_spans[] = {
+static const struct ring_span torso_spans[] = {
     {0.7003, 1}, {0.7120, 4}, {0.7240, 2}, {1.2440, 28}, {1.3340, 9}, {1.4400, 16}, {1.4640, 3}, {1.4697, 3},
 };
 

@@ -21,7 +21,7 @@ const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
 /* The pieces of a plan after cutting, and where their vertices begin in the garment. */
 struct cutting {
     const struct tl_cut_plan *plan;
-    tl_panel panels[TL_CUT_MAX_PIECES];
+    tl_panel_mesh panels[TL_CUT_MAX_PIECES];
     size_t first_vertex[TL_CUT_MAX_PIECES + 1];
 };
 
@@ -172,7 +172,7 @@ static void lay_out(const struct cutting *cutting, tl_garment *garment)
     garment->pattern = TL_NEW_ARRAY(vec2s, mesh->vertex_count);
     size_t next = 0;
     for (size_t p = 0; p < plan->piece_count; p++) {
-        const tl_panel *panel = &cutting->panels[p];
+        const tl_panel_mesh *panel = &cutting->panels[p];
         struct tl_point offset = plan->pieces[p].table_offset;
         for (size_t i = 0; i < panel->point_count; i++) {
             vec2s at = {{(float)(panel->points[i].x + offset.x), (float)(panel->points[i].y + offset.y)}};

@@ -12,7 +12,7 @@ struct squares {
     uint32_t *first, *items; /* [across[0] * across[1] + 1], and first's last */
 };
 
-struct span {
+struct square_span {
     size_t low[2], high[2]; /* inclusive */
 };
 
@@ -22,10 +22,10 @@ static size_t square_at(const struct squares *squares, int axis, double place)
     return (size_t)fmin(fmax(number, 0), (double)squares->across[axis] - 1);
 }
 
-static struct span span_of(const struct squares *squares, const tl_garment *garment, size_t triangle)
+static struct square_span span_of(const struct squares *squares, const tl_garment *garment, size_t triangle)
 {
     const uint32_t *v = &garment->model.mesh.indices[3 * triangle];
-    struct span span;
+    struct square_span span;
     for (int axis = 0; axis < 2; axis++) {
         double low = INFINITY, high = -INFINITY;
         for (int k = 0; k < 3; k++) {
@@ -42,7 +42,7 @@ static struct span span_of(const struct squares *squares, const tl_garment *garm
 static void visit(struct squares *squares, const tl_garment *garment, bool fill)
 {
     for (size_t t = 0; t < garment->model.mesh.index_count / 3; t++) {
-        struct span span = span_of(squares, garment, t);
+        struct square_span span = span_of(squares, garment, t);
         for (size_t y = span.low[1]; y <= span.high[1]; y++)
             for (size_t x = span.low[0]; x <= span.high[0]; x++) {
                 uint32_t *first = &squares->first[y * squares->across[0] + x];

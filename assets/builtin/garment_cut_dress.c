@@ -30,7 +30,7 @@ enum { BODICE_RINGS = 16, PROFILE_STEPS = 64 };
 
 /* Side view of the way from the underarm level over chest or back to the shoulder's ridge, by cloth length.
  */
-struct profile {
+struct dress_profile {
     double length;
     double y[PROFILE_STEPS + 1];
     double depth[PROFILE_STEPS + 1]; /* distance in front of (behind) the ridge, 1 at the underarm level */
@@ -39,7 +39,7 @@ struct profile {
 struct bodice_shape {
     double facing; /* +1 front, -1 back */
     bool darted;
-    struct profile profile;
+    struct dress_profile profile;
     const struct tl_ring *rings; /* BODICE_RINGS from waist to underarm, shared */
 };
 
@@ -108,7 +108,7 @@ static void place_bodice(const void *context, struct tl_point p, double position
 
 /* Traces the profile around the shoulder in the plane x = STRAP_X, a centimetre off the form, by rays from a
  * point below the ridge. */
-static void trace_profile(double underarm_y, double facing, struct profile *out)
+static void trace_profile(double underarm_y, double facing, struct dress_profile *out)
 {
     double y[PROFILE_STEPS + 1], z[PROFILE_STEPS + 1], length[PROFILE_STEPS + 1] = {0};
     for (int i = 0; i <= PROFILE_STEPS; i++) {

@@ -97,7 +97,7 @@ static double jitter(uint32_t seed)
 /* Hexagonal grid points inside the outline, off it by 0.6 edges: farther than the radius of any outline
  * edge's diametral circle, so that every outline edge is a Delaunay edge. The jitter avoids a preferred
  * direction in the cloth. */
-static void fill_inside(tl_panel *panel, double edge_m)
+static void fill_inside(tl_panel_mesh *panel, double edge_m)
 {
     const double row_height = 0.5 * sqrt(3) * edge_m, clearance = 0.6 * edge_m, shake = 0.25 * edge_m;
     struct tl_point lower = panel->points[0], upper = panel->points[0];
@@ -121,7 +121,7 @@ static void fill_inside(tl_panel *panel, double edge_m)
     }
 }
 
-static void triangulate(tl_panel *panel)
+static void triangulate(tl_panel_mesh *panel)
 {
     free(panel->triangles);
     size_t count = tl_delaunay(panel->points, panel->point_count, &panel->triangles), kept = 0;
@@ -143,7 +143,7 @@ static void triangulate(tl_panel *panel)
 }
 
 /* Moves inner points to the mean of their neighbours, which evens out the strip along the outline. */
-static void smooth(tl_panel *panel)
+static void smooth(tl_panel_mesh *panel)
 {
     struct tl_point *sum = TL_NEW_ARRAY(struct tl_point, panel->point_count);
     double *weight = TL_NEW_ARRAY(double, panel->point_count);
@@ -167,9 +167,9 @@ static void smooth(tl_panel *panel)
     free(weight);
 }
 
-tl_panel tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m)
+tl_panel_mesh tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m)
 {
-    tl_panel panel = {0};
+    tl_panel_mesh panel = {0};
     for (size_t c = 0; c < curve_count; c++)
         panel.outline_count += (size_t)outline[c].segments;
     panel.points = TL_NEW_ARRAY(struct tl_point, panel.outline_count);
@@ -186,9 +186,9 @@ tl_panel tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double
     return panel;
 }
 
-void tl_panel_release(tl_panel *panel)
+void tl_panel_release(tl_panel_mesh *panel)
 {
     free(panel->points);
     free(panel->triangles);
-    *panel = (tl_panel){0};
+    *panel = (tl_panel_mesh){0};
 }

@@ -19,19 +19,19 @@ struct tl_curve {
     int segments;
 };
 
-typedef struct tl_panel {
+typedef struct tl_panel_mesh {
     size_t point_count;
     struct tl_point *points; /* metres; the outline's come first, in its order */
     size_t outline_count;
     size_t triangle_count;
     uint32_t (*triangles)[3]; /* counter-clockwise */
-} tl_panel;
+} tl_panel_mesh;
 
 struct tl_curve tl_curve_line(struct tl_point from, struct tl_point to);
 double tl_curve_length(const struct tl_curve *curve);
 
 /* The point of curve c's n-th division is outline point (sum of the segments before c) + n. */
-tl_panel tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m);
-void tl_panel_release(tl_panel *panel); /* frees and zeroes */
+tl_panel_mesh tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m);
+void tl_panel_release(tl_panel_mesh *panel); /* frees and zeroes */
 
 #endif

@@ -124,7 +124,7 @@ static const struct profile torus_profile = {.ring = TORUS_RING_M,
 /* Level cloth, its warp away from the viewer. */
 static tl_garment cut_level(const char *name, const struct tl_curve *outline, float edge_m, float height_m)
 {
-    tl_panel panel = tl_panel_cut(outline, 4, (double)edge_m);
+    tl_panel_mesh panel = tl_panel_cut(outline, 4, (double)edge_m);
     tl_mesh mesh = new_mesh(panel.point_count, 3 * panel.triangle_count);
     vec2s *pattern = TL_NEW_ARRAY(vec2s, panel.point_count);
     for (size_t i = 0; i < panel.point_count; i++) {

@@ -40,10 +40,10 @@ const struct tl_option_table tl_weave_options =
                     struct tl_weave_params, TL_WEAVE_DEFAULTS);
 
 /* A regular weave: warp end i passes under weft pick j when j = i * step (mod repeat). */
-struct drawing {
+struct weave_drawing {
     int repeat, step;
 };
-static const struct drawing drawings[] = {
+static const struct weave_drawing drawings[] = {
     [TL_WEAVE_PLAIN] = {2, 1}, [TL_WEAVE_TWILL] = {4, 1}, [TL_WEAVE_SATIN] = {5, 2}};
 
 /* Half a yarn's width over its pitch: neighbours overlap a little, which keeps the slopes between them
@@ -65,14 +65,14 @@ struct sample {
     double height, slope_across, slope_along;
 };
 
-static bool warp_is_over(const struct drawing *drawing, int end, int pick)
+static bool warp_is_over(const struct weave_drawing *drawing, int end, int pick)
 {
     int n = drawing->repeat;
     return ((pick - end * drawing->step) % n + n) % n != 0;
 }
 
 /* +1 where the yarn runs over its crossing, -1 where under. */
-static double level(const struct yarns *yarns, const struct drawing *drawing, int yarn, int crossing)
+static double level(const struct yarns *yarns, const struct weave_drawing *drawing, int yarn, int crossing)
 {
     bool over =
         yarns->is_warp ? warp_is_over(drawing, yarn, crossing) : !warp_is_over(drawing, crossing, yarn);
@@ -81,7 +81,7 @@ static double level(const struct yarns *yarns, const struct drawing *drawing, in
 
 /* A yarn's surface: its centre line goes from crossing to crossing by half cosines, level over floats; its
  * section is an ellipse, sheared along the height. */
-static struct sample yarn_surface(const struct yarns *yarns, const struct drawing *drawing, int yarn,
+static struct sample yarn_surface(const struct yarns *yarns, const struct weave_drawing *drawing, int yarn,
                                   double across, double along)
 {
     double x = (across - (yarn + 0.5) * yarns->pitch) / (HALF_WIDTH * yarns->pitch);
@@ -99,8 +99,8 @@ static struct sample yarn_surface(const struct yarns *yarns, const struct drawin
 }
 
 /* The highest yarn at a point. */
-static struct sample system_surface(const struct yarns *yarns, const struct drawing *drawing, double across,
-                                    double along)
+static struct sample system_surface(const struct yarns *yarns, const struct weave_drawing *drawing,
+                                    double across, double along)
 {
     int nearest = (int)floor(across / yarns->pitch);
     struct sample top = yarn_surface(yarns, drawing, nearest, across, along);
@@ -114,7 +114,7 @@ static struct sample system_surface(const struct yarns *yarns, const struct draw
 
 struct weaving {
     const struct tl_weave_params *params;
-    const struct drawing *drawing;
+    const struct weave_drawing *drawing;
     struct yarns warp, weft;
 };
 

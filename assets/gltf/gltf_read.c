@@ -239,7 +239,7 @@ static float float_at(const uint8_t *bytes, int type, bool normalized)
 }
 
 /* An accessor whose bytes are all there. */
-struct source {
+struct gltf_source {
     const struct gltf_accessor *accessor;
     struct elements elements, sparse_indices, sparse_values;
 };
@@ -259,13 +259,13 @@ static bool find_sparse(const gltf_document *document, const struct gltf_accesso
 }
 
 static bool find_source(const gltf_document *document, int index, const char *what, int components,
-                        size_t limit, struct source *out, tl_error *error)
+                        size_t limit, struct gltf_source *out, tl_error *error)
 {
     if (!check_accessor(document, index, what, components, limit, error))
         return false;
     const struct gltf_accessor *accessor = &document->accessors[index];
     size_t size = component_size(accessor->component_type) * (size_t)components;
-    *out = (struct source){.accessor = accessor};
+    *out = (struct gltf_source){.accessor = accessor};
     if (accessor->view >= 0 && !find_elements(document, accessor->view, accessor->offset, accessor->count,
                                               size, what, &out->elements, error))
         return false;
@@ -292,7 +292,7 @@ static void store_element(const struct gltf_accessor *accessor, const uint8_t *b
     }
 }
 
-static bool read_source(const gltf_document *document, const struct source *source, const char *what,
+static bool read_source(const gltf_document *document, const struct gltf_source *source, const char *what,
                         struct sink sink, tl_error *error)
 {
     const struct gltf_accessor *accessor = source->accessor;
@@ -325,7 +325,7 @@ bool gltf_read_floats(const gltf_document *document, int accessor, const char *w
 {
     *out = NULL;
     *count = 0;
-    struct source source;
+    struct gltf_source source;
     if (!find_source(document, accessor, what, components, limit, &source, error))
         return false;
     size_t elements = source.accessor->count, values = elements * (size_t)components;
@@ -345,7 +345,7 @@ bool gltf_read_integers(const gltf_document *document, int accessor, const char 
 {
     *out = NULL;
     *count = 0;
-    struct source source;
+    struct gltf_source source;
     if (!find_source(document, accessor, what, components, limit, &source, error))
         return false;
     int type = source.accessor->component_type;

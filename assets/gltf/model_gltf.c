@@ -11,7 +11,7 @@
 #define NO_SLOT UINT32_MAX
 
 /* The model under construction. */
-struct builder {
+struct gltf_builder {
     const gltf_document *document;
     tl_model *model;
     tl_rig *rig;
@@ -28,7 +28,7 @@ struct builder {
 
 /* ---- Slots: a node and a bind matrix; vertices are bound to them ---- */
 
-static uint32_t add_slot(struct builder *builder, int node, mat4s bind)
+static uint32_t add_slot(struct gltf_builder *builder, int node, mat4s bind)
 {
     tl_rig *rig = builder->rig;
     if (rig->slot_count == builder->slot_capacity) {
@@ -40,7 +40,7 @@ static uint32_t add_slot(struct builder *builder, int node, mat4s bind)
 }
 
 /* Adds the slots of a skin once, one for each joint, however many nodes use it. */
-static bool add_skin(struct builder *builder, int index, tl_error *error)
+static bool add_skin(struct gltf_builder *builder, int index, tl_error *error)
 {
     const gltf_document *document = builder->document;
     if ((size_t)index >= document->skin_count)
@@ -75,7 +75,7 @@ static bool add_skin(struct builder *builder, int index, tl_error *error)
 
 /* ---- Primitives ---- */
 
-static void note_ignored(struct builder *builder, const struct gltf_primitive *primitive)
+static void note_ignored(struct gltf_builder *builder, const struct gltf_primitive *primitive)
 {
     if (primitive->has_targets)
         model_ignore(builder->model, "morph targets");
@@ -103,7 +103,7 @@ static struct rig_influence influence_of(const struct gltf_vertices *primitive, 
     return influence;
 }
 
-static void reserve(struct builder *builder, size_t vertices, size_t indices)
+static void reserve(struct gltf_builder *builder, size_t vertices, size_t indices)
 {
     tl_mesh *mesh = &builder->model->mesh;
     tl_rig *rig = builder->rig;
@@ -127,7 +127,8 @@ static void reserve(struct builder *builder, size_t vertices, size_t indices)
     }
 }
 
-static void append_vertices(struct builder *builder, const struct gltf_vertices *from, uint32_t first_slot)
+static void append_vertices(struct gltf_builder *builder, const struct gltf_vertices *from,
+                            uint32_t first_slot)
 {
     tl_model *model = builder->model;
     tl_mesh *mesh = &model->mesh;
@@ -151,7 +152,7 @@ static void append_vertices(struct builder *builder, const struct gltf_vertices 
     builder->rig->vertex_count = mesh->vertex_count;
 }
 
-static void append_part(struct builder *builder, const struct gltf_vertices *from,
+static void append_part(struct gltf_builder *builder, const struct gltf_vertices *from,
                         const struct gltf_primitive *source)
 {
     tl_mesh *mesh = &builder->model->mesh;
@@ -168,7 +169,7 @@ static void append_part(struct builder *builder, const struct gltf_vertices *fro
 }
 
 /* Appends the triangles of `from` at a node; skin: that of the node, or NULL. */
-static bool append_primitive(struct builder *builder, const struct gltf_primitive *from, int node,
+static bool append_primitive(struct gltf_builder *builder, const struct gltf_primitive *from, int node,
                              const struct gltf_skin *skin, struct gltf_vertices *primitive, tl_error *error)
 {
     const gltf_document *document = builder->document;
@@ -202,7 +203,7 @@ static bool append_primitive(struct builder *builder, const struct gltf_primitiv
     return true;
 }
 
-static bool add_primitive(struct builder *builder, const struct gltf_primitive *from, int node,
+static bool add_primitive(struct gltf_builder *builder, const struct gltf_primitive *from, int node,
                           const struct gltf_skin *skin, tl_error *error)
 {
     if (from->mode < GLTF_MODE_TRIANGLES || from->mode > GLTF_MODE_FAN) {
@@ -223,7 +224,7 @@ static bool add_primitive(struct builder *builder, const struct gltf_primitive *
     return good;
 }
 
-static bool add_node(struct builder *builder, int index, tl_error *error)
+static bool add_node(struct gltf_builder *builder, int index, tl_error *error)
 {
     const gltf_document *document = builder->document;
     const struct gltf_node *node = &document->nodes[index];
@@ -244,7 +245,7 @@ static bool add_node(struct builder *builder, int index, tl_error *error)
 
 /* Adds the nodes below the scene's roots, parents first: a node is shown when it is a root or its parent is.
  */
-static bool add_scene(struct builder *builder, tl_error *error)
+static bool add_scene(struct gltf_builder *builder, tl_error *error)
 {
     const gltf_document *document = builder->document;
     const tl_rig *rig = builder->rig;
@@ -282,7 +283,7 @@ static vec3s turn_normal(const mat4s *m, vec3s n)
     return turned;
 }
 
-static void place_normals(const struct builder *builder, const mat4s *world)
+static void place_normals(const struct gltf_builder *builder, const mat4s *world)
 {
     tl_mesh *mesh = &builder->model->mesh;
     const tl_rig *rig = builder->rig;
@@ -305,7 +306,7 @@ static void place_normals(const struct builder *builder, const mat4s *world)
 
 /* A mirrored node (negative determinant) turns its triangles inside out: swap two corners of each [glTF 2.0,
  * 3.7.4]. */
-static void repair_winding(const struct builder *builder, const mat4s *world)
+static void repair_winding(const struct gltf_builder *builder, const mat4s *world)
 {
     tl_mesh *mesh = &builder->model->mesh;
     for (size_t p = 0; p < mesh->part_count; p++) {
@@ -322,7 +323,7 @@ static void repair_winding(const struct builder *builder, const mat4s *world)
     }
 }
 
-static bool finish(struct builder *builder, enum tl_units wanted, tl_error *error)
+static bool finish(struct gltf_builder *builder, enum tl_units wanted, tl_error *error)
 {
     tl_mesh *mesh = &builder->model->mesh;
     if (mesh->index_count == 0)
@@ -388,7 +389,7 @@ static void name_clips(const gltf_document *document, tl_model *model)
     }
 }
 
-static void drop_unused(const struct builder *builder)
+static void drop_unused(const struct gltf_builder *builder)
 {
     if (!builder->has_pins) {
         free(builder->model->pins);
@@ -406,10 +407,10 @@ bool gltf_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_e
     if (!gltf_open(path, &document, error))
         return false;
     out->rig = TL_NEW(tl_rig);
-    struct builder builder = {.document = &document,
-                              .model = out,
-                              .rig = out->rig,
-                              .skin_slots = TL_NEW_ARRAY(uint32_t, document.skin_count)};
+    struct gltf_builder builder = {.document = &document,
+                                   .model = out,
+                                   .rig = out->rig,
+                                   .skin_slots = TL_NEW_ARRAY(uint32_t, document.skin_count)};
     for (size_t i = 0; i < document.skin_count; i++)
         builder.skin_slots[i] = NO_SLOT;
     bool loaded = check_extensions(&document, out, error) && rig_read(&document, out->rig, error);

@@ -8,13 +8,13 @@
 #include <string.h>
 
 /* A file in memory. */
-struct source {
+struct exr_source {
     const char *path;
     const uint8_t *data;
     size_t size;
 };
 
-static bool fail_damaged(const struct source *source, const char *why, tl_error *error)
+static bool fail_damaged(const struct exr_source *source, const char *why, tl_error *error)
 {
     const char *path = strstr(why, source->path); /* the library names the file too: once is enough */
     if (path)
@@ -50,7 +50,7 @@ static bool preview_fits(const uint8_t *value, uint64_t size)
  * empty name ends a header, an empty header those of a multi-part file ["OpenEXR File Layout"]. The library
  * allocates what a size claims before it reads the value, so that a file of 475 bytes may ask for 2 GB: here
  * every value is checked to lie within the file. */
-static bool check_attributes(const struct source *source, tl_error *error)
+static bool check_attributes(const struct exr_source *source, tl_error *error)
 {
     const uint32_t magic = 20000630, multi_part_flag = 0x1000;
     const uint8_t *at = source->data + 8, *end = source->data + source->size;
@@ -92,8 +92,8 @@ struct plane {
     float *owned; /* values, when they are not part of the image */
 };
 
-struct reader {
-    const struct source *source;
+struct exr_reader {
+    const struct exr_source *source;
     tl_exr_file *file;
     struct tl_exr_part part;
     int width, height;
@@ -102,9 +102,9 @@ struct reader {
     struct plane planes[4];
 };
 
-static bool check_window(struct reader *reader, tl_error *error)
+static bool check_window(struct exr_reader *reader, tl_error *error)
 {
-    const struct source *source = reader->source;
+    const struct exr_source *source = reader->source;
     const struct tl_exr_part *part = &reader->part;
     int64_t width = (int64_t)part->max_x - part->min_x + 1, height = (int64_t)part->max_y - part->min_y + 1;
     if (!tl_image_size_check(source->path, width, height, error))
@@ -124,7 +124,7 @@ static bool check_window(struct reader *reader, tl_error *error)
 
 /* The library decodes all channels of up to 256 rows, or of a tile, at a time. Deflate shrinks at most 1032
  * times. */
-static bool check_chunk(const struct reader *reader, tl_error *error)
+static bool check_chunk(const struct exr_reader *reader, tl_error *error)
 {
     const uint64_t bearable_bytes = 1 << 27, bytes_per_byte = 1032, rows = 256;
     const struct tl_exr_part *part = &reader->part;
@@ -146,7 +146,8 @@ static const struct tl_exr_channel *find_channel(const struct tl_exr_part *part,
     return NULL;
 }
 
-static bool set_plane(struct reader *reader, int slot, const struct tl_exr_channel *channel, tl_error *error)
+static bool set_plane(struct exr_reader *reader, int slot, const struct tl_exr_channel *channel,
+                      tl_error *error)
 {
     if (!channel)
         return true;
@@ -167,7 +168,7 @@ static bool set_plane(struct reader *reader, int slot, const struct tl_exr_chann
     return true;
 }
 
-static bool choose_channels(struct reader *reader, tl_error *error)
+static bool choose_channels(struct exr_reader *reader, tl_error *error)
 {
     static const char *const colours[4] = {"R", "G", "B", "A"}, *const luminances[4] = {"Y", "RY", "BY", "A"};
     const struct tl_exr_part *part = &reader->part;
@@ -195,7 +196,7 @@ static bool choose_channels(struct reader *reader, tl_error *error)
 /* ---- The pixels ---- */
 
 /* Full-size colour goes straight into the image; what must be computed with goes to a plane of its own. */
-static void place_planes(struct reader *reader, tl_image *image)
+static void place_planes(struct exr_reader *reader, tl_image *image)
 {
     for (int i = 0; i < 4; i++) {
         struct plane *plane = &reader->planes[i];
@@ -230,7 +231,7 @@ static float plane_at(const struct plane *plane, int x, int y)
 
 /* RY = (R - Y) / Y and BY = (B - Y) / Y, with Y the luminance of Rec. 709 (OpenEXR's "Technical
  * Introduction", luminance/chroma images). */
-static void colour_from_luminance(const struct reader *reader, int x, int y, float *texel)
+static void colour_from_luminance(const struct exr_reader *reader, int x, int y, float *texel)
 {
     const float red_weight = 0.2126f, green_weight = 0.7152f, blue_weight = 0.0722f;
     float luminance = plane_at(&reader->planes[LUMINANCE], x, y);
@@ -244,7 +245,7 @@ static void colour_from_luminance(const struct reader *reader, int x, int y, flo
 }
 
 /* Fills from the planes what was not decoded straight into the image. */
-static void combine_planes(const struct reader *reader, tl_image *image)
+static void combine_planes(const struct exr_reader *reader, tl_image *image)
 {
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
@@ -258,7 +259,7 @@ static void combine_planes(const struct reader *reader, tl_image *image)
         }
 }
 
-static bool read_pixels(struct reader *reader, tl_error *error)
+static bool read_pixels(struct exr_reader *reader, tl_error *error)
 {
     struct tl_exr_plane planes[4];
     size_t count = 0;
@@ -277,7 +278,7 @@ static bool read_pixels(struct reader *reader, tl_error *error)
            fail_damaged(reader->source, complaint, error);
 }
 
-static bool load_part(struct reader *reader, tl_image *out, tl_error *error)
+static bool load_part(struct exr_reader *reader, tl_image *out, tl_error *error)
 {
     if (reader->part.index < 0)
         return tl_fail(error, TL_INPUT, "%s: holds deep data only: flatten it first", reader->source->path);
@@ -300,10 +301,10 @@ static bool load_part(struct reader *reader, tl_image *out, tl_error *error)
     return read;
 }
 
-static bool load_source(const struct source *source, const char *wanted, tl_image *out,
+static bool load_source(const struct exr_source *source, const char *wanted, tl_image *out,
                         enum tl_exr_envmap *envmap, tl_error *error)
 {
-    struct reader reader = {.source = source, .wanted = wanted};
+    struct exr_reader reader = {.source = source, .wanted = wanted};
     char complaint[TL_EXR_COMPLAINT];
     if (!check_attributes(source, error))
         return false;
@@ -326,7 +327,7 @@ static bool load(const char *path, const char *wanted, tl_image *out, enum tl_ex
     size_t size;
     if (!tl_file_read(path, &data, &size, error))
         return false;
-    const struct source source = {.path = path, .data = (const uint8_t *)data, .size = size};
+    const struct exr_source source = {.path = path, .data = (const uint8_t *)data, .size = size};
     bool loaded = load_source(&source, wanted, out, envmap, error);
     free(data);
     return loaded;

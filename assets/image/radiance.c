@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct reader {
+struct rgbe_reader {
     const uint8_t *at, *end;
 };
 
-struct header {
+struct rgbe_header {
     int width, height;
     bool bottom_up, right_to_left;
     double exposure;
@@ -23,7 +23,7 @@ bool tl_radiance_begins(const void *data, size_t size)
 }
 
 /* Copies the next line without its end. False at the end of the file, or when it is too long for a header. */
-static bool next_line(struct reader *reader, char *line, size_t size)
+static bool next_line(struct rgbe_reader *reader, char *line, size_t size)
 {
     const uint8_t *newline = memchr(reader->at, '\n', (size_t)(reader->end - reader->at));
     if (!newline || (size_t)(newline - reader->at) >= size)
@@ -35,7 +35,7 @@ static bool next_line(struct reader *reader, char *line, size_t size)
     return true;
 }
 
-static bool read_resolution(const char *name, const char *line, struct header *header, tl_error *error)
+static bool read_resolution(const char *name, const char *line, struct rgbe_header *header, tl_error *error)
 {
     char vertical, horizontal;
     if (sscanf(line, "%cY %d %cX %d", &vertical, &header->height, &horizontal, &header->width) != 4 ||
@@ -49,10 +49,11 @@ static bool read_resolution(const char *name, const char *line, struct header *h
     return tl_image_size_check(name, header->width, header->height, error);
 }
 
-static bool read_header(const char *name, struct reader *reader, struct header *header, tl_error *error)
+static bool read_header(const char *name, struct rgbe_reader *reader, struct rgbe_header *header,
+                        tl_error *error)
 {
     char line[2048];
-    *header = (struct header){.exposure = 1};
+    *header = (struct rgbe_header){.exposure = 1};
     while (next_line(reader, line, sizeof line) && line[0] != '\0') {
         double exposure;
         if (strncmp(line, "FORMAT=", 7) == 0 && strcmp(line + 7, "32-bit_rle_rgbe") != 0)
@@ -68,7 +69,7 @@ static bool read_header(const char *name, struct reader *reader, struct header *
 }
 
 /* One of the four components of a row: runs (count - 128 times one byte) and literal stretches. */
-static bool read_component(struct reader *reader, uint8_t *row, int width)
+static bool read_component(struct rgbe_reader *reader, uint8_t *row, int width)
 {
     for (int x = 0; x < width;) {
         if (reader->end - reader->at < 2)
@@ -88,7 +89,7 @@ static bool read_component(struct reader *reader, uint8_t *row, int width)
 /* Texel by texel; a texel (1, 1, 1, n) repeats the one before it, with 8 more bits of n for each that
  * follows.
  */
-static bool read_flat_row(struct reader *reader, uint8_t *row, int width)
+static bool read_flat_row(struct rgbe_reader *reader, uint8_t *row, int width)
 {
     int shift = 0;
     for (int x = 0; x < width;) {
@@ -111,7 +112,7 @@ static bool read_flat_row(struct reader *reader, uint8_t *row, int width)
     return true;
 }
 
-static bool read_row(struct reader *reader, uint8_t *row, int width)
+static bool read_row(struct rgbe_reader *reader, uint8_t *row, int width)
 {
     const uint8_t *at = reader->at;
     bool encoded = width >= 8 && width < 32768 && reader->end - at >= 4 && at[0] == 2 && at[1] == 2 &&
@@ -125,7 +126,7 @@ static bool read_row(struct reader *reader, uint8_t *row, int width)
     return true;
 }
 
-static void decode_row(const struct header *header, const uint8_t *row, float *out)
+static void decode_row(const struct rgbe_header *header, const uint8_t *row, float *out)
 {
     for (int x = 0; x < header->width; x++) {
         const uint8_t *rgbe = row + 4 * (size_t)(header->right_to_left ? header->width - 1 - x : x);
@@ -138,8 +139,8 @@ static void decode_row(const struct header *header, const uint8_t *row, float *o
 bool tl_radiance_decode(const char *name, const void *data, size_t size, tl_image *out, tl_error *error)
 {
     *out = (tl_image){0};
-    struct reader reader = {data, (const uint8_t *)data + size};
-    struct header header;
+    struct rgbe_reader reader = {data, (const uint8_t *)data + size};
+    struct rgbe_header header;
     if (!read_header(name, &reader, &header, error))
         return false;
     /* A run of at most 127 texels takes 8 bytes. Small images are not checked: they cost little. */

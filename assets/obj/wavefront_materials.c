@@ -16,7 +16,7 @@
 #define F0_OF_KS 0.08f
 
 /* The state of reading. */
-struct reader {
+struct mtl_reader {
     struct wave_text text;
     const struct wave_object *object;
     tl_model *model;
@@ -102,10 +102,10 @@ static char *picture_path(const char *library, const char *name)
     for (char *c = plain; *c; c++)
         if (*c == '\\')
             *c = '/';
-    char *path = tl_path_beside(library, plain);
+    char *path = tl_path_relative_to(library, plain);
     const char *slash = strrchr(plain, '/');
     if (slash && !tl_file_exists(path)) {
-        char *sibling = tl_path_beside(library, slash + 1);
+        char *sibling = tl_path_relative_to(library, slash + 1);
         if (tl_file_exists(sibling)) {
             char *swap = path;
             path = sibling;
@@ -117,7 +117,7 @@ static char *picture_path(const char *library, const char *name)
     return path;
 }
 
-static const tl_image *load_picture(struct reader *reader, const char *name, bool linear)
+static const tl_image *load_picture(struct mtl_reader *reader, const char *name, bool linear)
 {
     char *path = picture_path(reader->text.path, name);
     tl_model *model = reader->model;
@@ -148,7 +148,7 @@ failed:
     return NULL;
 }
 
-static void read_map(struct reader *reader, struct tl_map *map, bool linear)
+static void read_map(struct mtl_reader *reader, struct tl_map *map, bool linear)
 {
     *map = (struct tl_map){.transform = {.scale = {1, 1}}};
     const char *name = read_map_name(&reader->text, map);
@@ -158,7 +158,7 @@ static void read_map(struct reader *reader, struct tl_map *map, bool linear)
 }
 
 /* Starts a material. Of several definitions of one material the last is used. */
-static void begin_material(struct reader *reader)
+static void begin_material(struct mtl_reader *reader)
 {
     const char *name = wave_rest(&reader->text);
     reader->current = NULL;
@@ -170,7 +170,7 @@ static void begin_material(struct reader *reader)
 }
 
 /* map_d is supported when it is the alpha channel of map_Kd. */
-static void read_alpha_map(struct reader *reader)
+static void read_alpha_map(struct mtl_reader *reader)
 {
     struct tl_map map;
     read_map(reader, &map, false);
@@ -181,13 +181,13 @@ static void read_alpha_map(struct reader *reader)
         model_ignore(reader->model, "map_d other than the alpha of map_Kd");
 }
 
-static void read_highlight(struct reader *reader, const float specular[3])
+static void read_highlight(struct mtl_reader *reader, const float specular[3])
 {
     for (int i = 0; i < 3; i++)
         reader->current->specular.raw[i] = F0_OF_KS * unit(specular[i]);
 }
 
-static bool read_statement(struct reader *reader, const char *keyword, tl_error *error)
+static bool read_statement(struct mtl_reader *reader, const char *keyword, tl_error *error)
 {
     tl_material *material = reader->current;
     float value[3] = {0, 0, 0};
@@ -230,7 +230,7 @@ static bool read_statement(struct reader *reader, const char *keyword, tl_error 
     return true;
 }
 
-static void read_library(struct reader *reader, const char *path)
+static void read_library(struct mtl_reader *reader, const char *path)
 {
     tl_error error;
     bool good = wave_open(path, &reader->text, &error);
@@ -245,7 +245,7 @@ static void read_library(struct reader *reader, const char *path)
 void wave_read_materials(const char *path, const struct wave_object *object, tl_model *model)
 {
     const size_t maps_each = 3;
-    struct reader reader = {
+    struct mtl_reader reader = {
         .object = object, .model = model, .image_capacity = 2 * maps_each * object->material_count};
     reader.image_paths = TL_NEW_ARRAY(char *, reader.image_capacity);
     model->images = TL_NEW_ARRAY(tl_image, reader.image_capacity); /* never moved: materials point into it */
@@ -254,7 +254,7 @@ void wave_read_materials(const char *path, const struct wave_object *object, tl_
     for (size_t i = 0; i < object->material_count; i++)
         model->materials[i] = tl_material_default(i > 0 ? object->materials[i] : "default");
     for (size_t i = 0; i < object->library_count; i++) {
-        char *library = tl_path_beside(path, object->libraries[i]);
+        char *library = tl_path_relative_to(path, object->libraries[i]);
         read_library(&reader, library);
         free(library);
     }

@@ -8,7 +8,7 @@
 
 #define LIMIT_PARTS 1024 /* each is one draw call */
 
-struct builder {
+struct obj_builder {
     const struct wave_object *object;
     tl_mesh *mesh;
     uint32_t *points;             /* [vertex_count] the file's vertex of each render vertex */
@@ -31,7 +31,7 @@ static bool is_same(const struct wave_corner *a, const struct wave_corner *b)
 
 /* Corners of equal position, texture coordinate and normal share a render vertex; these are numbered in the
  * order of their first corner. */
-static void share_corners(struct builder *builder)
+static void share_corners(struct obj_builder *builder)
 {
     const struct wave_object *object = builder->object;
     size_t slots = 16, count = 0;
@@ -55,7 +55,7 @@ static void share_corners(struct builder *builder)
     builder->mesh->vertex_count = count;
 }
 
-static void fill_vertices(struct builder *builder)
+static void fill_vertices(struct obj_builder *builder)
 {
     const struct wave_object *object = builder->object;
     tl_mesh *mesh = builder->mesh;
@@ -106,7 +106,7 @@ static uint32_t *divide(const struct wave_object *object, uint32_t **part_materi
 }
 
 /* Cuts one face into triangles at `out`; returns where they end. */
-static uint32_t *cut_face(const struct builder *builder, uint32_t first, size_t count, uint32_t *out)
+static uint32_t *cut_face(const struct obj_builder *builder, uint32_t first, size_t count, uint32_t *out)
 {
     const uint32_t *vertices = &builder->corner_vertices[first];
     if (count == 3) {
@@ -133,7 +133,7 @@ static size_t corners_of(const struct wave_object *object, size_t face, uint32_t
 }
 
 /* Triangulates the faces in the order of their parts, within a part in that of the file. */
-static void fill_parts(struct builder *builder)
+static void fill_parts(struct obj_builder *builder)
 {
     const struct wave_object *object = builder->object;
     tl_mesh *mesh = builder->mesh;
@@ -169,7 +169,7 @@ bool wave_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_e
         wave_release(&object);
         return tl_fail(error, TL_INPUT, "%s: holds no mesh with triangles: choose another file", path);
     }
-    struct builder builder = {.object = &object, .mesh = &out->mesh};
+    struct obj_builder builder = {.object = &object, .mesh = &out->mesh};
     share_corners(&builder);
     fill_vertices(&builder);
     fill_parts(&builder);

@@ -13,7 +13,7 @@
 #define LIMIT_IGNORED      16 /* keywords listed; a file that is no OBJ has thousands */
 
 /* The state of reading. */
-struct reader {
+struct obj_reader {
     struct wave_text text;
     struct wave_object *object;
     size_t position_capacity, uv_capacity, normal_capacity, corner_capacity, face_capacity;
@@ -21,7 +21,7 @@ struct reader {
     tl_error *error;
 };
 
-static bool fail_limit(const struct reader *reader, const char *what, size_t limit)
+static bool fail_limit(const struct obj_reader *reader, const char *what, size_t limit)
 {
     return tl_fail(reader->error, TL_INPUT, "%s: line %zu: more than %zu %s: simplify it", reader->text.path,
                    reader->text.line, limit, what);
@@ -36,7 +36,7 @@ static void *grow(void *array, size_t count, size_t *capacity, size_t size)
     return tl_resize(array, *capacity, size);
 }
 
-static bool read_uv(struct reader *reader)
+static bool read_uv(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     if (object->uv_count == TL_LIMIT_MESH_VERTICES)
@@ -47,7 +47,7 @@ static bool read_uv(struct reader *reader)
 }
 
 /* Exporters write nan for the normal of a triangle without area; such a normal is computed instead. */
-static bool read_normal(struct reader *reader)
+static bool read_normal(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     if (object->normal_count == TL_LIMIT_MESH_VERTICES)
@@ -92,7 +92,7 @@ static bool read_corner(const struct wave_object *object, char *word, struct wav
     return *word++ == '/' && read_index(&word, object->normal_count, &out->normal) && *word == '\0';
 }
 
-static bool read_face(struct reader *reader)
+static bool read_face(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     size_t first = object->corner_count;
@@ -134,7 +134,7 @@ static size_t find_or_add(char ***strings, size_t *count, size_t limit, const ch
     return (*count)++;
 }
 
-static bool use_material(struct reader *reader)
+static bool use_material(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     size_t index =
@@ -143,14 +143,14 @@ static bool use_material(struct reader *reader)
     return index < LIMIT_MATERIALS || fail_limit(reader, "materials", LIMIT_MATERIALS);
 }
 
-static void begin_group(struct reader *reader)
+static void begin_group(struct obj_reader *reader)
 {
     const struct wave_object *object = reader->object;
     if (object->face_count > 0 && object->faces[object->face_count - 1].group == reader->group)
         reader->group++;
 }
 
-static void add_library(struct reader *reader)
+static void add_library(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     const char *name = wave_rest(&reader->text);
@@ -158,20 +158,20 @@ static void add_library(struct reader *reader)
         find_or_add(&object->libraries, &object->library_count, LIMIT_LIBRARIES, name);
 }
 
-static void ignore(struct reader *reader, const char *what)
+static void ignore(struct obj_reader *reader, const char *what)
 {
     struct wave_object *object = reader->object;
     find_or_add(&object->ignored, &object->ignored_count, LIMIT_IGNORED, what);
 }
 
-static void ignore_keyword(struct reader *reader, const char *keyword)
+static void ignore_keyword(struct obj_reader *reader, const char *keyword)
 {
     char note[64];
     snprintf(note, sizeof note, "\"%.24s\" lines", keyword);
     ignore(reader, note);
 }
 
-static bool read_position(struct reader *reader)
+static bool read_position(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     if (object->position_count == TL_LIMIT_MESH_VERTICES)
@@ -187,7 +187,7 @@ static bool read_position(struct reader *reader)
     return true;
 }
 
-static bool read_line(struct reader *reader, const char *keyword)
+static bool read_line(struct obj_reader *reader, const char *keyword)
 {
     if (strcmp(keyword, "v") == 0)
         return read_position(reader);
@@ -208,7 +208,7 @@ static bool read_line(struct reader *reader, const char *keyword)
     return true;
 }
 
-static bool check_corners(const struct reader *reader)
+static bool check_corners(const struct obj_reader *reader)
 {
     const struct wave_object *object = reader->object;
     for (size_t face = 0, i = 0; face < object->face_count; face++)
@@ -229,7 +229,7 @@ static bool check_corners(const struct reader *reader)
 bool wave_read(const char *path, struct wave_object *out, tl_error *error)
 {
     *out = (struct wave_object){0};
-    struct reader reader = {.object = out, .error = error};
+    struct obj_reader reader = {.object = out, .error = error};
     if (!wave_open(path, &reader.text, error))
         return false;
     find_or_add(&out->materials, &out->material_count, LIMIT_MATERIALS, "");

@@ -18,7 +18,7 @@ void tl_repulsion_release(struct tl_repulsion *repulsion)
     *repulsion = (struct tl_repulsion){0};
 }
 
-struct cell {
+struct hash_cell {
     int64_t x, y, z;
 };
 
@@ -36,14 +36,14 @@ static int64_t cell_number(double x, double cell_m)
     return (int64_t)fmax(fmin(floor(x / cell_m), FARTHEST_CELL), -FARTHEST_CELL);
 }
 
-static struct cell cell_of(const struct grid *grid, size_t i)
+static struct hash_cell cell_of(const struct grid *grid, size_t i)
 {
     vec3d x = grid->x[i];
-    return (struct cell){cell_number(x.x, grid->cell_m), cell_number(x.y, grid->cell_m),
-                         cell_number(x.z, grid->cell_m)};
+    return (struct hash_cell){cell_number(x.x, grid->cell_m), cell_number(x.y, grid->cell_m),
+                              cell_number(x.z, grid->cell_m)};
 }
 
-static uint32_t slot_of(const struct grid *grid, struct cell cell)
+static uint32_t slot_of(const struct grid *grid, struct hash_cell cell)
 {
     uint64_t hash =
         (uint64_t)cell.x * 73856093u ^ (uint64_t)cell.y * 19349663u ^ (uint64_t)cell.z * 83492791u;
@@ -80,13 +80,13 @@ static void add_pair(struct tl_repulsion *repulsion, struct tl_repulsion_pair pa
 }
 
 /* Pairs of particle i with later ones in one cell. */
-static void find_pairs(struct tl_repulsion *repulsion, const struct grid *grid, size_t i, struct cell cell,
-                       const vec3d *start, double thickness_m)
+static void find_pairs(struct tl_repulsion *repulsion, const struct grid *grid, size_t i,
+                       struct hash_cell cell, const vec3d *start, double thickness_m)
 {
     uint32_t slot = slot_of(grid, cell);
     for (uint32_t k = grid->first[slot]; k < grid->first[slot + 1]; k++) {
         uint32_t j = grid->items[k];
-        struct cell other = cell_of(grid, j);
+        struct hash_cell other = cell_of(grid, j);
         bool here = other.x == cell.x && other.y == cell.y && other.z == cell.z;
         if (j <= i || !here || !(vec3d_distance(grid->x[i], grid->x[j]) < grid->cell_m))
             continue;
@@ -103,9 +103,9 @@ void tl_repulsion_update(struct tl_repulsion *repulsion, size_t count, const vec
         return;
     struct grid grid = make_grid(count, x, REACH_THICKNESSES * thickness_m);
     for (size_t i = 0; i < count; i++) {
-        struct cell cell = cell_of(&grid, i);
+        struct hash_cell cell = cell_of(&grid, i);
         for (int n = 0; n < 27; n++) {
-            struct cell around = {cell.x + n % 3 - 1, cell.y + n / 3 % 3 - 1, cell.z + n / 9 - 1};
+            struct hash_cell around = {cell.x + n % 3 - 1, cell.y + n / 3 % 3 - 1, cell.z + n / 9 - 1};
             find_pairs(repulsion, &grid, i, around, start, thickness_m);
         }
     }

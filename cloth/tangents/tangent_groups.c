@@ -10,7 +10,7 @@
 /* ---- Twins ---- */
 
 /* The edge's vertices in increasing order, so that both directions sort next to each other. */
-struct half_edge {
+struct ordered_edge {
     uint32_t low, high;
     uint32_t falls; /* 1 where it runs from the higher vertex to the lower */
     uint32_t corner;
@@ -18,7 +18,7 @@ struct half_edge {
 
 static int compare_half_edges(const void *a, const void *b)
 {
-    const struct half_edge *left = a, *right = b;
+    const struct ordered_edge *left = a, *right = b;
     if (left->low != right->low)
         return left->low < right->low ? -1 : 1;
     if (left->high != right->high)
@@ -28,12 +28,12 @@ static int compare_half_edges(const void *a, const void *b)
     return (left->corner > right->corner) - (left->corner < right->corner);
 }
 
-static struct half_edge *sort_half_edges(const uint32_t *vertices, size_t corner_count)
+static struct ordered_edge *sort_half_edges(const uint32_t *vertices, size_t corner_count)
 {
-    struct half_edge *edges = TL_NEW_ARRAY(struct half_edge, corner_count);
+    struct ordered_edge *edges = TL_NEW_ARRAY(struct ordered_edge, corner_count);
     for (size_t i = 0; i < corner_count; i++) {
         uint32_t a = vertices[i], b = vertices[tl_corner_turn((uint32_t)i, 1)];
-        edges[i] = (struct half_edge){a < b ? a : b, a < b ? b : a, a > b, (uint32_t)i};
+        edges[i] = (struct ordered_edge){a < b ? a : b, a < b ? b : a, a > b, (uint32_t)i};
     }
     qsort(edges, corner_count, sizeof *edges, compare_half_edges);
     return edges;
@@ -43,7 +43,7 @@ uint32_t *tl_twins_build(const uint32_t *vertices, size_t corner_count)
 {
     /* Each run of equal edges holds the rising half edges first, then the falling ones from `falling` on;
      * both are ordered by corner, so that the pairing does not depend on qsort. */
-    struct half_edge *edges = sort_half_edges(vertices, corner_count);
+    struct ordered_edge *edges = sort_half_edges(vertices, corner_count);
     uint32_t *twins = TL_NEW_ARRAY(uint32_t, corner_count);
     memset(twins, 0xff, corner_count * sizeof *twins);
     for (size_t first = 0, end; first < corner_count; first = end) {

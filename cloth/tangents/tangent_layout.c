@@ -8,7 +8,7 @@
 
 #define LANES TL_LANES
 
-struct item {
+struct layout_item {
     uint32_t normal, group; /* group: TL_NONE if the normal has none */
     uint32_t spoke_count;
     uint32_t slot; /* block * LANES + lane */
@@ -20,7 +20,7 @@ struct layer {
     struct tl_fans normal_fans, group_fans;
     bool *pending;        /* [corner_count] corners of the current item that are not written yet */
     uint32_t *first_user; /* [normal_count] the first render vertex with that normal: its position is read */
-    struct item *items;   /* normal_count of them, then the borrowers */
+    struct layout_item *items; /* normal_count of them, then the borrowers */
     size_t item_count;
     uint32_t *item_of; /* [render_count] */
 };
@@ -32,12 +32,12 @@ struct layer {
 static void list_items(struct layer *layer)
 {
     const struct tl_tangent_groups *groups = layer->groups;
-    layer->items = TL_NEW_ARRAY(struct item, groups->normal_count + groups->group_count);
+    layer->items = TL_NEW_ARRAY(struct layout_item, groups->normal_count + groups->group_count);
     layer->item_of = TL_NEW_ARRAY(uint32_t, groups->render_count);
     layer->first_user = TL_NEW_ARRAY(uint32_t, groups->normal_count);
     uint32_t *item_of_group = TL_NEW_ARRAY(uint32_t, groups->group_count); /* plus 1; 0: none yet */
     for (uint32_t n = 0; n < groups->normal_count; n++)
-        layer->items[n] = (struct item){.normal = n, .group = TL_NONE};
+        layer->items[n] = (struct layout_item){.normal = n, .group = TL_NONE};
     layer->item_count = groups->normal_count;
     for (size_t r = groups->render_count; r-- > 0;)
         layer->first_user[groups->normal_of[r]] = (uint32_t)r;
@@ -50,7 +50,7 @@ static void list_items(struct layer *layer)
             layer->items[normal].group = group;
             item_of_group[group] = normal + 1;
         } else if (item_of_group[group] == 0) {
-            layer->items[layer->item_count++] = (struct item){.normal = normal, .group = group};
+            layer->items[layer->item_count++] = (struct layout_item){.normal = normal, .group = group};
             item_of_group[group] = (uint32_t)layer->item_count;
         }
         layer->item_of[r] = item_of_group[group] - 1;
@@ -106,7 +106,7 @@ static uint32_t position_vertex(const struct layer *layer, uint32_t corner)
 
 /* Writes a chain of adjacent corners from its first one on. Every chain but the first is separated from the
  * one before by a spoke to the vertex itself, whose triangles have no area. */
-static void add_chain(struct layer *layer, const struct item *item, uint32_t corner, struct lane *lane)
+static void add_chain(struct layer *layer, const struct layout_item *item, uint32_t corner, struct lane *lane)
 {
     if (lane->spoke_count > 0)
         add_spoke(lane, layer->first_user[item->normal]);
@@ -124,7 +124,7 @@ static void add_chain(struct layer *layer, const struct item *item, uint32_t cor
  * anywhere. */
 static void write_fan(struct layer *layer, size_t index, struct lane *lane)
 {
-    const struct item *item = &layer->items[index];
+    const struct layout_item *item = &layer->items[index];
     bool borrows = index >= layer->groups->normal_count;
     const struct tl_fans *fans = borrows ? &layer->group_fans : &layer->normal_fans;
     uint32_t list = borrows ? item->group : item->normal;
@@ -149,13 +149,13 @@ static void write_fan(struct layer *layer, size_t index, struct lane *lane)
  */
 #define WINDOW 1024
 
-struct ranked {
+struct ranked_item {
     uint32_t spoke_count, item;
 };
 
 static int compare_ranks(const void *a, const void *b)
 {
-    const struct ranked *left = a, *right = b;
+    const struct ranked_item *left = a, *right = b;
     if (left->spoke_count != right->spoke_count)
         return left->spoke_count < right->spoke_count ? -1 : 1;
     return (left->item > right->item) - (left->item < right->item);
@@ -166,9 +166,9 @@ static int compare_ranks(const void *a, const void *b)
 static size_t place_items(struct layer *layer, size_t begin, size_t end, size_t first_block)
 {
     size_t count = end - begin;
-    struct ranked *order = TL_NEW_ARRAY(struct ranked, count);
+    struct ranked_item *order = TL_NEW_ARRAY(struct ranked_item, count);
     for (size_t i = 0; i < count; i++)
-        order[i] = (struct ranked){layer->items[begin + i].spoke_count, (uint32_t)(begin + i)};
+        order[i] = (struct ranked_item){layer->items[begin + i].spoke_count, (uint32_t)(begin + i)};
     for (size_t first = 0; first < count; first += WINDOW)
         qsort(order + first, count - first < WINDOW ? count - first : WINDOW, sizeof *order, compare_ranks);
     for (size_t i = 0; i < count; i++)
@@ -202,7 +202,7 @@ static void size_blocks(tl_tangent_frames *frames, const struct layer *layer)
 static void fill_blocks(tl_tangent_frames *frames, struct layer *layer)
 {
     for (size_t i = 0; i < layer->item_count; i++) {
-        const struct item *item = &layer->items[i];
+        const struct layout_item *item = &layer->items[i];
         size_t lane = item->slot % LANES;
         const struct tl_tangent_block *block = &frames->blocks[item->slot / LANES];
         for (uint32_t k = 0; k <= block->spoke_count; k++)

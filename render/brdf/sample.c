@@ -73,7 +73,7 @@ static float half_vector_pdf(const struct tl_brdf *brdf, vec3s h)
 /* Distribution of the angle from a thread's mirror cone: logistic, of width 0.6/sqrt(s), truncated where the
  * angle to the thread leaves [0, pi]. A logistic is invertible in closed form and its tails are heavier than
  * those of cos^s, so that no weight grows without bound. */
-struct cone {
+struct sampling_cone {
     float mirror, scale, low,
         high; /* the cone's angle to the thread and the width, rad; cumulative distribution at both ends */
 };
@@ -83,16 +83,17 @@ static float logistic(float x)
     return 1 / (1 + expf(-x));
 }
 
-static struct cone cone_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v)
+static struct sampling_cone cone_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v)
 {
     float t_dot_v = fminf(fmaxf(glms_vec3_dot(frame->tangent, v), -1), 1);
-    struct cone cone = {.mirror = PI - acosf(t_dot_v), .scale = 0.6f / sqrtf(brdf->exponent)};
+    struct sampling_cone cone = {.mirror = PI - acosf(t_dot_v), .scale = 0.6f / sqrtf(brdf->exponent)};
     cone.low = logistic(-cone.mirror / cone.scale);
     cone.high = logistic((PI - cone.mirror) / cone.scale);
     return cone;
 }
 
-static vec3s sample_cone(const struct cone *cone, const struct tl_brdf_frame *frame, float u1, float u2)
+static vec3s sample_cone(const struct sampling_cone *cone, const struct tl_brdf_frame *frame, float u1,
+                         float u2)
 {
     float share = cone->low + u1 * (cone->high - cone->low);
     share = fminf(fmaxf(share, 1e-7f), 1 - 1e-7f);
@@ -102,7 +103,7 @@ static vec3s sample_cone(const struct cone *cone, const struct tl_brdf_frame *fr
     return from_frame(frame, cosf(angle), sine * across, sine * sqrtf(fmaxf(1 - across * across, 0)));
 }
 
-static float cone_pdf(const struct cone *cone, const struct tl_brdf_frame *frame, vec3s l)
+static float cone_pdf(const struct sampling_cone *cone, const struct tl_brdf_frame *frame, vec3s l)
 {
     float along = fminf(fmaxf(glms_vec3_dot(frame->tangent, l), -1), 1);
     float sine_squared = 1 - along * along, up = glms_vec3_dot(frame->normal, l);
@@ -119,7 +120,7 @@ float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
     if (!(at.cos_a > 0 && at.cos_b > 0))
         return 0;
     if (brdf->gloss.model == TL_REFLECT_BANKS) {
-        struct cone cone = cone_of(brdf, frame, v);
+        struct sampling_cone cone = cone_of(brdf, frame, v);
         return cone_pdf(&cone, frame, l);
     }
     if (has_facets(brdf))
@@ -141,7 +142,7 @@ vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
 {
     vec3s l;
     if (brdf->gloss.model == TL_REFLECT_BANKS) {
-        struct cone cone = cone_of(brdf, frame, v);
+        struct sampling_cone cone = cone_of(brdf, frame, v);
         l = sample_cone(&cone, frame, u1, u2);
     } else if (has_facets(brdf)) {
         vec3s h = sample_half_vector(brdf, u1, u2);

@@ -27,12 +27,12 @@ static vec3s light_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
     return i % 2 ? direction(u1, u2) : tl_brdf_sample(brdf, frame, v, u1, u2, &pdf);
 }
 
-struct sums {
+struct error_sums {
     double difference, square; /* sums of squares */
     double table, direct;
 };
 
-static void add(struct sums *sums, vec3s table, vec3s direct)
+static void add(struct error_sums *sums, vec3s table, vec3s direct)
 {
     sums->difference += (double)glms_vec3_distance2(table, direct);
     sums->square += (double)glms_vec3_norm2(direct);
@@ -40,7 +40,7 @@ static void add(struct sums *sums, vec3s table, vec3s direct)
     sums->direct += (double)(direct.x + direct.y + direct.z);
 }
 
-static double relative(const struct sums *sums)
+static double relative(const struct error_sums *sums)
 {
     return sums->square > 0 ? sqrt(sums->difference / sums->square) : 0;
 }
@@ -63,7 +63,7 @@ struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
 {
     struct tl_brdf_tables tables = tl_brdf_tables_make(brdf, params);
     struct tl_brdf_frame frame = upright();
-    struct sums steep = {0}, grazing = {0};
+    struct error_sums steep = {0}, grazing = {0};
     for (int viewer = 0; viewer < VIEWERS * 8; viewer++) {
         int turn = viewer / VIEWERS;
         vec3s v = direction(((float)(viewer % VIEWERS) + 0.5f) / VIEWERS, ((float)turn + 0.3f) / 8);
@@ -88,7 +88,7 @@ struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
 double tl_brdf_table_ratio(const struct tl_brdf *brdf, const struct tl_brdf_tables *tables, float n_dot_v)
 {
     struct tl_brdf_frame frame = upright();
-    struct sums sums = {0};
+    struct error_sums sums = {0};
     for (int viewer = 0; viewer < 16; viewer++) {
         vec3s v = direction(n_dot_v, ((float)viewer + 0.3f) / 16);
         for (int i = 0; i < LIGHTS * LIGHTS; i++) {

@@ -172,33 +172,33 @@ static float outside(float at, float from, float to)
     return fmaxf(fmaxf(from - at, at - to), 0);
 }
 
-struct block {
+struct height_block {
     int level, x, y;
 };
 
 /* The tightest bound that a block, shifted by whole repeats, can set on a cone. */
-struct bound {
+struct cone_bound {
     float distance, rise;
 };
 
 /* Texels extend half a texel to each side, hence the margin of one. */
-static struct bound bound_of(const struct cone *cone, const struct cells *cells, struct block block,
-                             int shift_x, int shift_y)
+static struct cone_bound bound_of(const struct cone *cone, const struct cells *cells,
+                                  struct height_block block, int shift_x, int shift_y)
 {
     const struct level *level = &cells->levels[block.level];
     int side = 1 << block.level, left = block.x * side + shift_x, top = block.y * side + shift_y;
     float across = outside((float)cone->column, (float)(left - 1), (float)(left + side));
     float down = outside((float)cone->row, (float)(top - 1), (float)(top + side));
     float high = level->high[(size_t)block.y * (size_t)level->width + (size_t)block.x];
-    return (struct bound){hypotf(across, down), high - cone->apex};
+    return (struct cone_bound){hypotf(across, down), high - cone->apex};
 }
 
 static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int shift_x, int shift_y)
 {
-    struct block stack[4 * LEVELS_MAX] = {{cells->level_count - 1, 0, 0}};
+    struct height_block stack[4 * LEVELS_MAX] = {{cells->level_count - 1, 0, 0}};
     for (int count = 1; count > 0;) {
-        struct block block = stack[--count];
-        struct bound bound = bound_of(cone, cells, block, shift_x, shift_y);
+        struct height_block block = stack[--count];
+        struct cone_bound bound = bound_of(cone, cells, block, shift_x, shift_y);
         if (!(bound.distance < cone->ratio * bound.rise))
             continue;
         if (bound.distance > FAR * (float)(1 << block.level) && block.level > 0) {
@@ -216,7 +216,8 @@ static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int s
                       (cone->row >= (2 * block.y + 1) * half + shift_y ? 2 : 0);
         for (int k = 3; k >= 0; k--) {
             int quarter = nearest ^ k;
-            struct block part = {block.level - 1, 2 * block.x + (quarter & 1), 2 * block.y + (quarter >> 1)};
+            struct height_block part = {block.level - 1, 2 * block.x + (quarter & 1),
+                                        2 * block.y + (quarter >> 1)};
             if (part.x < finer->width && part.y < finer->height)
                 stack[count++] = part;
         }

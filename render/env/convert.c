@@ -15,12 +15,14 @@
  * are assigned to the texel at their centre. */
 #define STRAIGHT                                                                                             \
     0.01 /* largest distance, in source texels, between the centre of a cell and the mean of its corners */
-#define DEPTH_MAX 6    /* subdivisions of a target texel into quarters */
-#define INSET     1e-4 /* corners are moved inside by this fraction of the cell, off a seam that they may touch \
-                        */
+#define DEPTH_MAX 6 /* subdivisions of a target texel into quarters */
+#define INSET                                                                                                \
+    1e-4 /* corners are moved inside by this fraction of the cell, off a seam that they may touch            \
+          */
 #define CORNERS 4
-#define POLYGON 19 /* largest number of corners: each of four clips adds at most half as many, 4 6 9 13 19   \
-                    */
+#define POLYGON                                                                                              \
+    19 /* largest number of corners: each of four clips adds at most half as many, 4 6 9 13 19               \
+        */
 /* The shares are then scaled alternately by source and by target until each source texel distributes and each
  * target texel receives its exact solid angle (iterative proportional fitting: Deming and Stephan 1940). */
 #define ROUNDS_MAX 400
@@ -31,13 +33,13 @@
  * only. */
 #define ROUNDS_USUAL 40
 
-struct share {
+struct texel_share {
     uint32_t source, target;
     float solid_angle; /* sr */
 };
 
-struct block {
-    struct share *shares;
+struct share_block {
+    struct texel_share *shares;
     size_t count, capacity;
 };
 
@@ -51,16 +53,16 @@ struct side {
 
 struct conversion {
     struct side source, target;
-    struct block blocks[BLOCKS];
+    struct share_block blocks[BLOCKS];
     struct tl_progress progress;
 };
 
-struct point {
+struct sphere_point {
     double x, y;
 };
 
 struct polygon {
-    struct point points[POLYGON];
+    struct sphere_point points[POLYGON];
     int count;
 };
 
@@ -99,7 +101,7 @@ static void side_release(struct side *side)
     *side = (struct side){0};
 }
 
-static void add_share(struct block *block, size_t source, size_t target, double solid_angle)
+static void add_share(struct share_block *block, size_t source, size_t target, double solid_angle)
 {
     if (solid_angle <= 0)
         return;
@@ -107,7 +109,8 @@ static void add_share(struct block *block, size_t source, size_t target, double 
         block->capacity = block->capacity ? 2 * block->capacity : 1024;
         block->shares = tl_resize(block->shares, block->capacity, sizeof *block->shares);
     }
-    block->shares[block->count++] = (struct share){(uint32_t)source, (uint32_t)target, (float)solid_angle};
+    block->shares[block->count++] =
+        (struct texel_share){(uint32_t)source, (uint32_t)target, (float)solid_angle};
 }
 
 /* The part of a polygon on which sign * (coordinate - border) <= 0; axis 0 is x. */
@@ -115,13 +118,14 @@ static struct polygon cut(const struct polygon *polygon, int axis, double border
 {
     struct polygon part = {.count = 0};
     for (int i = 0; i < polygon->count; i++) {
-        struct point a = polygon->points[i], b = polygon->points[(i + 1) % polygon->count];
+        struct sphere_point a = polygon->points[i], b = polygon->points[(i + 1) % polygon->count];
         double over_a = sign * ((axis ? a.y : a.x) - border), over_b = sign * ((axis ? b.y : b.x) - border);
         if (over_a <= 0)
             part.points[part.count++] = a;
         if ((over_a < 0 && over_b > 0) || (over_a > 0 && over_b < 0)) {
             double along = over_a / (over_a - over_b);
-            part.points[part.count++] = (struct point){a.x + along * (b.x - a.x), a.y + along * (b.y - a.y)};
+            part.points[part.count++] =
+                (struct sphere_point){a.x + along * (b.x - a.x), a.y + along * (b.y - a.y)};
         }
     }
     return part;
@@ -130,10 +134,10 @@ static struct polygon cut(const struct polygon *polygon, int axis, double border
 /* Area of a convex polygon times the density at its centre of area: exact where the density is linear. */
 static double weigh(const struct polygon *polygon, const struct tl_sphere_map *map)
 {
-    struct point origin = polygon->points[0];
+    struct sphere_point origin = polygon->points[0];
     double twice = 0, x = 0, y = 0;
     for (int i = 1; i + 1 < polygon->count; i++) {
-        struct point a = polygon->points[i], b = polygon->points[i + 1];
+        struct sphere_point a = polygon->points[i], b = polygon->points[i + 1];
         double triangle = fabs((a.x - origin.x) * (b.y - origin.y) - (a.y - origin.y) * (b.x - origin.x));
         twice += triangle;
         x += triangle * (origin.x + a.x + b.x) / 3;
@@ -142,7 +146,7 @@ static double weigh(const struct polygon *polygon, const struct tl_sphere_map *m
     return twice > 0 ? 0.5 * twice * tl_layout_density(map, x / twice, y / twice) : 0;
 }
 
-static void bounds(const struct polygon *polygon, struct point *low, struct point *high)
+static void bounds(const struct polygon *polygon, struct sphere_point *low, struct sphere_point *high)
 {
     *low = *high = polygon->points[0];
     for (int i = 1; i < polygon->count; i++) {
@@ -161,10 +165,10 @@ static int index_in(double value, int begin, int end)
 /* Distributes the solid angle of a cell over the source texels that its outline covers, in proportion to the
  * overlaps. */
 static void share_outline(const struct side *source, const struct polygon *outline, int piece, size_t target,
-                          double solid_angle, struct block *block)
+                          double solid_angle, struct share_block *block)
 {
     struct tl_layout_piece texels = tl_layout_piece(source->map, piece);
-    struct point low, high;
+    struct sphere_point low, high;
     bounds(outline, &low, &high);
     int y0 = index_in(low.y, texels.y0, texels.y1), y1 = index_in(high.y, texels.y0, texels.y1);
     size_t begin = block->count;
@@ -198,13 +202,13 @@ static bool find_outline(const struct conversion *conversion, const struct tl_la
     double middle_x = 0.5 * (cell->x0 + cell->x1), middle_y = 0.5 * (cell->y0 + cell->y1), mean_x = 0,
            mean_y = 0;
     double half_x = (0.5 - INSET) * (cell->x1 - cell->x0), half_y = (0.5 - INSET) * (cell->y1 - cell->y0);
-    struct point centre, low, high;
+    struct sphere_point centre, low, high;
     *piece = tl_layout_locate(source, tl_layout_direction(target, middle_x, middle_y), &centre.x, &centre.y);
     outline->count = CORNERS;
     for (int i = 0; i < CORNERS; i++) {
         double x = middle_x + (i == 1 || i == 2 ? half_x : -half_x),
                y = middle_y + (i < 2 ? half_y : -half_y);
-        struct point *corner = &outline->points[i];
+        struct sphere_point *corner = &outline->points[i];
         if (!tl_layout_contains(target, x, y) ||
             tl_layout_locate(source, tl_layout_direction(target, x, y), &corner->x, &corner->y) != *piece)
             return false;
@@ -217,7 +221,7 @@ static bool find_outline(const struct conversion *conversion, const struct tl_la
 }
 
 static void share_cell(const struct conversion *conversion, const struct tl_layout_cell *cell, size_t target,
-                       int depth, struct block *block)
+                       int depth, struct share_block *block)
 {
     struct polygon outline;
     int piece;
@@ -244,12 +248,13 @@ static void share_cell(const struct conversion *conversion, const struct tl_layo
 
 static int by_source(const void *a, const void *b)
 {
-    uint32_t first = ((const struct share *)a)->source, second = ((const struct share *)b)->source;
+    uint32_t first = ((const struct texel_share *)a)->source,
+             second = ((const struct texel_share *)b)->source;
     return (first > second) - (first < second);
 }
 
 /* Merges the shares that the cells of one target texel have in the same source texel. */
-static void merge_shares(struct block *block, size_t begin)
+static void merge_shares(struct share_block *block, size_t begin)
 {
     size_t kept = begin;
     if (block->count > begin)
@@ -269,7 +274,7 @@ static void find_shares(struct conversion *conversion)
     int done = 0;
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < BLOCKS; i++) {
-        struct block *block = &conversion->blocks[i];
+        struct share_block *block = &conversion->blocks[i];
         if (tl_interrupted())
             continue;
         for (size_t texel = count * (size_t)i / BLOCKS; texel < count * (size_t)(i + 1) / BLOCKS; texel++) {
@@ -293,8 +298,8 @@ static void sum_targets(struct conversion *conversion)
 {
     clear_sums(&conversion->target);
     for (int i = 0; i < BLOCKS; i++) {
-        const struct block *block = &conversion->blocks[i];
-        for (const struct share *share = block->shares; share < block->shares + block->count; share++)
+        const struct share_block *block = &conversion->blocks[i];
+        for (const struct texel_share *share = block->shares; share < block->shares + block->count; share++)
             conversion->target.sums[share->target] +=
                 (double)share->solid_angle * conversion->source.scales[share->source];
     }
@@ -304,8 +309,8 @@ static void sum_sources(struct conversion *conversion)
 {
     clear_sums(&conversion->source);
     for (int i = 0; i < BLOCKS; i++) {
-        const struct block *block = &conversion->blocks[i];
-        for (const struct share *share = block->shares; share < block->shares + block->count; share++)
+        const struct share_block *block = &conversion->blocks[i];
+        for (const struct texel_share *share = block->shares; share < block->shares + block->count; share++)
             conversion->source.sums[share->source] +=
                 (double)share->solid_angle * conversion->target.scales[share->target];
     }
@@ -367,8 +372,8 @@ static void sum_light(const struct conversion *conversion, const float *from, fl
     const struct side *source = &conversion->source, *target = &conversion->target;
     double(*sums)[3] = tl_alloc(texel_count(target->map), sizeof *sums);
     for (int i = 0; i < BLOCKS; i++) {
-        const struct block *block = &conversion->blocks[i];
-        for (const struct share *share = block->shares; share < block->shares + block->count; share++) {
+        const struct share_block *block = &conversion->blocks[i];
+        for (const struct texel_share *share = block->shares; share < block->shares + block->count; share++) {
             double weight = (double)share->solid_angle * source->scales[share->source] *
                             target->scales[share->target] / target->solid_angles[share->target];
             for (int c = 0; c < 3; c++)

@@ -21,7 +21,7 @@
  * kept. */
 #define BAND_TEXELS ((size_t)1 << 20)
 
-struct grid {
+struct resample_grid {
     const tl_image *image;
     int size;                  /* of the target cube */
     int steps_x, steps_y;      /* per source texel, powers of two; the smallest cell has two */
@@ -30,7 +30,7 @@ struct grid {
     double *y, *radius; /* [height * steps_y + 1]: height and distance from the axis on the unit sphere */
 };
 
-struct cell {
+struct grid_cell {
     int x0, y0, x1, y1; /* steps */
     int corners[4];     /* target texel at (x0, y0), (x1, y0), (x0, y1), (x1, y1) */
 };
@@ -43,15 +43,15 @@ static int steps_for(int texels, int wanted)
     return steps;
 }
 
-static struct grid grid_create(const tl_image *image, int size)
+static struct resample_grid grid_create(const tl_image *image, int size)
 {
     int turn = 4 * size * CELLS_PER_TEXEL; /* cells; four faces are one turn */
     if (turn < TURN_CELLS_MIN)
         turn = TURN_CELLS_MIN;
-    struct grid grid = {.image = image,
-                        .size = size,
-                        .steps_x = steps_for(image->width, 2 * turn),
-                        .steps_y = steps_for(image->height, turn)};
+    struct resample_grid grid = {.image = image,
+                                 .size = size,
+                                 .steps_x = steps_for(image->width, 2 * turn),
+                                 .steps_y = steps_for(image->height, turn)};
     int columns = image->width * grid.steps_x, rows = image->height * grid.steps_y;
     grid.widest = columns / TURN_CELLS_MIN;
     grid.highest = 2 * rows / TURN_CELLS_MIN;
@@ -71,23 +71,23 @@ static struct grid grid_create(const tl_image *image, int size)
     return grid;
 }
 
-static void grid_release(struct grid *grid)
+static void grid_release(struct resample_grid *grid)
 {
     free(grid->sin_phi);
     free(grid->cos_phi);
     free(grid->y);
     free(grid->radius);
-    *grid = (struct grid){0};
+    *grid = (struct resample_grid){0};
 }
 
-static vec3s grid_direction(const struct grid *grid, int x, int y)
+static vec3s grid_direction(const struct resample_grid *grid, int x, int y)
 {
     double radius = grid->radius[y];
     return (vec3s){
         {(float)(radius * grid->sin_phi[x]), (float)grid->y[y], (float)(-radius * grid->cos_phi[x])}};
 }
 
-static int grid_texel(const struct grid *grid, int x, int y)
+static int grid_texel(const struct resample_grid *grid, int x, int y)
 {
     return tl_cube_texel(grid->size, grid_direction(grid, x, y));
 }
@@ -121,8 +121,8 @@ static void append_share(struct stream *stream, uint32_t target, double solid_an
     stream->last[target] = (uint32_t)stream->count;
 }
 
-static void add_share(const struct grid *grid, const struct cell *cell, double share, int target,
-                      struct stream *stream)
+static void add_share(const struct resample_grid *grid, const struct grid_cell *cell, double share,
+                      int target, struct stream *stream)
 {
     double step = 2 * M_PI / ((double)grid->image->width * grid->steps_x);
     double height = grid->y[cell->y0] - grid->y[cell->y1];
@@ -138,7 +138,8 @@ static double share_above(double centre, double reach, double border)
 /* Distributes the smallest cell, approximated by its bounding box on the plane of its face, over up to four
  * cube texels by area. On four of the faces the borders of cube texels run along lines of the map; assigning
  * the whole cell to the texel of its centre would make the same error for all cells of a column. */
-static void split_smallest(const struct grid *grid, const struct cell *cell, struct stream *stream)
+static void split_smallest(const struct resample_grid *grid, const struct grid_cell *cell,
+                           struct stream *stream)
 {
     int face;
     float s, t;
@@ -163,7 +164,7 @@ static void split_smallest(const struct grid *grid, const struct cell *cell, str
     }
 }
 
-static void split_cell(const struct grid *grid, const struct cell *cell, struct stream *stream)
+static void split_cell(const struct resample_grid *grid, const struct grid_cell *cell, struct stream *stream)
 {
     const int *corners = cell->corners;
     int x0 = cell->x0, y0 = cell->y0, x1 = cell->x1, y1 = cell->y1;
@@ -174,20 +175,24 @@ static void split_cell(const struct grid *grid, const struct cell *cell, struct 
         split_smallest(grid, cell, stream);
     } else if (x1 - x0 >= y1 - y0) {
         int middle = (x0 + x1) / 2, top = grid_texel(grid, middle, y0), bottom = grid_texel(grid, middle, y1);
-        split_cell(grid, &(struct cell){x0, y0, middle, y1, {corners[0], top, corners[2], bottom}}, stream);
-        split_cell(grid, &(struct cell){middle, y0, x1, y1, {top, corners[1], bottom, corners[3]}}, stream);
+        split_cell(grid, &(struct grid_cell){x0, y0, middle, y1, {corners[0], top, corners[2], bottom}},
+                   stream);
+        split_cell(grid, &(struct grid_cell){middle, y0, x1, y1, {top, corners[1], bottom, corners[3]}},
+                   stream);
     } else {
         int middle = (y0 + y1) / 2, left = grid_texel(grid, x0, middle), right = grid_texel(grid, x1, middle);
-        split_cell(grid, &(struct cell){x0, y0, x1, middle, {corners[0], corners[1], left, right}}, stream);
-        split_cell(grid, &(struct cell){x0, middle, x1, y1, {left, right, corners[2], corners[3]}}, stream);
+        split_cell(grid, &(struct grid_cell){x0, y0, x1, middle, {corners[0], corners[1], left, right}},
+                   stream);
+        split_cell(grid, &(struct grid_cell){x0, middle, x1, y1, {left, right, corners[2], corners[3]}},
+                   stream);
     }
 }
 
-static void split_rows(const struct grid *grid, int begin, int end, struct stream *stream)
+static void split_rows(const struct resample_grid *grid, int begin, int end, struct stream *stream)
 {
     for (int row = begin; row < end; row++) {
         int y0 = row * grid->steps_y, y1 = y0 + grid->steps_y;
-        struct cell cell = {0, y0, 0, y1, {0, grid_texel(grid, 0, y0), 0, grid_texel(grid, 0, y1)}};
+        struct grid_cell cell = {0, y0, 0, y1, {0, grid_texel(grid, 0, y0), 0, grid_texel(grid, 0, y1)}};
         for (int column = 0; column < grid->image->width; column++) {
             cell.x0 = cell.x1;
             cell.x1 += grid->steps_x;
@@ -235,7 +240,7 @@ static void sort_shares(struct stream streams[BLOCKS], struct tl_resampling *out
 }
 
 /* The shares of rows [begin, end). */
-static struct tl_resampling overlaps_of_rows(const struct grid *grid, int begin, int end)
+static struct tl_resampling overlaps_of_rows(const struct resample_grid *grid, int begin, int end)
 {
     struct tl_resampling weights = {
         .width = grid->image->width, .height = grid->image->height, .size = grid->size};
@@ -281,7 +286,7 @@ void tl_resampling_release(struct tl_resampling *weights)
 /* Resamples band by band, because the shares of the largest images would not fit into memory. */
 static void resample_in_bands(const tl_image *image, int size, int band_rows, double (*sums)[4])
 {
-    struct grid grid = grid_create(image, size);
+    struct resample_grid grid = grid_create(image, size);
     for (int begin = 0; begin < image->height; begin += band_rows) {
         int end = image->height - begin > band_rows ? begin + band_rows : image->height;
         struct tl_resampling weights = overlaps_of_rows(&grid, begin, end);
@@ -295,7 +300,7 @@ static void update_weights(const tl_image *image, int size, struct tl_resampling
 {
     if (weights->width == image->width && weights->height == image->height && weights->size == size)
         return;
-    struct grid grid = grid_create(image, size);
+    struct resample_grid grid = grid_create(image, size);
     tl_resampling_release(weights);
     *weights = overlaps_of_rows(&grid, 0, image->height);
     grid_release(&grid);

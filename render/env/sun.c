@@ -36,14 +36,14 @@ struct search {
 };
 
 /* A point of light within a sun. */
-struct point {
+struct sun_point {
     vec3s direction; /* unit */
     float weight;    /* luminance above the surroundings of the sun x solid angle */
     float along;     /* coordinate along the axis of the part that is being divided */
 };
 
-struct points {
-    struct point *items;
+struct sun_points {
+    struct sun_point *items;
     size_t count, capacity;
 };
 
@@ -154,13 +154,13 @@ static vec3s environment_direction(const tl_environment *environment, double x, 
     return (vec3s){{(float)(sin(theta) * sin(phi)), (float)cos(theta), (float)(-sin(theta) * cos(phi))}};
 }
 
-static void add_point(struct points *points, vec3s direction, double weight)
+static void add_point(struct sun_points *points, vec3s direction, double weight)
 {
     if (points->count == points->capacity) {
         points->capacity = points->capacity ? 2 * points->capacity : POINTS_WANTED;
         points->items = tl_resize(points->items, points->capacity, sizeof *points->items);
     }
-    points->items[points->count++] = (struct point){.direction = direction, .weight = (float)weight};
+    points->items[points->count++] = (struct sun_point){.direction = direction, .weight = (float)weight};
 }
 
 static double texel_side(const tl_environment *environment)
@@ -170,7 +170,7 @@ static double texel_side(const tl_environment *environment)
 }
 
 static void add_texel(const struct search *search, int x, int y, int side, float excess,
-                      struct points *points)
+                      struct sun_points *points)
 {
     for (int row = 0; row < side; row++) {
         for (int column = 0; column < side; column++) {
@@ -197,7 +197,7 @@ static void find_rows(const tl_environment *environment, vec3s peak, int rows[2]
 }
 
 /* Samples the patch in the environment at points that are brighter than the surroundings. */
-static struct points collect_points(const struct search *search, vec3s peak, float around)
+static struct sun_points collect_points(const struct search *search, vec3s peak, float around)
 {
     const tl_environment *environment = search->environment;
     double area = 0, texel = texel_side(environment);
@@ -205,7 +205,7 @@ static struct points collect_points(const struct search *search, vec3s peak, flo
         area += solid_angle(search, search->patch[k]);
     int side = (int)fmin(ceil(texel / sqrt(area / POINTS_WANTED)), POINTS_SIDE_MAX);
     float reach = (float)(REACH_MAX + 2.0 * 2 / search->cube->size + texel);
-    struct points points = {0};
+    struct sun_points points = {0};
     int rows[2];
     find_rows(environment, peak, rows);
     for (int y = rows[0]; y < rows[1]; y++) {
@@ -223,7 +223,7 @@ static struct points collect_points(const struct search *search, vec3s peak, flo
     return points;
 }
 
-static vec3s centroid(const struct point *points, size_t count)
+static vec3s centroid(const struct sun_point *points, size_t count)
 {
     double sum[3] = {0};
     for (size_t i = 0; i < count; i++)
@@ -236,7 +236,7 @@ static vec3s centroid(const struct point *points, size_t count)
 }
 
 /* A disc of radius R has a mean square distance of R^2 / 2 from its centre. */
-static double radius_of(const struct points *points, vec3s centre)
+static double radius_of(const struct sun_points *points, vec3s centre)
 {
     double squares = 0, weights = 0;
     for (size_t i = 0; i < points->count; i++) {
@@ -249,12 +249,12 @@ static double radius_of(const struct points *points, vec3s centre)
 
 static int compare_along(const void *a, const void *b)
 {
-    float first = ((const struct point *)a)->along, second = ((const struct point *)b)->along;
+    float first = ((const struct sun_point *)a)->along, second = ((const struct sun_point *)b)->along;
     return (first > second) - (first < second);
 }
 
 /* Sorts the points along the tangent of their largest variance. */
-static void sort_along(struct point *points, size_t count)
+static void sort_along(struct sun_point *points, size_t count)
 {
     vec3s centre = centroid(points, count);
     vec3s right = glms_vec3_normalize(glms_vec3_ortho(centre)), up = glms_vec3_cross(centre, right);
@@ -278,7 +278,7 @@ static void sort_along(struct point *points, size_t count)
 /* Divides the points into halves of equal weight, recursively, until there are `samples` parts, and returns
  * the centroid of each. The samples of the two halves are interleaved, so that the first few are spread all
  * over the disc. */
-static void part(struct point *points, size_t count, int samples, int stride, vec3s *out)
+static void part(struct sun_point *points, size_t count, int samples, int stride, vec3s *out)
 {
     if (samples == 1 || count < 2) {
         for (int i = 0; i < samples; i++)
@@ -298,7 +298,7 @@ static void part(struct point *points, size_t count, int samples, int stride, ve
     part(points + half, count - half, samples / 2, 2 * stride, out + stride);
 }
 
-static void place_samples(struct points *points, struct tl_sun *sun)
+static void place_samples(struct sun_points *points, struct tl_sun *sun)
 {
     int nearest = 0;
     sun->sample_count = TL_SUN_SAMPLES_MAX;
@@ -334,7 +334,7 @@ static bool extract_sun(struct search *search, int peak, float depth, struct tl_
     double luminance = 0.2126 * power[0] + 0.7152 * power[1] + 0.0722 * power[2];
     if (luminance < SHARE_MIN * search->total)
         return false;
-    struct points points =
+    struct sun_points points =
         collect_points(search, tl_cube_texel_direction(search->cube->size, peak), luminance_of(around.raw));
     struct tl_sun sun = {.power = {{(float)power[0], (float)power[1], (float)power[2]}}};
     if (points.count > 0) {

@@ -23,15 +23,15 @@ static float value_at(const struct tl_map_texture *texture, int level, int x, in
 }
 
 /* The texels of the finer level under a texel: two, or up to three where a side is odd. */
-struct span {
+struct texel_span {
     int first, count;
     float shares[4];
 };
 
-static struct span span_of(int index, int fine, int coarse)
+static struct texel_span span_of(int index, int fine, int coarse)
 {
     double ratio = (double)fine / coarse, from = index * ratio, to = from + ratio;
-    struct span span = {.first = (int)from};
+    struct texel_span span = {.first = (int)from};
     for (int i = span.first; i < fine && i < to && span.count < 4; i++)
         span.shares[span.count++] = (float)((fmin(to, i + 1) - fmax(from, i)) / ratio);
     return span;
@@ -51,7 +51,7 @@ static void average_row(const struct tl_map_texture *texture, int level, const f
 {
     int channels = texture->image->channels;
     for (int column = 0; column < texture->widths[level]; column++) {
-        struct span x = span_of(column, texture->widths[level - 1], texture->widths[level]);
+        struct texel_span x = span_of(column, texture->widths[level - 1], texture->widths[level]);
         for (int i = 0; i < x.count; i++)
             for (int c = 0; c < channels; c++)
                 to[column * channels + c] += x.shares[i] * fine[(x.first + i) * channels + c];
@@ -66,7 +66,7 @@ static void average_level(struct tl_map_texture *texture, int level)
     float *to = TL_NEW_ARRAY(float, width *(size_t)height);
 #pragma omp parallel for if (height > 64)
     for (int row = 0; row < height; row++) {
-        struct span y = span_of(row, texture->heights[level - 1], height);
+        struct texel_span y = span_of(row, texture->heights[level - 1], height);
         float *fine = TL_NEW_ARRAY(float, fine_width);
         for (int j = 0; j < y.count; j++)
             add_row(texture, level - 1, y.first + j, y.shares[j], fine);

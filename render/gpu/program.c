@@ -16,7 +16,7 @@
 #define LINES_MAX 10000
 
 /* One shader's text with its includes in place. */
-struct source {
+struct shader_source {
     const struct tl_embedded *shaders;
     const char *defines; /* or NULL */
     const char *files[FILES_MAX];
@@ -25,7 +25,7 @@ struct source {
     size_t size;
 };
 
-static void append(struct source *source, const char *text, size_t size)
+static void append(struct shader_source *source, const char *text, size_t size)
 {
     source->text = tl_resize(source->text, source->size + size + 1, 1);
     memcpy(source->text + source->size, text, size);
@@ -33,7 +33,7 @@ static void append(struct source *source, const char *text, size_t size)
     source->text[source->size] = '\0';
 }
 
-static void append_line_directive(struct source *source, int line, int file)
+static void append_line_directive(struct shader_source *source, int line, int file)
 {
     char directive[64];
     int length = snprintf(directive, sizeof directive, "#line %d\n", file * LINES_MAX + line);
@@ -72,14 +72,14 @@ static char *read_text(const struct tl_embedded *file, tl_error *error)
 }
 
 /* If `line` begins with #include "name", the embedded file of that name, else NULL. */
-static const struct tl_embedded *included_file(const struct source *source, const char *line,
+static const struct tl_embedded *included_file(const struct shader_source *source, const char *line,
                                                bool *is_include, char name[64])
 {
     *is_include = sscanf(line, "#include \"%63[^\"\n]\"", name) == 1;
     return *is_include ? tl_embedded_find(source->shaders, name) : NULL;
 }
 
-static bool expand(struct source *source, const struct tl_embedded *file, tl_error *error)
+static bool expand(struct shader_source *source, const struct tl_embedded *file, tl_error *error)
 {
     for (int i = 0; i < source->file_count; i++)
         if (source->files[i] == file->name)
@@ -123,7 +123,7 @@ static bool expand(struct source *source, const struct tl_embedded *file, tl_err
 
 /* The compiler's first message, with the name of the file that it is about: "light.frag:12(7): error: ...".
  * Mesa writes "0:LINE(COLUMN): ...", others "0(LINE) : ...". */
-static bool fail_with_log(const struct source *source, const char *log, tl_error *error)
+static bool fail_with_log(const struct shader_source *source, const char *log, tl_error *error)
 {
     int line = 0, consumed = 0, length = (int)strcspn(log, "\n");
     if ((sscanf(log, "%*u:%d%n", &line, &consumed) == 1 || sscanf(log, "%*u(%d)%n", &line, &consumed) == 1) &&
@@ -136,7 +136,7 @@ static bool fail_with_log(const struct source *source, const char *log, tl_error
 static GLuint compile(GLenum kind, const tl_program *program, const char *name, tl_error *error)
 {
     const struct tl_embedded *file = tl_embedded_find(program->shaders, name);
-    struct source source = {.shaders = program->shaders, .defines = program->defines};
+    struct shader_source source = {.shaders = program->shaders, .defines = program->defines};
     GLuint shader = 0;
     if (!file) {
         tl_fail(error, TL_INPUT, "%s: no shader file has this name: add it to toile_embed", name);

@@ -12,7 +12,7 @@ static const char *const visibility_channels[] = {"visibility.Y"};
 static const char *const strain_channels[] = {"strain.warp", "strain.weft", "strain.shear"};
 static const char *const garment_channels[] = {TL_AOV_GARMENT};
 
-static const struct kind {
+static const struct aov_kind {
     const char *const *channels;
     int channel_count;
 } kinds[TL_AOVS_MAX] = {[NORMAL] = {normal_channels, 3},

@@ -133,7 +133,7 @@ static void describe_visibility(const struct tl_legend_source *source, struct tl
     set_scale(legend, 0, 1, grey);
 }
 
-struct ranked {
+struct ranked_region {
     float importance;
     int number;
 };
@@ -141,7 +141,7 @@ struct ranked {
 /* Orders regions by falling importance; equal ones by their number. */
 static int compare_ranks(const void *a, const void *b)
 {
-    const struct ranked *left = a, *right = b;
+    const struct ranked_region *left = a, *right = b;
     if (left->importance != right->importance)
         return left->importance < right->importance ? 1 : -1;
     return left->number - right->number;
@@ -149,10 +149,10 @@ static int compare_ranks(const void *a, const void *b)
 
 static void list_regions(const struct tl_regions *regions, struct tl_legend *legend)
 {
-    struct ranked order[TL_REGIONS_MAX] = {{0}};
+    struct ranked_region order[TL_REGIONS_MAX] = {{0}};
     double all = 0;
     for (int i = 0; i < regions->count; i++) {
-        order[i] = (struct ranked){regions->items[i].importance, i};
+        order[i] = (struct ranked_region){regions->items[i].importance, i};
         all += (double)regions->items[i].importance;
     }
     qsort(order, (size_t)regions->count, sizeof order[0], compare_ranks);

@@ -24,7 +24,7 @@ static void mix_palette(struct palette *palette)
         palette->regions[i] = tl_number_colour(i);
 }
 
-/* Within 1e-6. */
+/* An approximation with an error of 1e-6. */
 static float linear_of(const struct palette *palette, float encoded)
 {
     float place = CURVE_STEPS * fminf(fmaxf(encoded, 0), 1);
@@ -183,7 +183,7 @@ static vec3s visibility_colour(const struct tl_paint_request *request, const str
     return seen.strongest >= 0 ? palette->regions[seen.strongest] : (vec3s){{0, 0, 0}};
 }
 
-/* As the legend has it: sRGB. */
+/* Converts a colour of the legend, sRGB, to linear. */
 static vec3s colour_of(const struct tl_paint_request *request, const struct palette *palette, size_t index)
 {
     const tl_sample *sample = &request->samples->items[index];

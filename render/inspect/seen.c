@@ -17,7 +17,7 @@ void tl_seen_regions_make(const struct tl_regions *regions, float yaw, struct tl
     }
 }
 
-/* By lane. */
+/* Results so far, one a lane. */
 struct lanes {
     float all[TL_LANES], seen[TL_LANES];
     float best[TL_LANES];

@@ -101,12 +101,12 @@ static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const
 }
 
 /* The samples that a block's rays hit, before they are appended to all samples. */
-struct block {
+struct hit_block {
     size_t count, capacity;
     tl_sample *items;
 };
 
-static uint32_t keep(struct block *block, const tl_sample *sample)
+static uint32_t keep(struct hit_block *block, const tl_sample *sample)
 {
     if (block->count == block->capacity) {
         block->capacity = block->capacity ? 2 * block->capacity : 64;
@@ -116,15 +116,15 @@ static uint32_t keep(struct block *block, const tl_sample *sample)
     return (uint32_t)block->count++;
 }
 
-struct scene {
+struct mirror_scene {
     const tl_trace *trace;
     const struct tl_triangle_ranges *ranges;
     const struct tl_ground *ground;
 };
 
 /* Numbers within the block; TL_MIRROR_OPEN where the environment is seen. */
-static uint32_t follow(const struct scene *scene, const tl_sample *sample, vec3s origin, vec3s direction,
-                       struct block *block)
+static uint32_t follow(const struct mirror_scene *scene, const tl_sample *sample, vec3s origin,
+                       vec3s direction, struct hit_block *block)
 {
     if (glms_vec3_dot(direction, sample->smooth) <= 0)
         return TL_MIRROR_BLACK;
@@ -150,7 +150,7 @@ static uint32_t follow(const struct scene *scene, const tl_sample *sample, vec3s
 }
 
 /* A mirror in a mirror. */
-static uint32_t follow_to_the_end(const struct scene *scene, const tl_sample *sample, vec3s origin,
+static uint32_t follow_to_the_end(const struct mirror_scene *scene, const tl_sample *sample, vec3s origin,
                                   vec3s direction)
 {
     bool open = glms_vec3_dot(direction, sample->smooth) > 0 &&
@@ -160,8 +160,8 @@ static uint32_t follow_to_the_end(const struct scene *scene, const tl_sample *sa
 }
 
 /* `block` NULL: of a sample that is shown by a mirror itself. */
-static void trace_sample(const struct scene *scene, const tl_sample *sample, float offset_m,
-                         struct block *block, struct tl_mirror *mirror)
+static void trace_sample(const struct mirror_scene *scene, const tl_sample *sample, float offset_m,
+                         struct hit_block *block, struct tl_mirror *mirror)
 {
     float exponent = tl_lobe_exponent(sample->glossiness);
     mirror->ray_count = tl_mirror_ray_count(exponent);
@@ -185,8 +185,8 @@ static void reserve(struct tl_mirrors *mirrors, size_t count)
 }
 
 /* Behind the camera's samples, block by block; numbers within blocks become indices. */
-static void append(struct tl_mirrors *mirrors, struct block *blocks, size_t block_count, size_t block_size,
-                   struct tl_samples *samples)
+static void append(struct tl_mirrors *mirrors, struct hit_block *blocks, size_t block_count,
+                   size_t block_size, struct tl_samples *samples)
 {
     size_t seen = tl_samples_seen(samples), total = seen;
     for (size_t b = 0; b < block_count; b++) {
@@ -213,10 +213,10 @@ void tl_mirrors_trace(struct tl_mirrors *mirrors, const tl_trace *trace,
 {
     const size_t block_size = 1024;
     size_t count = tl_samples_seen(samples), block_count = (count + block_size - 1) / block_size;
-    const struct scene scene = {trace, ranges, ground};
+    const struct mirror_scene scene = {trace, ranges, ground};
     float offset_m = tl_trace_offset(trace);
     reserve(mirrors, count);
-    struct block *blocks = TL_NEW_ARRAY(struct block, block_count);
+    struct hit_block *blocks = TL_NEW_ARRAY(struct hit_block, block_count);
 #pragma omp parallel for schedule(dynamic)
     for (size_t b = 0; b < block_count; b++)
         for (size_t i = b * block_size; i < count && i < (b + 1) * block_size; i++)

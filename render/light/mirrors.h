@@ -14,8 +14,8 @@
 #include "render/trace/trace.h"
 
 #define TL_MIRROR_RAYS_MAX 8
-/* From here on a lobe is narrower than the texels of most environments: its ray sees the environment itself,
- * suns and all. */
+/* Lobes from this exponent on are narrower than the texels of most environments: their ray reads the
+ * environment, suns and all. */
 #define TL_PERFECT_EXPONENT 1e5f
 
 /* Values of `hits` for rays without a sample. */

@@ -33,7 +33,7 @@ struct tl_region_group {
     float inverse_sine[TL_LANES];
     float spread[TL_LANES]; /* rad, root mean square */
     float power[3][TL_LANES];
-    /* All of its light comes from within this cone. */
+    /* A cone that contains the directions of all of its light. */
     vec3s axis;
     float reach_sine; /* 2: it is half the sphere or more */
 };
@@ -50,8 +50,8 @@ struct tl_region_lights {
 /* Replaces what `lights` held. `lobes` are E, of the exponents that will be asked for. */
 void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
                            enum tl_region_weight weight, const struct tl_lobes *lobes);
-/* In two steps, of which the first is quick: without gains; then those of `exponents`, bits as in `lobes`,
- * that are not there yet. Most of what lights take is the gains of the sharpest lobes. */
+/* In two steps. The first is quick and makes no gains; the second makes those of `exponents`, bits as in
+ * `lobes`, that are not there yet. Most of what lights take is the gains of the sharpest lobes. */
 void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_regions *regions,
                             enum tl_region_weight weight);
 void tl_region_lights_add(struct tl_region_lights *lights, const struct tl_lobes *lobes, uint32_t exponents);

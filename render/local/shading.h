@@ -1,4 +1,4 @@
-/* How surfaces are shaded under lamps: table "shading". The defaults shade exactly. Every other setting is an
+/* Shading of surfaces by lamps: table "shading". The defaults shade exactly. Every other setting is an
  * approximation that hardware without shaders, or with little precision, used [Heidrich and Seidel 1999,
  * section 3; Per-pixel lighting on the GeForce3, sections 4 and 5]. */
 #ifndef TOILE_RENDER_LOCAL_SHADING_H

@@ -10,19 +10,19 @@ struct rectangle {
 };
 
 /* Importance and solid angle of the texels of one face. */
-struct face {
+struct cube_face {
     int index, size;
     double *importance;  /* integral of luminance [Rec. 709] */
     double *solid_angle; /* sr */
 };
 
-static struct face face_create(const tl_cube *cube, int index)
+static struct cube_face face_create(const tl_cube *cube, int index)
 {
     size_t texel_count = (size_t)cube->size * (size_t)cube->size;
-    struct face face = {.index = index,
-                        .size = cube->size,
-                        .importance = TL_NEW_ARRAY(double, texel_count),
-                        .solid_angle = TL_NEW_ARRAY(double, texel_count)};
+    struct cube_face face = {.index = index,
+                             .size = cube->size,
+                             .importance = TL_NEW_ARRAY(double, texel_count),
+                             .solid_angle = TL_NEW_ARRAY(double, texel_count)};
     const float *texel = cube->texels + 3 * (size_t)index * texel_count;
     for (size_t i = 0; i < texel_count; i++, texel += 3) {
         double luminance = 0.2126 * (double)texel[0] + 0.7152 * (double)texel[1] + 0.0722 * (double)texel[2];
@@ -33,20 +33,20 @@ static struct face face_create(const tl_cube *cube, int index)
     return face;
 }
 
-static void face_release(struct face *face)
+static void face_release(struct cube_face *face)
 {
     free(face->importance);
     free(face->solid_angle);
-    *face = (struct face){0};
+    *face = (struct cube_face){0};
 }
 
 /* x, y in texels. */
-static vec3s face_direction(const struct face *face, float x, float y)
+static vec3s face_direction(const struct cube_face *face, float x, float y)
 {
     return glms_vec3_normalize(tl_cube_direction(face->index, x / (float)face->size, y / (float)face->size));
 }
 
-static struct tl_region make_region(const struct face *face, struct rectangle r)
+static struct tl_region make_region(const struct cube_face *face, struct rectangle r)
 {
     double importance = 0, solid_angle = 0;
     double bright[3] = {0},
@@ -81,7 +81,7 @@ static struct tl_region make_region(const struct face *face, struct rectangle r)
 }
 
 /* True if the rectangle subtends a larger angle in width than in height, across its middle. */
-static bool is_wide(const struct face *face, struct rectangle r)
+static bool is_wide(const struct cube_face *face, struct rectangle r)
 {
     float xm = 0.5f * (float)(r.x0 + r.x1), ym = 0.5f * (float)(r.y0 + r.y1);
     float width = glms_vec3_dot(face_direction(face, (float)r.x0, ym), face_direction(face, (float)r.x1, ym));
@@ -92,7 +92,7 @@ static bool is_wide(const struct face *face, struct rectangle r)
 
 /* The number of columns (or rows) before the cut that comes closest to `share` of the importance. Ties, as in
  * black areas, are decided by solid angle. */
-static int find_cut(const struct face *face, struct rectangle r, bool wide, double share)
+static int find_cut(const struct cube_face *face, struct rectangle r, bool wide, double share)
 {
     int count = wide ? r.x1 - r.x0 : r.y1 - r.y0;
     double *importance = TL_NEW_ARRAY(double, (size_t)count + 1); /* sum over the slices before i */
@@ -122,7 +122,7 @@ static int find_cut(const struct face *face, struct rectangle r, bool wide, doub
 }
 
 /* Median cut into `count` regions, out[0 .. count). */
-static void cut_rectangle(const struct face *face, struct rectangle r, int count, struct tl_region *out)
+static void cut_rectangle(const struct cube_face *face, struct rectangle r, int count, struct tl_region *out)
 {
     int width = r.x1 - r.x0, height = r.y1 - r.y0;
     if (count == 1 || width * height <= 1) { /* with fewer texels than regions some stay empty */
@@ -167,7 +167,7 @@ void tl_regions_cut(const tl_cube *cube, int count, struct tl_regions *out)
     out->count = count;
 #pragma omp parallel for
     for (int i = 0; i < 6; i++) {
-        struct face face = face_create(cube, i);
+        struct cube_face face = face_create(cube, i);
         cut_rectangle(&face, (struct rectangle){0, 0, cube->size, cube->size}, face_count,
                       out->items + (size_t)i * (size_t)face_count);
         face_release(&face);

@@ -13,7 +13,7 @@
 
 /* Texels in a structure of arrays; those of a node are contiguous. `weight` is the mixed measure: half of the
  * texel's share of all luminance and half of its share of the sphere. */
-struct points {
+struct sphere_points {
     float *x, *y, *z, *weight;
     uint32_t *texel;
 };
@@ -35,22 +35,22 @@ struct growth {
 };
 
 struct tree {
-    struct points points, spare;
+    struct sphere_points points, spare;
     float *along; /* coordinate of each point on the axis of its node */
     struct growth *nodes;
     int count, capacity;
 };
 
-static struct points points_create(size_t count)
+static struct sphere_points points_create(size_t count)
 {
-    return (struct points){.x = TL_NEW_ARRAY(float, count),
-                           .y = TL_NEW_ARRAY(float, count),
-                           .z = TL_NEW_ARRAY(float, count),
-                           .weight = TL_NEW_ARRAY(float, count),
-                           .texel = TL_NEW_ARRAY(uint32_t, count)};
+    return (struct sphere_points){.x = TL_NEW_ARRAY(float, count),
+                                  .y = TL_NEW_ARRAY(float, count),
+                                  .z = TL_NEW_ARRAY(float, count),
+                                  .weight = TL_NEW_ARRAY(float, count),
+                                  .texel = TL_NEW_ARRAY(uint32_t, count)};
 }
 
-static void points_release(struct points *points)
+static void points_release(struct sphere_points *points)
 {
     free(points->x);
     free(points->y);
@@ -59,7 +59,7 @@ static void points_release(struct points *points)
     free(points->texel);
 }
 
-static void fill_points(const struct tl_regions *regions, struct points *points)
+static void fill_points(const struct tl_regions *regions, struct sphere_points *points)
 {
     size_t face_texels = (size_t)regions->size * (size_t)regions->size;
     double luminance = 0;
@@ -78,7 +78,7 @@ static void fill_points(const struct tl_regions *regions, struct points *points)
     }
 }
 
-static void add_moments(struct moments *sum, const struct points *points, uint32_t i)
+static void add_moments(struct moments *sum, const struct sphere_points *points, uint32_t i)
 {
     double weight = (double)points->weight[i];
     double x = (double)points->x[i], y = (double)points->y[i], z = (double)points->z[i];
@@ -138,7 +138,7 @@ static void find_axis(const struct moments *m, double axis[3])
 }
 
 /* Projects the points of a node on the axis. Returns their range. */
-static void project(const struct points *points, uint32_t first, uint32_t last, const double axis[3],
+static void project(const struct sphere_points *points, uint32_t first, uint32_t last, const double axis[3],
                     float *along, float range[2])
 {
     float ax = (float)axis[0], ay = (float)axis[1], az = (float)axis[2];
@@ -160,8 +160,8 @@ static int bin_of(float along, float low, float scale)
 
 /* The bin before which a cut leaves the least variance. The total is fixed, so this is where the sum of |sum
  * w d|^2 / sum w over both sides is largest. The first and the last bin are never empty. */
-static int find_cut(const struct points *points, uint32_t first, uint32_t last, const float *along, float low,
-                    float scale)
+static int find_cut(const struct sphere_points *points, uint32_t first, uint32_t last, const float *along,
+                    float low, float scale)
 {
     double bins[BINS][4] = {{0}};
     double total[4] = {0}, before[4] = {0};
@@ -190,7 +190,7 @@ static int find_cut(const struct points *points, uint32_t first, uint32_t last, 
     return best;
 }
 
-static void move_point(const struct points *from, uint32_t i, struct points *to, uint32_t place)
+static void move_point(const struct sphere_points *from, uint32_t i, struct sphere_points *to, uint32_t place)
 {
     to->x[place] = from->x[i];
     to->y[place] = from->y[i];
@@ -202,7 +202,7 @@ static void move_point(const struct points *from, uint32_t i, struct points *to,
 /* Partitions the points of `node` into those of its two children, in place; both keep their order. */
 static void cut_node(struct tree *tree, const struct growth *node, struct growth children[2])
 {
-    struct points *points = &tree->points, *spare = &tree->spare;
+    struct sphere_points *points = &tree->points, *spare = &tree->spare;
     double axis[3];
     float range[2];
     find_axis(&node->moments, axis);

@@ -23,12 +23,12 @@ struct gpu_frame {
     float scale[EXPONENTS];
 };
 
-struct place {
+struct slice_place {
     int x, y;
 };
 
 /* Packs the squares in rows, large ones first, into a strip of the given width. Returns its height. */
-static int pack(const struct tl_slices *slices, int width, struct place places[EXPONENTS])
+static int pack(const struct tl_slices *slices, int width, struct slice_place places[EXPONENTS])
 {
     int x = 0, y = 0, row_height = 0;
     for (int k = EXPONENTS - 1; k >= 0;
@@ -39,7 +39,7 @@ static int pack(const struct tl_slices *slices, int width, struct place places[E
             y += row_height;
             row_height = 0;
         }
-        places[k] = (struct place){x, y};
+        places[k] = (struct slice_place){x, y};
         x += side;
         row_height = side > row_height ? side : row_height;
     }
@@ -56,7 +56,7 @@ static int choose_width(const struct tl_slices *slices)
         sum += side;
     }
     for (int width = widest; width <= sum; width++) {
-        struct place places[EXPONENTS];
+        struct slice_place places[EXPONENTS];
         int area = width * pack(slices, width, places);
         if (best == 0 || area < least) {
             best = width;
@@ -82,7 +82,7 @@ static float storage_scale(const struct tl_slices *slices)
 }
 
 static void upload_texels(const tl_texture *texture, const struct tl_slices *slices, int k,
-                          struct place place, float scale)
+                          struct slice_place place, float scale)
 {
     size_t count = 3 * (size_t)slices->side[k] * (size_t)slices->side[k] * (size_t)slices->region_count;
     float *scaled = NULL;
@@ -102,7 +102,7 @@ static vec4s with_zero(vec3s v)
 }
 
 static void upload_frames(unsigned buffer, const struct tl_slices *slices,
-                          const struct place places[EXPONENTS], float scale)
+                          const struct slice_place places[EXPONENTS], float scale)
 {
     vec4s table[EXPONENTS];
     for (int k = 0; k < EXPONENTS; k++)
@@ -125,7 +125,7 @@ static void upload_frames(unsigned buffer, const struct tl_slices *slices,
 
 void tl_slice_maps_upload(struct tl_slice_maps *maps, tl_gpu *gpu, const struct tl_slices *slices)
 {
-    struct place places[EXPONENTS];
+    struct slice_place places[EXPONENTS];
     int width = choose_width(slices), height = pack(slices, width, places);
     if (maps->texture.width != width || maps->texture.height != height ||
         maps->texture.layers != slices->region_count) {

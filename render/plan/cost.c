@@ -56,7 +56,8 @@ double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work
     return load * ms;
 }
 
-/* All parts together, by their share of the cost; and each for itself, as far as nothing is known of it. */
+/* Process noise of the filter: all factors drift together by DRIFT, and each alone by PART_DRIFT until its
+ * deviation reaches PART_DEVIATION. */
 static void drift(struct tl_cost_job *job)
 {
     for (int i = 0; i < TL_WORK_PARTS; i++) {

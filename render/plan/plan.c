@@ -77,7 +77,7 @@ static void plan_row(const tl_job *job, const struct tl_plan_input *input, tl_bi
                      tl_bits needed, struct tl_plan_row *row)
 {
     tl_bits missing_facts = job->requires_scene & ~input->scene, missing = job->writes & ~input->valid;
-    /* Until there is a budget nothing speaks for less than the most exact level. */
+    /* Without a budget there is no reason for less than the most exact level. */
     *row = (struct tl_plan_row){.name = job->name, .level = level_count(job) - 1};
     if (missing_facts) {
         row->action = TL_JOB_DROP;
@@ -104,7 +104,7 @@ void tl_plan_make(const tl_job *jobs, int count, const struct tl_plan_input *inp
     tl_bits changed_reads[TL_JOBS_MAX], needed = input->wanted;
     spread_changes(jobs, count, input, changed_reads);
     *out = (tl_plan){.count = count};
-    for (int i = count - 1; i >= 0; i--) { /* backwards: readers say what is needed */
+    for (int i = count - 1; i >= 0; i--) { /* backwards: a job is needed if a later one reads its result */
         struct tl_plan_row *row = &out->rows[i];
         plan_row(&jobs[i], input, changed_reads[i], needed, row);
         if (row->action != TL_JOB_DROP)

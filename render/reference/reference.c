@@ -18,7 +18,7 @@ enum { TILE = 4, TILE_PIXELS = TILE * TILE };
 #define DIRECTIONS_MAX                                                                                       \
     (1 << 20) /* largest number of sky samples of all groups together, unless one group has more */
 
-struct drawing {
+struct reference_drawing {
     const struct tl_reference_scene *scene;
     const struct tl_reference_request *request;
     struct tl_view view;
@@ -57,7 +57,7 @@ struct hits {
     size_t rays; /* rays traced for the batch so far */
 };
 
-static struct camera_rays make_camera_rays(const struct drawing *drawing, int tile, int sample)
+static struct camera_rays make_camera_rays(const struct reference_drawing *drawing, int tile, int sample)
 {
     int side = drawing->request->supersample;
     int left = tile % drawing->tiles_x * TILE, top = tile / drawing->tiles_x * TILE;
@@ -77,7 +77,7 @@ static struct camera_rays make_camera_rays(const struct drawing *drawing, int ti
 
 /* Intersects the camera rays with the scene. Behind open sheets the rays continue with the fraction that
  * these let through. The last layer counts as closed. */
-static void intersect(const struct drawing *drawing, bool last, struct camera_rays *camera_rays,
+static void intersect(const struct reference_drawing *drawing, bool last, struct camera_rays *camera_rays,
                       struct hits *hits)
 {
     int through = 0;
@@ -102,7 +102,7 @@ static void intersect(const struct drawing *drawing, bool last, struct camera_ra
     camera_rays->count = through;
 }
 
-static struct tl_sky_sample *directions_of(const struct drawing *drawing, int group, int sample)
+static struct tl_sky_sample *directions_of(const struct reference_drawing *drawing, int group, int sample)
 {
     int side = drawing->request->supersample;
     size_t set = (size_t)group * (size_t)(side * side) + (size_t)sample;
@@ -111,13 +111,14 @@ static struct tl_sky_sample *directions_of(const struct drawing *drawing, int gr
 
 /* Tiles take the groups in turn; after each round the order is shifted, so that the tiles of a column do not
  * share a group. */
-static const struct tl_sky_sample *directions_for(const struct drawing *drawing, int tile, int sample)
+static const struct tl_sky_sample *directions_for(const struct reference_drawing *drawing, int tile,
+                                                  int sample)
 {
     const int shift = 37;
     return directions_of(drawing, (tile + tile / drawing->groups * shift) % drawing->groups, sample);
 }
 
-static void sample_sky(const struct drawing *drawing, int replicate)
+static void sample_sky(const struct reference_drawing *drawing, int replicate)
 {
     int side = drawing->request->supersample, samples = side * side;
     int strata = drawing->request->params->strata;
@@ -133,8 +134,8 @@ static void sample_sky(const struct drawing *drawing, int replicate)
 
 /* Shades sample `sample` of the pixels of a tile at layer `layer`, counted from the camera through open
  * sheets. Returns the number of rays. */
-static size_t accumulate(const struct drawing *drawing, int replicate, int tile, int sample, int layer,
-                         const struct hits *hits)
+static size_t accumulate(const struct reference_drawing *drawing, int replicate, int tile, int sample,
+                         int layer, const struct hits *hits)
 {
     const struct tl_reference_params *params = drawing->request->params;
     int side = drawing->request->supersample, samples = side * side;
@@ -157,7 +158,7 @@ static size_t accumulate(const struct drawing *drawing, int replicate, int tile,
     return rays + hits->rays;
 }
 
-static size_t draw_sample(const struct drawing *drawing, int replicate, int tile, int sample)
+static size_t draw_sample(const struct reference_drawing *drawing, int replicate, int tile, int sample)
 {
     struct camera_rays camera_rays = make_camera_rays(drawing, tile, sample);
     struct hits hits = {0};
@@ -172,7 +173,7 @@ static size_t draw_sample(const struct drawing *drawing, int replicate, int tile
 
 /* Draws one replicate. Each tile writes its own pixels only, so that the result does not depend on the number
  * of threads. False when interrupted. */
-static bool draw_replicate(struct drawing *drawing, int replicate)
+static bool draw_replicate(struct reference_drawing *drawing, int replicate)
 {
     int tiles = drawing->tiles_x * drawing->tiles_y, done = 0;
     int samples = drawing->request->supersample * drawing->request->supersample;
@@ -194,7 +195,7 @@ static bool draw_replicate(struct drawing *drawing, int replicate)
     return !tl_interrupted();
 }
 
-static void add_replicate(struct drawing *drawing)
+static void add_replicate(struct reference_drawing *drawing)
 {
 #pragma omp parallel for
     for (size_t p = 0; p < (size_t)drawing->width * (size_t)drawing->height; p++) {
@@ -214,7 +215,7 @@ static double variance_of_mean(double sum, double squares, int replicates)
     return fmax(squares - sum * sum / count, 0) / (count * (count - 1));
 }
 
-static double standard_error(const struct drawing *drawing, int replicates)
+static double standard_error(const struct reference_drawing *drawing, int replicates)
 {
     double variances = 0, mean = 0, values = 0;
     for (size_t p = 0; replicates > 1 && p < (size_t)drawing->width * (size_t)drawing->height; p++) {
@@ -230,7 +231,7 @@ static double standard_error(const struct drawing *drawing, int replicates)
     return mean > 0 ? sqrt(variances / values) / (mean / values) : 0;
 }
 
-static tl_image mean_image(const struct drawing *drawing, int replicates)
+static tl_image mean_image(const struct reference_drawing *drawing, int replicates)
 {
     tl_image image = tl_image_create(drawing->width, drawing->height, 4, TL_IMAGE_F32);
     for (size_t i = 0; i < 4 * (size_t)drawing->width * (size_t)drawing->height; i++)
@@ -238,7 +239,7 @@ static tl_image mean_image(const struct drawing *drawing, int replicates)
     return image;
 }
 
-static int draw_replicates(struct drawing *drawing)
+static int draw_replicates(struct reference_drawing *drawing)
 {
     int done = 0;
     drawing->progress = tl_progress_begin("tracing the reference");
@@ -250,7 +251,7 @@ static int draw_replicates(struct drawing *drawing)
     return done;
 }
 
-static void allocate_directions(struct drawing *drawing)
+static void allocate_directions(struct reference_drawing *drawing)
 {
     int side = drawing->request->supersample;
     int64_t one = (int64_t)side * side * drawing->request->params->strata;
@@ -267,16 +268,16 @@ bool tl_reference_draw(const struct tl_reference_request *request, tl_image *out
         return false;
     int width = request->width, height = request->height;
     size_t pixels = (size_t)width * (size_t)height;
-    struct drawing drawing = {.scene = &scene,
-                              .request = request,
-                              .view = tl_view_make(&request->frame->camera, width, height),
-                              .width = width,
-                              .height = height,
-                              .tiles_x = (width + TILE - 1) / TILE,
-                              .tiles_y = (height + TILE - 1) / TILE,
-                              .replicate = TL_NEW_ARRAY(float, 4 * pixels),
-                              .sums = TL_NEW_ARRAY(double, 4 * pixels),
-                              .squares = TL_NEW_ARRAY(double, 3 * pixels)};
+    struct reference_drawing drawing = {.scene = &scene,
+                                        .request = request,
+                                        .view = tl_view_make(&request->frame->camera, width, height),
+                                        .width = width,
+                                        .height = height,
+                                        .tiles_x = (width + TILE - 1) / TILE,
+                                        .tiles_y = (height + TILE - 1) / TILE,
+                                        .replicate = TL_NEW_ARRAY(float, 4 * pixels),
+                                        .sums = TL_NEW_ARRAY(double, 4 * pixels),
+                                        .squares = TL_NEW_ARRAY(double, 3 * pixels)};
     allocate_directions(&drawing);
     int done = draw_replicates(&drawing);
     *report = (struct tl_reference_report){done, standard_error(&drawing, done), drawing.rays};

@@ -23,7 +23,7 @@ struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns
 }
 
 /* A point of a surface with all inputs of its material. */
-struct place {
+struct sample_place {
     const tl_material *material;
     const struct tl_reference_material *prepared;
     bool woven;
@@ -54,12 +54,12 @@ static struct tl_footprint through_rows(const struct tl_footprint *at, const flo
     return (struct tl_footprint){made[0], made[1], made[2]};
 }
 
-static bool has_map(const struct place *place, enum tl_map_use use)
+static bool has_map(const struct sample_place *place, enum tl_map_use use)
 {
     return place->prepared->maps[use].texture != NULL;
 }
 
-static vec4s map_at(const struct place *place, enum tl_map_use use)
+static vec4s map_at(const struct sample_place *place, enum tl_map_use use)
 {
     const struct tl_reference_map *map = &place->prepared->maps[use];
     struct tl_footprint at = through_rows(&place->footprint, map->rows);
@@ -67,7 +67,7 @@ static vec4s map_at(const struct place *place, enum tl_map_use use)
 }
 
 /* The weave at a point. The footprint is doubled where the spread of normals is kept, as in surface.glsl. */
-static vec4s weave_texel(const struct place *place, const struct tl_map_texture *texture)
+static vec4s weave_texel(const struct sample_place *place, const struct tl_map_texture *texture)
 {
     const float rows[6] = {place->weave_scale[0], 0, 0, 0, place->weave_scale[1], 0};
     struct tl_footprint at = through_rows(&place->footprint, rows);
@@ -78,7 +78,7 @@ static vec4s weave_texel(const struct place *place, const struct tl_map_texture 
     return tl_map_texture_fetch(texture, &at, false, false);
 }
 
-static vec4s weave_at(const struct place *place, enum tl_weave_use use)
+static vec4s weave_at(const struct sample_place *place, enum tl_weave_use use)
 {
     return weave_texel(place, place->prepared->weave[use]);
 }
@@ -88,7 +88,7 @@ static vec3s decoded(vec4s texel)
     return (vec3s){{2 * texel.x - 1, 2 * texel.y - 1, 2 * texel.z - 1}};
 }
 
-static struct tl_bump_statistics own_bumps(const struct place *place)
+static struct tl_bump_statistics own_bumps(const struct sample_place *place)
 {
     float scale = place->material->normal_scale;
     if (!has_map(place, TL_MAP_NORMAL))
@@ -103,7 +103,7 @@ static struct tl_bump_statistics own_bumps(const struct place *place)
     return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
 }
 
-static struct tl_bump_statistics weave_bumps(const struct place *place)
+static struct tl_bump_statistics weave_bumps(const struct sample_place *place)
 {
     float scale = place->detail->height_scale;
     if (place->prepared->weave_moments)
@@ -113,7 +113,7 @@ static struct tl_bump_statistics weave_bumps(const struct place *place)
 }
 
 /* Statistics of all bumps in tangent space: those of the normal map of the file plus those of the weave. */
-static struct tl_bump_statistics bumps_at(const struct place *place)
+static struct tl_bump_statistics bumps_at(const struct sample_place *place)
 {
     struct tl_bump_statistics own = own_bumps(place);
     if (!place->woven)
@@ -122,13 +122,13 @@ static struct tl_bump_statistics bumps_at(const struct place *place)
     return tl_bump_statistics_add(&own, &weave);
 }
 
-static bool has_bumps(const struct place *place)
+static bool has_bumps(const struct sample_place *place)
 {
     vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     return (has_map(place, TL_MAP_NORMAL) || place->woven) && glms_vec3_norm2(tangent) > 0;
 }
 
-static vec3s bent_normal(const struct place *place, vec3s mapped, vec3s smooth)
+static vec3s bent_normal(const struct sample_place *place, vec3s mapped, vec3s smooth)
 {
     vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     vec3s bitangent = glms_vec3_scale(glms_vec3_cross(place->normal, tangent), place->tangent.w);
@@ -139,7 +139,7 @@ static vec3s bent_normal(const struct place *place, vec3s mapped, vec3s smooth)
 }
 
 /* Transforms a direction into the tangent space of the front. */
-static vec3s into_tangent(const struct place *place, vec3s smooth, vec3s d)
+static vec3s into_tangent(const struct sample_place *place, vec3s smooth, vec3s d)
 {
     vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     t = direction_or(glms_vec3_sub(t, glms_vec3_scale(smooth, glms_vec3_dot(smooth, t))), (vec3s){{0, 0, 0}});
@@ -147,7 +147,7 @@ static vec3s into_tangent(const struct place *place, vec3s smooth, vec3s d)
     return (vec3s){{glms_vec3_dot(d, t), glms_vec3_dot(d, b), glms_vec3_dot(d, smooth)}};
 }
 
-static float glossiness_of(const struct place *place)
+static float glossiness_of(const struct sample_place *place)
 {
     float g = place->material->glossiness;
     if (has_map(place, TL_MAP_GLOSS))
@@ -162,7 +162,7 @@ static vec3s times_map(vec3s colour, vec4s texel)
     return (vec3s){{colour.x * texel.x, colour.y * texel.y, colour.z * texel.z}};
 }
 
-static vec3s diffuse_of(const struct place *place)
+static vec3s diffuse_of(const struct sample_place *place)
 {
     vec3s colour = place->material->diffuse;
     if (has_map(place, TL_MAP_DIFFUSE))
@@ -176,7 +176,7 @@ static vec3s diffuse_of(const struct place *place)
     return colour;
 }
 
-static vec3s f0_of(const struct place *place)
+static vec3s f0_of(const struct sample_place *place)
 {
     vec3s f0 = place->material->specular;
     return has_map(place, TL_MAP_SPECULAR) ? times_map(f0, map_at(place, TL_MAP_SPECULAR)) : f0;
@@ -191,7 +191,7 @@ static vec3s specular_of(vec3s f0, float n_dot_v)
 
 /* Sets tangent and handedness. On a back face normal and bitangent are turned over and the tangent is
  * kept. */
-static void set_tangent(const struct place *place, vec3s n, struct tl_shading_point *result)
+static void set_tangent(const struct sample_place *place, vec3s n, struct tl_shading_point *result)
 {
     vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
     t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
@@ -200,7 +200,7 @@ static void set_tangent(const struct place *place, vec3s n, struct tl_shading_po
 }
 
 /* Sets the coat. It fills the threads up, so that its mirror direction is that of the smooth surface. */
-static void set_coat(const struct place *place, vec3s smooth, struct tl_shading_point *result)
+static void set_coat(const struct sample_place *place, vec3s smooth, struct tl_shading_point *result)
 {
     struct tl_shading_layers *layers = &result->layers;
     vec3s n = glms_vec3_scale(smooth, place->side);
@@ -211,7 +211,7 @@ static void set_coat(const struct place *place, vec3s smooth, struct tl_shading_
     layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
 }
 
-static void set_layers(const struct place *place, vec3s smooth, struct tl_shading_point *result)
+static void set_layers(const struct sample_place *place, vec3s smooth, struct tl_shading_point *result)
 {
     const tl_material *material = place->material;
     struct tl_shading_layers *layers = &result->layers;
@@ -232,7 +232,7 @@ static void set_layers(const struct place *place, vec3s smooth, struct tl_shadin
     layers->transmitted = glms_vec3_scale(material->transmission, layers->base);
 }
 
-static void set_lobes(const struct place *place, const struct tl_reference_scene *scene, vec3s viewer,
+static void set_lobes(const struct sample_place *place, const struct tl_reference_scene *scene, vec3s viewer,
                       vec3s smooth, struct tl_shading_point *result)
 {
     vec3s n = glms_vec3_scale(smooth, place->side);
@@ -266,7 +266,8 @@ static void set_lobes(const struct place *place, const struct tl_reference_scene
         set_layers(place, smooth, result);
 }
 
-static struct tl_shading_point point_of(const struct place *place, const struct tl_reference_scene *scene,
+static struct tl_shading_point point_of(const struct sample_place *place,
+                                        const struct tl_reference_scene *scene,
                                         const struct tl_ray_differential *ray, vec3s smooth_point)
 {
     struct tl_shading_point result = {.cover = 1};
@@ -279,15 +280,15 @@ static struct tl_shading_point point_of(const struct place *place, const struct 
 }
 
 /* The corners of the triangle that was hit. */
-struct corners {
+struct triangle_corners {
     vec3s positions[3], normals[3];
     vec4s tangents[3];
     vec2s uvs[3];
 };
 
-static struct corners corners_of(const tl_surface *surface, uint32_t triangle)
+static struct triangle_corners corners_of(const tl_surface *surface, uint32_t triangle)
 {
-    struct corners corners = {0};
+    struct triangle_corners corners = {0};
     for (size_t i = 0; i < 3; i++) {
         uint32_t vertex = surface->indices[3 * (size_t)triangle + i];
         corners.positions[i] = surface->positions[vertex];
@@ -318,7 +319,7 @@ static vec3s shift_on_plane(const struct tl_ray_differential *ray, float distanc
 }
 
 /* Shift of (u, v) when a point moves within its triangle, by least squares in the plane of the triangle. */
-static vec2s shift_of_uv(const struct corners *corners, vec3s move)
+static vec2s shift_of_uv(const struct triangle_corners *corners, vec3s move)
 {
     vec3s e1 = glms_vec3_sub(corners->positions[1], corners->positions[0]);
     vec3s e2 = glms_vec3_sub(corners->positions[2], corners->positions[0]);
@@ -329,7 +330,7 @@ static vec2s shift_of_uv(const struct corners *corners, vec3s move)
     return glms_vec2_add(along, glms_vec2_scale(glms_vec2_sub(corners->uvs[2], corners->uvs[0]), t));
 }
 
-static struct tl_footprint footprint_of(const struct corners *corners, const float weights[3],
+static struct tl_footprint footprint_of(const struct triangle_corners *corners, const float weights[3],
                                         const struct tl_ray_differential *ray, float distance, vec3s facet)
 {
     struct tl_footprint footprint = {0};
@@ -343,7 +344,7 @@ static struct tl_footprint footprint_of(const struct corners *corners, const flo
 }
 
 static void set_material(const struct tl_reference_scene *scene, const struct tl_trace_hit *hit,
-                         struct place *place)
+                         struct sample_place *place)
 {
     const tl_surface *surface = &scene->surfaces[hit->surface];
     const struct tl_mesh_part *part = part_of(surface, hit->triangle);
@@ -357,8 +358,8 @@ static void set_material(const struct tl_reference_scene *scene, const struct tl
 }
 
 /* Origin of rays on the other side of the same sheet. */
-static vec3s point_behind(const struct place *place, const struct tl_reference_scene *scene,
-                          const struct corners *corners, const float weights[3])
+static vec3s point_behind(const struct sample_place *place, const struct tl_reference_scene *scene,
+                          const struct triangle_corners *corners, const float weights[3])
 {
     vec3s normals[3], point = place->point;
     for (int i = 0; i < 3; i++)
@@ -372,11 +373,11 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
                                              const struct tl_ray_differential *ray,
                                              const struct tl_trace_hit *hit)
 {
-    struct corners corners = corners_of(&scene->surfaces[hit->surface], hit->triangle);
+    struct triangle_corners corners = corners_of(&scene->surfaces[hit->surface], hit->triangle);
     const float weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
     vec3s across = glms_vec3_cross(glms_vec3_sub(corners.positions[1], corners.positions[0]),
                                    glms_vec3_sub(corners.positions[2], corners.positions[0]));
-    struct place place = {.side = hit->back ? -1.0f : 1.0f};
+    struct sample_place place = {.side = hit->back ? -1.0f : 1.0f};
     set_material(scene, hit, &place);
     place.facet = glms_vec3_scale(direction_or(across, glms_vec3_negate(ray->direction)), place.side);
     for (int i = 0; i < 3; i++) {
@@ -416,7 +417,7 @@ static struct tl_shading_point ground_point(const struct tl_reference_scene *sce
     vec3s point = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, distance));
     point.y = ground->centre.y;
     float cover = tl_ground_cover(ground, point.x, point.z), side = ray->direction.y < 0 ? 1.0f : -1.0f;
-    const struct place place = {
+    const struct sample_place place = {
         .detail = &scene->detail.params,
         .material = &ground->material,
         .prepared = &scene->materials[scene->surface_count].materials[0],

@@ -30,7 +30,7 @@ struct scene {
 
 /* ---- A run of pixels of one triangle ---- */
 
-struct run {
+struct pixel_run {
     const struct tl_pixel_triangle *triangle;
     const struct tl_shade_part *part;
     tl_quad diffuse[3], glossy[3]; /* ratios at the corners; where the run is flat `diffuse` is the light */
@@ -71,7 +71,7 @@ TL_INLINE float sun_above(const struct tl_sun *sun, float cosine)
 }
 
 /* Of one normal and one colour: the light at the corners is all that a pixel interpolates. */
-static void flatten(const struct scene *scene, struct run *run)
+static void flatten(const struct scene *scene, struct pixel_run *run)
 {
     const struct tl_pixels_request *request = scene->request;
     vec3s normal = glms_vec3_scale(run->normals[0], run->triangle->back ? -1.0f : 1.0f);
@@ -86,7 +86,7 @@ static void flatten(const struct scene *scene, struct run *run)
     }
 }
 
-static bool has_one_normal(const struct run *run)
+static bool has_one_normal(const struct pixel_run *run)
 {
     for (int k = 1; k < 3; k++)
         if (run->normals[k].x != run->normals[0].x || run->normals[k].y != run->normals[0].y ||
@@ -107,7 +107,8 @@ static bool fades(const struct tl_pixels_request *request, const struct tl_pixel
     return false;
 }
 
-static void begin_run(const struct scene *scene, const struct tl_pixel_triangle *triangle, struct run *run)
+static void begin_run(const struct scene *scene, const struct tl_pixel_triangle *triangle,
+                      struct pixel_run *run)
 {
     const struct tl_pixels_request *request = scene->request;
     const tl_surface *surface = triangle->surface;
@@ -140,7 +141,7 @@ TL_INLINE vec3s weighted3(const vec3s v[3], const float w[3])
 }
 
 /* What is seen is rarely covered: corners that are do not count beside others that are not. */
-TL_INLINE void uncover(const struct run *run, float weights[3])
+TL_INLINE void uncover(const struct pixel_run *run, float weights[3])
 {
     float sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -202,7 +203,7 @@ TL_INLINE tl_quad turned_quad(const struct scene *scene, vec3s d, float scale)
 }
 
 /* The exact light of the lobes of a fan. */
-TL_INLINE tl_quad light_of_facets(const struct scene *scene, const struct run *run,
+TL_INLINE tl_quad light_of_facets(const struct scene *scene, const struct pixel_run *run,
                                   const struct tl_look *look, const struct tl_look_at *at,
                                   struct gloss *gloss)
 {
@@ -279,7 +280,7 @@ TL_INLINE bool is_plain_ward(const struct tl_gloss *model)
            model->width_warp <= 1;
 }
 
-TL_INLINE vec3s gloss_under_sun(const struct run *run, const struct tl_sun *sun, vec3s direction,
+TL_INLINE vec3s gloss_under_sun(const struct pixel_run *run, const struct tl_sun *sun, vec3s direction,
                                 const struct tl_look *look, const struct tl_look_at *at,
                                 const struct gloss *gloss)
 {
@@ -296,7 +297,7 @@ TL_INLINE vec3s gloss_under_sun(const struct run *run, const struct tl_sun *sun,
     return tl_brdf_gloss_under_disc(&brdf, &gloss->frame, direction, at->viewer, sun->radius);
 }
 
-TL_INLINE tl_quad light_of_sun(const struct scene *scene, const struct run *run, int sun, float visible,
+TL_INLINE tl_quad light_of_sun(const struct scene *scene, const struct pixel_run *run, int sun, float visible,
                                const struct tl_look *look, const struct tl_look_at *at,
                                const struct gloss *gloss)
 {
@@ -311,7 +312,8 @@ TL_INLINE tl_quad light_of_sun(const struct scene *scene, const struct run *run,
     return seen * quad_of(item->power) * quad_of(light);
 }
 
-TL_INLINE struct tl_look_at look_at(const struct run *run, const struct tl_pixel_weights *weights, vec3s ray)
+TL_INLINE struct tl_look_at look_at(const struct pixel_run *run, const struct tl_pixel_weights *weights,
+                                    vec3s ray)
 {
     struct tl_look_at at = {.normal = weighted3(run->normals, weights->at),
                             .viewer = glms_vec3_negate(tl_unit_or(ray, (vec3s){{0, 1, 0}})),
@@ -334,7 +336,7 @@ TL_INLINE struct tl_look_at look_at(const struct run *run, const struct tl_pixel
     return at;
 }
 
-static float cover_of(const struct scene *scene, const struct run *run, const float weights[3])
+static float cover_of(const struct scene *scene, const struct pixel_run *run, const float weights[3])
 {
     const vec3s *p = run->triangle->surface->positions;
     const uint32_t *corners = run->triangle->corners;
@@ -352,7 +354,7 @@ TL_INLINE float sun_seen(const struct tl_pixels_request *request, int sun, size_
     return visible ? visible[pixel] : 1;
 }
 
-TL_INLINE tl_quad shade_look(const struct scene *scene, const struct run *run,
+TL_INLINE tl_quad shade_look(const struct scene *scene, const struct pixel_run *run,
                              const struct tl_pixel_weights *weights, const float ratio_weights[3], int x,
                              int y, size_t pixel)
 {
@@ -373,7 +375,7 @@ TL_INLINE tl_quad shade_look(const struct scene *scene, const struct run *run,
     return colour;
 }
 
-TL_INLINE tl_quad shade_pixel(const struct scene *scene, const struct run *run, int x, int y)
+TL_INLINE tl_quad shade_pixel(const struct scene *scene, const struct pixel_run *run, int x, int y)
 {
     const struct tl_pixels_request *request = scene->request;
     const size_t pixel = (size_t)y * (size_t)request->ids->width + (size_t)x;
@@ -403,7 +405,7 @@ TL_CLONES static void shade_rows(const struct scene *scene, int first, int last,
         const uint32_t *row = ids->ids + (size_t)y * (size_t)width;
         tl_quad *out = (tl_quad *)image + (size_t)y * (size_t)width;
         uint32_t before = 0;
-        struct run run = {0};
+        struct pixel_run run = {0};
         for (int x = 0; x < width; x++) {
             if (row[x] == 0) {
                 out[x] = (tl_quad){0, 0, 0, 0};

@@ -40,7 +40,7 @@ struct tl_ground {
 /* Fills `out` in place; it must not be moved while its surface is used. */
 void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out);
 
-/* As ground.glsl: how much of the disc is there at a point of its plane; and what it leaves of light from
+/* As in ground.glsl: the opacity of the disc at a point of its plane; and its transmittance for light from
  * `direction` at `point`. NULL: there is no ground. */
 float tl_ground_cover(const struct tl_ground *ground, float x, float z);
 float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction);

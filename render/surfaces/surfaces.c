@@ -15,7 +15,7 @@ struct uploaded {
     tl_texture texture;
 };
 
-struct item {
+struct surface_item {
     bool hidden;
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
@@ -31,14 +31,14 @@ struct item {
 struct tl_surfaces {
     tl_gpu *gpu;
     size_t count;
-    struct item *items;
+    struct surface_item *items;
     const struct tl_detail_maps *detail; /* NULL: none */
 };
 
 static const size_t attribute_bytes[ATTRIBUTES] = {sizeof(vec3s), sizeof(vec3s), sizeof(vec4s),
                                                    sizeof(vec2s)};
 
-static void item_release(struct item *item)
+static void item_release(struct surface_item *item)
 {
     for (size_t i = 0; i < item->texture_count; i++)
         tl_texture_destroy(&item->textures[i].texture);
@@ -50,7 +50,7 @@ static void item_release(struct item *item)
         glDeleteBuffers(ATTRIBUTES, item->buffers);
         glDeleteBuffers(1, &item->indices);
     }
-    *item = (struct item){0};
+    *item = (struct surface_item){0};
 }
 
 tl_surfaces *tl_surfaces_create(tl_gpu *gpu)
@@ -71,7 +71,7 @@ static void resize(tl_surfaces *surfaces, size_t count)
         item_release(&surfaces->items[i]);
     surfaces->items = tl_resize(surfaces->items, count, sizeof *surfaces->items);
     for (size_t i = surfaces->count; i < count; i++)
-        surfaces->items[i] = (struct item){0};
+        surfaces->items[i] = (struct surface_item){0};
     surfaces->count = count;
 }
 
@@ -136,8 +136,8 @@ static tl_texture upload_map(tl_gpu *gpu, const tl_image *image, bool colour)
     return texture;
 }
 
-static bool add_image(tl_gpu *gpu, struct item *item, const char *surface, const tl_image *image, bool colour,
-                      tl_error *error)
+static bool add_image(tl_gpu *gpu, struct surface_item *item, const char *surface, const tl_image *image,
+                      bool colour, tl_error *error)
 {
     if (!image)
         return true;
@@ -174,8 +174,8 @@ static bool is_colour(enum tl_map_use use)
     return use == TL_MAP_DIFFUSE || use == TL_MAP_SPECULAR;
 }
 
-static bool upload_material(tl_gpu *gpu, struct item *item, const char *surface, const tl_material *material,
-                            tl_error *error)
+static bool upload_material(tl_gpu *gpu, struct surface_item *item, const char *surface,
+                            const tl_material *material, tl_error *error)
 {
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++)
         if (!add_image(gpu, item, surface, map_of(material, use)->image, is_colour(use), error))
@@ -186,7 +186,7 @@ static bool upload_material(tl_gpu *gpu, struct item *item, const char *surface,
                       add_image(gpu, item, surface, &weave->tint, false, error));
 }
 
-static void attach_buffer(struct item *item, enum attribute attribute, const void *data, size_t count)
+static void attach_buffer(struct surface_item *item, enum attribute attribute, const void *data, size_t count)
 {
     static const GLint components[ATTRIBUTES] = {3, 3, 4, 2};
     item->attribute_counts[attribute] = data ? count : 0;
@@ -203,7 +203,7 @@ static void attach_buffer(struct item *item, enum attribute attribute, const voi
     glEnableVertexArrayAttrib(item->vertex_array, attribute);
 }
 
-static void send_motion(struct item *item, const tl_surface *surface)
+static void send_motion(struct surface_item *item, const tl_surface *surface)
 {
     attach_buffer(item, POSITION, surface->positions, surface->vertex_count);
     attach_buffer(item, NORMAL, surface->normals, surface->vertex_count);
@@ -211,7 +211,7 @@ static void send_motion(struct item *item, const tl_surface *surface)
     item->motion_revision = surface->motion_revision;
 }
 
-static bool send_topology(tl_gpu *gpu, struct item *item, const tl_surface *surface, tl_error *error)
+static bool send_topology(tl_gpu *gpu, struct surface_item *item, const tl_surface *surface, tl_error *error)
 {
     item_release(item);
     glCreateVertexArrays(1, &item->vertex_array);
@@ -240,7 +240,7 @@ static bool send_topology(tl_gpu *gpu, struct item *item, const tl_surface *surf
     return true;
 }
 
-static bool update_item(tl_gpu *gpu, struct item *item, const tl_surface *surface, tl_error *error)
+static bool update_item(tl_gpu *gpu, struct surface_item *item, const tl_surface *surface, tl_error *error)
 {
     bool fresh = item->vertex_array == 0 || item->topology_revision != surface->topology_revision ||
                  item->vertex_count != surface->vertex_count || item->index_count != surface->index_count;
@@ -262,7 +262,7 @@ bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, s
     return true;
 }
 
-static const tl_texture *find_texture(const struct item *item, const tl_image *image, bool colour)
+static const tl_texture *find_texture(const struct surface_item *item, const tl_image *image, bool colour)
 {
     for (size_t i = 0; i < item->texture_count; i++)
         if (item->textures[i].image == image && item->textures[i].colour == colour)
@@ -277,7 +277,7 @@ static void bind(GLuint unit, const tl_texture *texture, bool clamp_u, bool clam
     glBindTextureUnit(unit, texture->id);
 }
 
-static int bind_weave(const struct item *item, const tl_weave *weave, float uv_metres)
+static int bind_weave(const struct surface_item *item, const tl_weave *weave, float uv_metres)
 {
     if (!weave || !(uv_metres > 0) || !(weave->size_m[0] > 0) || !(weave->size_m[1] > 0))
         return 0;
@@ -290,7 +290,7 @@ static int bind_weave(const struct item *item, const tl_weave *weave, float uv_m
 
 /* Units without a map are cleared: software GL samples whatever is bound, wanted or not, and compiles each
  * shader again for every set of formats that it meets. */
-static void set_material(const struct item *item, const struct tl_mesh_part *part)
+static void set_material(const struct surface_item *item, const struct tl_mesh_part *part)
 {
     const tl_material *material = &item->materials[part->material];
     glBindTextures(0, TL_MAP_USES + TL_WEAVE_USES, NULL);
@@ -320,7 +320,7 @@ static const void *offset_of_index(size_t index)
     return (const void *)(index * sizeof(uint32_t)); /* NOLINT(performance-no-int-to-ptr) */
 }
 
-static enum tl_surface_parts kind_of(const struct item *item, const struct tl_mesh_part *part)
+static enum tl_surface_parts kind_of(const struct surface_item *item, const struct tl_mesh_part *part)
 {
     return item->materials[part->material].alpha_cutoff > 0 ? TL_PARTS_MASKED : TL_PARTS_OPAQUE;
 }
@@ -332,7 +332,7 @@ size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index)
 
 const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part)
 {
-    const struct item *item = &surfaces->items[index];
+    const struct surface_item *item = &surfaces->items[index];
     return &item->materials[item->parts[part].material];
 }
 
@@ -340,7 +340,7 @@ const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t
 static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_index, size_t first_index,
                          size_t index_count, size_t number)
 {
-    const struct item *item = &surfaces->items[index];
+    const struct surface_item *item = &surfaces->items[index];
     const struct tl_mesh_part *part = &item->parts[part_index];
     glBindVertexArray(item->vertex_array);
     set_material(item, part);
@@ -352,7 +352,7 @@ static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_
 
 void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part_index)
 {
-    const struct item *item = &surfaces->items[index];
+    const struct surface_item *item = &surfaces->items[index];
     const struct tl_mesh_part *part = &item->parts[part_index];
     size_t first_triangle = part->first_index / 3;
     if (item->hidden)
@@ -365,7 +365,7 @@ void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t par
 void tl_surfaces_draw_some(const tl_surfaces *surfaces, size_t index, size_t part, unsigned indices,
                            size_t first, size_t count)
 {
-    const struct item *item = &surfaces->items[index];
+    const struct surface_item *item = &surfaces->items[index];
     if (item->hidden || count == 0)
         return;
     glVertexArrayElementBuffer(item->vertex_array, indices);
@@ -375,7 +375,7 @@ void tl_surfaces_draw_some(const tl_surfaces *surfaces, size_t index, size_t par
 
 void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface_parts parts)
 {
-    const struct item *item = &surfaces->items[index];
+    const struct surface_item *item = &surfaces->items[index];
     for (size_t p = 0; p < item->part_count; p++)
         if (kind_of(item, &item->parts[p]) & parts)
             tl_surfaces_draw_part(surfaces, index, p);
@@ -404,7 +404,7 @@ size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
 {
     size_t bytes = 0;
     for (size_t i = 0; i < surfaces->count; i++) {
-        const struct item *item = &surfaces->items[i];
+        const struct surface_item *item = &surfaces->items[i];
         for (size_t t = 0; t < item->texture_count; t++)
             bytes += tl_texture_bytes(&item->textures[t].texture);
         bytes += item->index_count * sizeof(uint32_t);

@@ -59,12 +59,12 @@ vec4s tl_view_row(vec3s axis, vec3s centre, float scale)
         {axis.x * scale, axis.y * scale, axis.z * scale, 0.5f - scale * glms_vec3_dot(axis, centre)}};
 }
 
-struct range {
+struct value_range {
     float low, high;
 };
 
-/* Least and largest coordinate along an axis, lane by lane; the lanes are compared at the end. */
-TL_CLONES static struct range range_along(const struct tl_caster_cloud *cloud, vec3s axis)
+/* Minimum and maximum coordinate along an axis, lane by lane; the lanes are reduced at the end. */
+TL_CLONES static struct value_range range_along(const struct tl_caster_cloud *cloud, vec3s axis)
 {
     const float *x = cloud->coordinates[0], *y = cloud->coordinates[1], *z = cloud->coordinates[2];
     float low[TL_LANES], high[TL_LANES];
@@ -77,16 +77,16 @@ TL_CLONES static struct range range_along(const struct tl_caster_cloud *cloud, v
             low[lane] = tl_lesser(low[lane], value);
             high[lane] = tl_greater(high[lane], value);
         }
-    struct range range = {low[0], high[0]};
+    struct value_range range = {low[0], high[0]};
     for (int lane = 1; lane < TL_LANES; lane++)
-        range = (struct range){tl_lesser(range.low, low[lane]), tl_greater(range.high, high[lane])};
+        range = (struct value_range){tl_lesser(range.low, low[lane]), tl_greater(range.high, high[lane])};
     return range;
 }
 
-/* The range mapped to the middle `share` of [0, 1]. */
+/* Maps the range to the middle `share` of [0, 1]. */
 static vec4s fit_row(const struct tl_caster_cloud *cloud, vec3s axis, float share)
 {
-    struct range range = range_along(cloud, axis);
+    struct value_range range = range_along(cloud, axis);
     float scale = share / tl_greater(range.high - range.low, EXTENT_MIN);
     return (vec4s){
         {axis.x * scale, axis.y * scale, axis.z * scale, 0.5f - scale * 0.5f * (range.low + range.high)}};

@@ -5,8 +5,8 @@
 
 #include "assets/base/surface.h"
 
-/* Free texels around what is seen, so that neither a blurred silhouette nor a look-up from outside touches
- * it. */
+/* Width of the empty border of a map in texels: neither a blurred silhouette nor a look-up from outside
+ * reaches across it. */
 #define TL_MAP_MARGIN_TEXELS 2
 
 struct tl_region_view {
@@ -28,8 +28,8 @@ void tl_view_axes(vec3s direction, vec3s *right, vec3s *up);
 /* World point -> 0.5 + axis . (point - centre) * scale. */
 vec4s tl_view_row(vec3s axis, vec3s centre, float scale);
 
-/* The map holds the cloud's shadow from edge to edge but for the margin; depth 0 and 1 lie a little beyond
- * it. */
+/* The shadow of the point cloud fills the map except for the border; depths 0 and 1 lie slightly outside the
+ * cloud. */
 struct tl_region_view tl_region_view_fit(vec3s direction, const struct tl_caster_cloud *cloud, int map_size);
 
 #endif

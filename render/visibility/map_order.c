@@ -11,7 +11,7 @@ struct turn {
     int index;
 };
 
-/* The most urgent first; among equals the lower index. */
+/* Descending urgency; among equals the lower index first. */
 static int compare_turns(const void *a, const void *b)
 {
     const struct turn *left = a, *right = b;

@@ -1,7 +1,7 @@
 /* Chooses the shadow maps to redraw when there is no time for all. Pure.
  *
- * A map's turn comes by the energy of its region times how much its shadow changes while it waits: its age,
- * times the motion, over how soft the shadow is. No map gets older than the cap. */
+ * Maps are redrawn in order of the energy of their region times the change of the shadow since: age times
+ * motion, divided by the softness of the shadow. No map gets older than a cap. */
 #ifndef TOILE_RENDER_VISIBILITY_MAP_ORDER_H
 #define TOILE_RENDER_VISIBILITY_MAP_ORDER_H
 
@@ -13,10 +13,11 @@ struct tl_map_wait {
     int age;        /* frames that moved since it was drawn; at least 1 */
 };
 
-/* In how many frames all have had their turn when `most` are drawn in each, and as many again. */
+/* The cap: twice the number of frames in which every map is drawn once if `most` are drawn in each. */
 int tl_map_age_cap(int count, int most);
 
-/* Marks `most` of `count` maps, and more only where the cap demands it; all when `most` is 0 or larger. */
+/* Marks `most` of `count` maps, and more only if the cap requires it; all if `most` is 0 or at least `count`.
+ */
 void tl_map_order(const struct tl_map_wait *waits, int count, int most, bool due[]);
 
 #endif

@@ -23,30 +23,30 @@
 #define LEAST_WEIGHT 0.03125f
 
 /* The members of a cluster, one a lane. */
-struct lanes {
+struct cluster_lanes {
     uint32_t members;
     float x[TL_CLUSTER], y[TL_CLUSTER], z[TL_CLUSTER];    /* where rays start, world */
     float nx[TL_CLUSTER], ny[TL_CLUSTER], nz[TL_CLUSTER]; /* on the point's side, unit */
 };
 
-static vec3s lane_normal(const struct lanes *lanes, int i)
+static vec3s lane_normal(const struct cluster_lanes *lanes, int i)
 {
     return (vec3s){{lanes->nx[i], lanes->ny[i], lanes->nz[i]}};
 }
 
-static vec3s lane_origin(const struct lanes *lanes, int i)
+static vec3s lane_origin(const struct cluster_lanes *lanes, int i)
 {
     return (vec3s){{lanes->x[i], lanes->y[i], lanes->z[i]}};
 }
 
-static void set_lane(struct lanes *lanes, int i, vec3s origin, vec3s normal)
+static void set_lane(struct cluster_lanes *lanes, int i, vec3s origin, vec3s normal)
 {
     lanes->x[i] = origin.x, lanes->y[i] = origin.y, lanes->z[i] = origin.z;
     lanes->nx[i] = normal.x, lanes->ny[i] = normal.y, lanes->nz[i] = normal.z;
 }
 
 /* Adds member i's ray to a bundle. */
-static void push_ray(struct tl_ray_packet *bundle, const struct lanes *lanes, int i, vec3s direction)
+static void push_ray(struct tl_ray_packet *bundle, const struct cluster_lanes *lanes, int i, vec3s direction)
 {
     int k = bundle->count++;
     bundle->origin_x[k] = lanes->x[i];
@@ -57,12 +57,11 @@ static void push_ray(struct tl_ray_packet *bundle, const struct lanes *lanes, in
     bundle->direction_z[k] = direction.z;
 }
 
-/* Moves a point out of a body that it is just inside of, as a waist of a hip: there the back of one and the
- * same other surface is seen both ways. (Under a dress a body sees the dress's back one way only, and a pleat
- * sees its own surface.)
- */
-static bool lift(const struct tl_refresh *refresh, const struct tl_cache_probe *probe, struct lanes *lanes,
-                 int i)
+/* Moves a point out of a body that it lies slightly inside, such as a waistband in a hip: rays in both
+ * directions of the normal then hit the back of the same other surface. (A body under a dress hits the
+ * dress's back in one direction only, and a pleat hits its own surface.) */
+static bool lift(const struct tl_refresh *refresh, const struct tl_cache_probe *probe,
+                 struct cluster_lanes *lanes, int i)
 {
     const tl_trace *trace = refresh->request->trace;
     vec3s origin = lane_origin(lanes, i), normal = lane_normal(lanes, i);
@@ -80,9 +79,9 @@ static bool lift(const struct tl_refresh *refresh, const struct tl_cache_probe *
 }
 
 static void place_members(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                          struct lanes *lanes)
+                          struct cluster_lanes *lanes)
 {
-    *lanes = (struct lanes){.members = cluster->members};
+    *lanes = (struct cluster_lanes){.members = cluster->members};
     struct tl_ray_packet up = {.to_m = TL_COVER_OFFSETS * refresh->offset_m, .coherent = true};
     int lane_of[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) {
@@ -107,8 +106,8 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
     }
 }
 
-/* The cosine of a direction to the member that faces it most. */
-TL_INLINE float greatest_cosine(const struct lanes *lanes, vec3s direction)
+/* The largest cosine between a direction and the members' normals. */
+TL_INLINE float greatest_cosine(const struct cluster_lanes *lanes, vec3s direction)
 {
     float cosines[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) /* lanes of no member hold zeros */
@@ -122,7 +121,8 @@ TL_INLINE float greatest_cosine(const struct lanes *lanes, vec3s direction)
 /* The need of each region: its light on the cluster times the age of its value. Late regions also have their
  * age as a need of its own, 0 for all others. */
 static void measure_needs(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                          const struct lanes *lanes, float needs[TL_REGIONS_MAX], float late[TL_REGIONS_MAX])
+                          const struct cluster_lanes *lanes, float needs[TL_REGIONS_MAX],
+                          float late[TL_REGIONS_MAX])
 {
     int count = refresh->request->regions->count, refreshed = refresh->request->params->refresh;
     uint32_t longest = (uint32_t)(LATE_ROUNDS * (count + refreshed - 1) / refreshed);
@@ -165,7 +165,7 @@ static int select_regions(const float needs[TL_REGIONS_MAX], int count, int want
 }
 
 static void select_in_motion(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                             const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+                             const struct cluster_lanes *lanes, bool selected[TL_REGIONS_MAX])
 {
     float needs[TL_REGIONS_MAX], late[TL_REGIONS_MAX];
     int count = refresh->request->regions->count, wanted = refresh->request->params->refresh;
@@ -174,10 +174,10 @@ static void select_in_motion(const struct tl_refresh *refresh, const struct tl_c
     select_regions(needs, count, wanted, selected);
 }
 
-/* By the same need as in motion, until each has had its rounds. As many again of those that have set: they
- * take hardly a ray, but a part of one may stand above the horizon. */
+/* Selects regions at rest by the same need as in motion, until each has had its rounds. Selects as many again
+ * of those below the horizon: they cost hardly any rays, and a part of such a region may be above it. */
 static void select_at_rest(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                           const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+                           const struct cluster_lanes *lanes, bool selected[TL_REGIONS_MAX])
 {
     float needs[TL_REGIONS_MAX], set[TL_REGIONS_MAX];
     int count = refresh->request->regions->count;
@@ -193,7 +193,7 @@ static void select_at_rest(const struct tl_refresh *refresh, const struct tl_clu
 }
 
 static void select_for(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                       const struct lanes *lanes, bool selected[TL_REGIONS_MAX])
+                       const struct cluster_lanes *lanes, bool selected[TL_REGIONS_MAX])
 {
     const struct tl_points_request *request = refresh->request;
     for (int i = 0; refresh->whole_rounds && i < request->regions->count; i++)
@@ -212,17 +212,17 @@ struct glance {
     float weight[TL_CLUSTER]; /* sum of weights, in 1 / WEIGHT_ONE */
 };
 
-/* A region counts for less near the horizon, where it is more often hidden: the mean over it is taken by the
- * cosine that light arrives with, or it would be too dark. A glossy lobe leans to one side, so that nothing
- * counts for nothing. */
+/* The weight of a direction in the mean over its region: the cosine of incidence. Without it the mean would
+ * be too dark, because directions near the horizon are hidden more often and contribute less light. It never
+ * is 0, because glossy lobes may lie near the horizon. */
 static float weight_of(float cosine)
 {
     return floorf(WEIGHT_ONE * fmaxf(fabsf(cosine), LEAST_WEIGHT) + 0.5f);
 }
 
-/* Adds what each of `lanes_wanted` sees along a direction; returns the number of rays. Nothing is seen from
- * under the surface. */
-static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, uint32_t lanes_wanted,
+/* Adds the visibility of a direction from each of `lanes_wanted`; returns the number of rays. Members whose
+ * surface faces away are left out. */
+static size_t look(const struct tl_refresh *refresh, const struct cluster_lanes *lanes, uint32_t lanes_wanted,
                    vec3s direction, struct glance *glance)
 {
     struct tl_ray_packet bundle = {.to_m = INFINITY, .coherent = true};
@@ -253,7 +253,7 @@ static size_t look(const struct tl_refresh *refresh, const struct lanes *lanes, 
     return (size_t)bundle.count;
 }
 
-/* In motion the new value replaces the old one; at rest it is averaged in. */
+/* Stores the new value: in motion it replaces the old one, at rest it is added to the mean. */
 static void store(const struct tl_refresh *refresh, const struct tl_cluster *cluster, uint32_t lanes_wanted,
                   int region, const struct glance *glance)
 {
@@ -270,7 +270,7 @@ static void store(const struct tl_refresh *refresh, const struct tl_cluster *clu
 }
 
 static size_t trace_region(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                           const struct lanes *lanes, uint32_t lanes_wanted, int region)
+                           const struct cluster_lanes *lanes, uint32_t lanes_wanted, int region)
 {
     int ray_count = refresh->request->params->rays;
     struct glance glance = {0};
@@ -292,7 +292,7 @@ int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster 
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
 {
     bool selected[TL_REGIONS_MAX] = {0}, counts = refresh->whole_rounds || !refresh->request->moved;
-    struct lanes lanes;
+    struct cluster_lanes lanes;
     size_t rays = 0;
     place_members(refresh, cluster, &lanes);
     select_for(refresh, cluster, &lanes, selected);
@@ -311,7 +311,7 @@ size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_clus
 size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
                        int count, uint16_t *values, uint16_t *weights)
 {
-    struct lanes lanes = {.members = (1u << count) - 1};
+    struct cluster_lanes lanes = {.members = (1u << count) - 1};
     const struct tl_cluster cluster = {.members = lanes.members, .values = values, .weights = weights};
     size_t rays = 0;
     for (int i = 0; i < count; i++)

@@ -22,8 +22,8 @@ struct tl_refresh {
  * neighbours. In ray offsets; 1 cm for a figure. */
 #define TL_COVER_OFFSETS 100
 
-/* At rest so many times the rays of a moving frame are traced: its other costs, the G-buffer, its reading and
- * the BVH, are saved, and the frame is still by a third cheaper. */
+/* Factor on the number of rays of a frame at rest. Such a frame saves the G-buffer, its read-back and the
+ * BVH, and still costs a third less than one in motion. */
 #define TL_REST_HASTE 2
 
 /* A cluster in use. */
@@ -38,15 +38,15 @@ struct tl_cluster {
     uint32_t *stamps;  /* [stride]: frame when each region was last traced */
 };
 
-/* Traces the regions that the cluster needs most, and all of them for fresh members: in motion what is seen
- * replaces the values, at rest it is averaged in until every region has had its rounds. Returns the number of
+/* Traces the regions that the cluster needs most, and all regions for new members. In motion the results
+ * replace the values; at rest they are averaged until every region has had its rounds. Returns the number of
  * rays. */
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
-/* At rest: the least rounds of a region. */
+/* The smallest number of rounds that any region has had at rest. */
 int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
-/* Traces all regions from up to TL_CLUSTER places of their own, `normals` on the side that is looked at.
+/* Traces all regions from up to TL_CLUSTER places that are not cached points, `normals` on the visible side.
  * `values` and `weights` are [count][stride]. Returns the number of rays. */
 size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
                        int count, uint16_t *values, uint16_t *weights);

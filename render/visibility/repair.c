@@ -28,7 +28,7 @@ static struct weights make_weights(const struct tl_refresh *refresh)
     return weights;
 }
 
-/* The light on a normal that three points disagree about. */
+/* The range of the irradiance on a normal among the values of three points. */
 TL_INLINE float spread_of(const struct weights *weights, vec3s normal, const uint16_t *const rows[3],
                           size_t stride)
 {
@@ -46,8 +46,8 @@ TL_INLINE float spread_of(const struct weights *weights, vec3s normal, const uin
     return tl_sum_lanes(sums);
 }
 
-/* The share of a sample's value that is interpolated: 0 at a corner, greatest half-way between them, and 1
- * where the sample reads only some of its corners, because the others are known not to fit. */
+/* The interpolated share of a sample's value: 0 at a corner, largest half-way between corners, and 1 if the
+ * sample reads only some of its corners, because the others are covered differently. */
 static float share_unknown(const float weights[TL_TAPS], const float corners[3])
 {
     float square = 0;
@@ -59,7 +59,7 @@ static float share_unknown(const float weights[TL_TAPS], const float corners[3])
     return is_changed ? 1 : 1 - square;
 }
 
-/* Samples of one triangle follow one another, and share what their corners disagree about. */
+/* Samples of one triangle are adjacent and share the difference between its corners, computed once. */
 TL_CLONES static void measure_block(const struct weights *weights, const struct tl_samples *samples,
                                     const struct tl_taps *taps, const uint16_t *values, size_t stride,
                                     size_t first, size_t end, float *doubts)
@@ -86,7 +86,8 @@ static uint32_t bin_of(float doubt)
     return doubt > 0 ? bits >> BIN_SHIFT : 0;
 }
 
-/* The bin in which the `wanted` greatest end, and how many are taken of it; bin 0 holds those in no doubt. */
+/* The bin that the `wanted` largest values reach down to, and how many are taken of it. Bin 0 holds samples
+ * without doubt. */
 static uint32_t find_limit(const float *doubts, size_t count, size_t wanted, size_t *left)
 {
     uint32_t *bins = TL_NEW_ARRAY(uint32_t, BINS), bin = BINS - 1;
@@ -194,7 +195,7 @@ static bool is_mixed(const uint16_t *covered, const struct tl_taps *taps)
     return count == 1 || count == 2;
 }
 
-/* Leaves only the points that are (or are not) covered, as the sample is. */
+/* Keeps only the points that are covered (or not) as the sample is. */
 static void keep_alike(const uint16_t *covered, struct tl_taps *taps, bool wanted)
 {
     float sum = 0;

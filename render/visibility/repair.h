@@ -1,13 +1,13 @@
-/* Repairs what samples read of the visibility at points, in two ways. Part of points.c.
+/* Corrects the visibility that samples interpolate from points, in two ways. Part of points.c.
  *
- * Extra points: the triangles whose corners disagree most cannot be interpolated, so their samples get points
- * of their own. Nearly all of the error sits in one pixel of a hundred, where folds touch and where cloth
- * lies on a body (FRONTIER). In motion these points are traced again every frame; at rest they are averaged,
- * and there may be more of them.
+ * Extra points: interpolation fails in triangles whose corners differ most, so their samples get points of
+ * their own. Nearly all of the error is in one pixel of a hundred, where folds touch and where cloth lies on
+ * a body. In motion these points are traced again every frame; at rest they are averaged, and there may be
+ * more of them.
  *
- * Cover: where cloth begins to lie on a body, a triangle has corners in the open and corners under the cloth.
- * Interpolation would make everything between them half dark. A sample therefore reads only the corners that
- * are covered if it is covered itself, and only the open ones otherwise. */
+ * Cover: at the border of cloth that lies on a body, a triangle has open corners and covered ones.
+ * Interpolation would make everything between them half dark. A covered sample therefore reads only the
+ * covered corners, and an open sample only the open ones. */
 #ifndef TOILE_RENDER_VISIBILITY_REPAIR_H
 #define TOILE_RENDER_VISIBILITY_REPAIR_H
 
@@ -20,16 +20,16 @@ struct tl_repair {
     size_t doubt_capacity;
     float *doubts; /* by sample: how much light its corners disagree about */
     int rounds;    /* in the mean */
-    size_t next;   /* bundle of samples with which the round under way goes on */
+    size_t next;   /* bundle of samples at which the current round continues */
     bool at_rest;  /* chosen when nothing moved */
 };
 
-/* Chooses the `wanted` most doubtful samples, fewer when fewer are in doubt. `taps` are of the triangles'
- * corners. */
+/* Chooses the `wanted` samples with the largest doubt, fewer if fewer have any. `taps` are those of the
+ * triangles' corners. */
 void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh, const struct tl_taps *taps,
                       const uint16_t *values, size_t wanted);
 
-/* Goes on with a round by up to `bundles` of TL_CLUSTER samples, into `values` and `weights`
+/* Continues a round with up to `bundles` of TL_CLUSTER samples, into `values` and `weights`
  * [count][stride]. Returns the number of rays. */
 size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,
                        const struct tl_ray_origins *origins, size_t bundles, uint16_t *values,

@@ -53,7 +53,7 @@ static inline tl_garment sheet_make(const struct sheet_shape *shape, vec3s (*pla
 }
 
 /* Adds a panel's points and triangles, flat in the plane z = 0; points at one place weld. */
-static inline void sheet_add(tl_garment *garment, const tl_panel *panel)
+static inline void sheet_add(tl_garment *garment, const tl_panel_mesh *panel)
 {
     tl_mesh *mesh = &garment->model.mesh;
     size_t first = mesh->vertex_count, count = first + panel->point_count;

@@ -1,13 +1,14 @@
 /* The house rules that a machine can see. Includes point down; a room includes only the rooms that rooms.txt
  * lists for it; there is no circle of files, headers or rooms, be it by includes or by linked symbols; an
- * _internal.h belongs to its room; C++ stays in shims; no file and no folder is too large; ARCHITECTURE.svg
- * is drawn from the code as it is. */
+ * _internal.h belongs to its room; C++ stays in shims; no file and no folder is too large; no two structs
+ * share a name; ARCHITECTURE.svg is drawn from the code as it is. */
 #include "tests/testing.h"
 
 #include "config/file.h"
 #include "config/memory.h"
 #include "tests/hygiene/house.h"
 #include "tests/hygiene/house_drawing.h"
+#include "tests/hygiene/house_structs.h"
 
 #include <string.h>
 
@@ -219,6 +220,50 @@ static void every_line_keeps_the_rules(void **state)
     assert_int_equal(offences, 0);
 }
 
+/* ---- Names ---- */
+
+static void no_two_structs_share_a_name(void **state)
+{
+    (void)state;
+    size_t count, offences = 0;
+    struct house_struct *structs = house_structs_read(&house, TOILE_SOURCE_DIR, &count);
+    for (size_t i = 1; i < count; i++) {
+        if (strcmp(structs[i].name, structs[i - 1].name) != 0)
+            continue;
+        print_error("struct %s: defined in %s and in %s\n", structs[i].name, structs[i - 1].path,
+                    structs[i].path);
+        offences++;
+    }
+    print_message("%zu structs\n", count);
+    assert_true(count > 500); /* the definitions were found */
+    assert_int_equal(offences, 0);
+    house_structs_release(&structs, count);
+}
+
+static void definitions_of_structs_are_found(void **state)
+{
+    (void)state;
+    static const char *const definitions[] = {
+        "struct tl_a {\n    int x;\n};", "typedef struct tl_a {", "int x;\nstruct tl_a\n{",
+        "(struct b){0}; static const struct { int x; } c; struct tl_a {"};
+    static const char *const others[] = {"struct tl_a;",
+                                         "struct tl_a *make(void)\n{",
+                                         "(struct tl_a){0}",
+                                         "struct {",
+                                         "construct a {",
+                                         "structure a {",
+                                         ""};
+    char name[8];
+    for (size_t i = 0; i < TL_COUNT(definitions); i++) {
+        const char *rest = house_next_struct(definitions[i], name, sizeof name);
+        assert_non_null(rest);
+        assert_string_equal(name, "tl_a");
+        assert_null(house_next_struct(rest, name, sizeof name));
+    }
+    for (size_t i = 0; i < TL_COUNT(others); i++)
+        assert_null(house_next_struct(others[i], name, sizeof name));
+}
+
 /* ---- The drawing ---- */
 
 static void the_drawing_is_of_this_code(void **state)
@@ -340,6 +385,7 @@ int main(void)
         cmocka_unit_test(the_rules_tell_good_from_bad),     cmocka_unit_test(circles_are_found),
         cmocka_unit_test(every_line_keeps_the_rules),       cmocka_unit_test(every_arrow_is_in_the_table),
         cmocka_unit_test(every_entry_of_the_table_is_used), cmocka_unit_test(nothing_goes_round_in_circles),
+        cmocka_unit_test(definitions_of_structs_are_found), cmocka_unit_test(no_two_structs_share_a_name),
         cmocka_unit_test(the_drawing_is_of_this_code),
     };
     return cmocka_run_group_tests(tests, read_all, release_all);

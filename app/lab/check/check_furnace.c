@@ -55,7 +55,7 @@ void tl_measure_furnace(const struct tl_checked *checked, struct tl_finding *fin
         return;
     const tl_image *image = checked->white_image;
     struct albedo *albedos =
-        find_albedos(tl_renderer_look_inside(checked->white), image->width, image->height);
+        find_albedos(tl_renderer_frame_resources(checked->white), image->width, image->height);
     for (int i = 0; i < image->width * image->height; i++)
         for (int c = 0; albedos[i].is_known && c < 3; c++) {
             double off = fabs((double)tl_image_floats(image)[4 * i + c] - (double)albedos[i].colour[c]);

@@ -17,10 +17,10 @@ static vec3s spiral(int i)
     return (vec3s){{(float)(radius * cos(golden * i)), (float)y, (float)(radius * sin(golden * i))}};
 }
 
-/* Both must have been made by this frame, or hold from one before it. */
+/* Whether a resource is valid: made in this frame, or kept from an earlier one. */
 static bool has(const struct tl_checked *checked, enum tl_resource resource)
 {
-    return tl_renderer_look_inside(checked->renderer)->valid & TL_BIT(resource);
+    return tl_renderer_frame_resources(checked->renderer)->valid & TL_BIT(resource);
 }
 
 struct power {
@@ -104,20 +104,20 @@ static bool is_time(const struct tl_checked *checked)
 static bool has_lights(const struct tl_checked *checked)
 {
     return is_time(checked) && has(checked, TL_MADE_LIGHTS) &&
-           tl_renderer_look_inside(checked->renderer)->lights->gain.made;
+           tl_renderer_frame_resources(checked->renderer)->lights->gain.made;
 }
 
 static bool has_slices(const struct tl_checked *checked)
 {
     return is_time(checked) && has(checked, TL_MADE_SLICES) &&
-           tl_renderer_look_inside(checked->renderer)->slices.slices.made;
+           tl_renderer_frame_resources(checked->renderer)->slices.slices.made;
 }
 
 void tl_measure_environment(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (!is_time(checked))
         return;
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     struct power got = power_of_cube(&inside->cube);
     for (int i = 0; i < inside->suns.count; i++)
         add_power(&got, inside->suns.items[i].power);
@@ -129,7 +129,7 @@ void tl_measure_regions(const struct tl_checked *checked, struct tl_finding *fin
 {
     if (!is_time(checked))
         return;
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     struct power got = {{0}}, expected = power_of_cube(&inside->cube);
     for (int i = 0; i < inside->regions.count; i++)
         add_power(&got, inside->regions.items[i].power);
@@ -260,9 +260,10 @@ static vec3s fetch_exact(const struct tl_resources *inside, vec3s direction, int
 void tl_measure_exact(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (is_time(checked) && has(checked, TL_MADE_LOBES) &&
-        tl_renderer_look_inside(checked->renderer)->exact.lobes->made)
-        add_estimates(tl_renderer_look_inside(checked->renderer),
-                      tl_renderer_look_inside(checked->renderer)->exact.lobes->made, fetch_exact, finding);
+        tl_renderer_frame_resources(checked->renderer)->exact.lobes->made)
+        add_estimates(tl_renderer_frame_resources(checked->renderer),
+                      tl_renderer_frame_resources(checked->renderer)->exact.lobes->made, fetch_exact,
+                      finding);
 }
 
 /* The sum that every sample makes when it sees all regions (light/region_lights.h). */
@@ -297,7 +298,7 @@ static vec3s sum_slices(const struct tl_resources *inside, vec3s direction, int 
 
 void tl_measure_sum(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     if (has_lights(checked))
         add_estimates(inside, inside->lights->gain.made, sum_lights, finding);
     if (has_slices(checked))
@@ -324,7 +325,7 @@ void tl_measure_slices(const struct tl_checked *checked, struct tl_finding *find
 {
     if (!has_slices(checked))
         return;
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     struct power *light = gather_regions(inside, (double)tl_exponent(0));
     for (int i = 0; i < inside->regions.count; i++) {
         vec3s got = tl_slices_fetch(&inside->slices.slices, i, inside->regions.items[i].direction, only(0));
@@ -335,8 +336,8 @@ void tl_measure_slices(const struct tl_checked *checked, struct tl_finding *find
     free(light);
 }
 
-/* All PEMs of one level, added up; and the level of the undivided cube, which must be the same: filters are
- * linear. */
+/* Compares the sum of all PEMs at one level with that level of the undivided cube. They are equal, as filters
+ * are linear. */
 static void add_pem_level(const struct tl_resources *inside, const struct tl_chain *whole, int level,
                           struct tl_finding *finding)
 {
@@ -362,9 +363,9 @@ static void add_pem_level(const struct tl_resources *inside, const struct tl_cha
 void tl_measure_pems(const struct tl_checked *checked, struct tl_finding *finding)
 {
     if (!is_time(checked) || !has(checked, TL_MADE_PEMS) ||
-        tl_renderer_look_inside(checked->renderer)->pems.count == 0)
+        tl_renderer_frame_resources(checked->renderer)->pems.count == 0)
         return;
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter);
     if (whole.level_count >
         1) /* the first level is cut, not filtered, and takes four times as long to read */

@@ -26,7 +26,7 @@ struct oracle {
 };
 
 /* Camera rays through layers of open cloth. */
-struct ray_batch {
+struct checked_rays {
     int count;
     struct tl_ray_differential rays[TL_SHADING_POINTS];
     int pixels[TL_SHADING_POINTS]; /* index into the pixels of struct oracle */
@@ -34,18 +34,19 @@ struct ray_batch {
 };
 
 /* The hits of a ray batch. The batch then holds the rays that continue behind them. */
-struct hits {
+struct checked_hits {
     struct tl_shading_points points;
     int pixels[TL_SHADING_POINTS];
     float shares[TL_SHADING_POINTS];
     vec3s lamplight[TL_SHADING_POINTS];
 };
 
-static void intersect(const struct oracle *oracle, bool last, struct ray_batch *batch, struct hits *hits)
+static void intersect(const struct oracle *oracle, bool last, struct checked_rays *batch,
+                      struct checked_hits *hits)
 {
     int through = 0;
     size_t rays = 0;
-    *hits = (struct hits){0};
+    *hits = (struct checked_hits){0};
     for (int i = 0; i < batch->count; i++) {
         struct tl_shading_point point = tl_shading_point_find(&oracle->scene, &batch->rays[i]);
         if (!(point.cover > 0))
@@ -66,7 +67,8 @@ static void intersect(const struct oracle *oracle, bool last, struct ray_batch *
 }
 
 /* Adds one replicate of the light of the hits. */
-static void accumulate_light(struct oracle *oracle, const struct hits *hits, uint64_t key, int replicate)
+static void accumulate_light(struct oracle *oracle, const struct checked_hits *hits, uint64_t key,
+                             int replicate)
 {
     struct tl_sky_sample sky[STRATA];
     uint64_t turn = (uint64_t)replicate + 1;
@@ -87,10 +89,10 @@ static void accumulate_light(struct oracle *oracle, const struct hits *hits, uin
                 (double)(hits->shares[i] * (light[c][i] + hits->lamplight[i].raw[c])) / samples;
 }
 
-static void trace_layers(struct oracle *oracle, struct ray_batch *batch, uint64_t key)
+static void trace_layers(struct oracle *oracle, struct checked_rays *batch, uint64_t key)
 {
     for (int behind = 0; behind <= TL_TRANSPARENCY_LAYERS && batch->count > 0; behind++) {
-        struct hits hits;
+        struct checked_hits hits;
         intersect(oracle, behind == TL_TRANSPARENCY_LAYERS, batch, &hits);
         for (int replicate = 0; hits.points.count > 0 && replicate < REPLICATES; replicate++)
             accumulate_light(oracle, &hits, key * (TL_TRANSPARENCY_LAYERS + 1) + (uint64_t)behind, replicate);
@@ -105,7 +107,7 @@ static void trace_pixels(struct oracle *oracle)
 #pragma omp parallel for schedule(dynamic)
     for (int group = 0; group < groups; group++)
         for (int sample = 0; sample < samples; sample++) {
-            struct ray_batch batch = {0};
+            struct checked_rays batch = {0};
             for (int i = group * TL_SHADING_POINTS; i < oracle->count && batch.count < TL_SHADING_POINTS;
                  i++) {
                 int x = (int)(oracle->pixels[i] % (size_t)oracle->width);
@@ -229,7 +231,7 @@ static bool is_comparable(const struct tl_render_settings *settings)
 static void compare_with_reference(struct oracle *oracle, struct tl_finding *finding)
 {
     const struct tl_checked *checked = oracle->checked;
-    const struct tl_ground *ground = tl_ground_drawn(tl_renderer_look_inside(checked->renderer));
+    const struct tl_ground *ground = tl_ground_drawn(tl_renderer_frame_resources(checked->renderer));
     tl_error error = {0};
     const struct tl_reference_request request =
         tl_frame_reference_request(checked->frame, checked->settings, ground);

@@ -20,7 +20,7 @@ struct auxiliary {
     tl_environment light;
 };
 
-struct run {
+struct check_run {
     struct tl_headless *headless;
     const struct tl_check_params *params;
     struct tl_check_outcome *outcome;
@@ -37,19 +37,19 @@ struct run {
     int steps; /* all that progress counts */
 };
 
-static bool is_swung(const struct run *run, int number)
+static bool is_swung(const struct check_run *run, int number)
 {
     int frames = run->params->frames;
     return run->motion.pulls && !run->params->still && number > frames / 10 && number <= frames * 2 / 3;
 }
 
 /* The settings that frame `number` is simulated and drawn with. */
-static struct tl_settings settings_of(const struct run *run, int number)
+static struct tl_settings settings_of(const struct check_run *run, int number)
 {
     return tl_quality_apply(&run->levels[number], &run->headless->settings);
 }
 
-static bool advance(struct run *run, int number, tl_error *error)
+static bool advance(struct check_run *run, int number, tl_error *error)
 {
     tl_session *session = run->headless->session;
     const struct tl_settings settings = settings_of(run, number);
@@ -62,14 +62,14 @@ static bool advance(struct run *run, int number, tl_error *error)
     return tl_session_advance(session, error);
 }
 
-static tl_frame frame_of(const struct run *run, int number)
+static tl_frame frame_of(const struct check_run *run, int number)
 {
     tl_frame frame = tl_session_frame(run->headless->session);
     frame.camera = tl_motion_camera(&frame.camera, number, run->headless->settings.cloth.frame_rate);
     return frame;
 }
 
-static bool draw_with(tl_renderer **renderer, const struct run *run, const tl_frame *frame,
+static bool draw_with(tl_renderer **renderer, const struct check_run *run, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_image *image, tl_error *error)
 {
     if (!*renderer)
@@ -102,7 +102,7 @@ static void show_samples(struct tl_image_params *image)
     image->scale = 1;
 }
 
-static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
+static bool draw_white(struct check_run *run, const tl_frame *frame, tl_image images[IMAGES],
                        struct tl_checked *checked, tl_error *error)
 {
     struct auxiliary *auxiliary = &run->auxiliary;
@@ -127,8 +127,8 @@ static bool draw_white(struct run *run, const tl_frame *frame, tl_image images[I
 }
 
 /* Draws the frame that is checked, and reports its time to the governor. */
-static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_render_settings *settings,
-                       tl_image *image, tl_error *error)
+static bool draw_frame(struct check_run *run, const tl_frame *frame,
+                       const struct tl_render_settings *settings, tl_image *image, tl_error *error)
 {
     struct tl_stopwatch watch = tl_stopwatch_start();
     if (!tl_renderer_draw(run->headless->renderer, frame, settings, error))
@@ -141,7 +141,7 @@ static bool draw_frame(struct run *run, const tl_frame *frame, const struct tl_r
 }
 
 /* Draws all images that the frame's invariants need. */
-static bool prepare(struct run *run, const tl_frame *frame, tl_image images[IMAGES],
+static bool prepare(struct check_run *run, const tl_frame *frame, tl_image images[IMAGES],
                     struct tl_checked *checked, tl_error *error)
 {
     struct auxiliary *auxiliary = &run->auxiliary;
@@ -170,7 +170,7 @@ static bool is_finite(const tl_frame *frame)
     return true;
 }
 
-static bool note(struct run *run, const struct tl_checked *checked, tl_error *error)
+static bool note(struct check_run *run, const struct tl_checked *checked, tl_error *error)
 {
     struct tl_finding found;
     struct tl_check_outcome *outcome = run->outcome;
@@ -188,7 +188,7 @@ static bool note(struct run *run, const struct tl_checked *checked, tl_error *er
 
 /* Checks frame `number`, the session's current one. A frame with non-finite positions is not drawn, but its
  * geometry is checked. */
-static bool check_frame(struct run *run, int number, tl_error *error)
+static bool check_frame(struct check_run *run, int number, tl_error *error)
 {
     tl_image images[IMAGES] = {0};
     tl_frame frame = frame_of(run, number);
@@ -217,19 +217,19 @@ static bool check_frame(struct run *run, int number, tl_error *error)
     return done;
 }
 
-static bool report_progress(struct run *run, int step, tl_error *error)
+static bool report_progress(struct check_run *run, int step, tl_error *error)
 {
     tl_progress_update(&run->progress, step, run->steps);
     return !tl_interrupted() ||
            tl_fail(error, TL_INTERRUPTED, "check: stopped at frame %d of %d", step, run->steps);
 }
 
-static void begin(struct run *run)
+static void begin(struct check_run *run)
 {
     tl_motion_begin(&run->motion, run->headless->session);
 }
 
-static void choose(struct run *run, int number)
+static void choose(struct check_run *run, int number)
 {
     if (!run->governor)
         return;
@@ -241,7 +241,7 @@ static void choose(struct run *run, int number)
     run->chosen_ms = tl_stopwatch_read(&watch).wall_ms;
 }
 
-static bool move_on(struct run *run, int number, tl_error *error)
+static bool move_on(struct check_run *run, int number, tl_error *error)
 {
     struct tl_stopwatch watch = tl_stopwatch_start();
     bool moved = number == 0 || advance(run, number, error);
@@ -249,7 +249,7 @@ static bool move_on(struct run *run, int number, tl_error *error)
     return moved;
 }
 
-static bool play(struct run *run, tl_error *error)
+static bool play(struct check_run *run, tl_error *error)
 {
     bool done = true;
     begin(run);
@@ -264,7 +264,7 @@ static bool play(struct run *run, tl_error *error)
 }
 
 /* Plays the first frames once more from the start, with a new renderer. */
-static bool play_again(struct run *run, int count, tl_error *error)
+static bool play_again(struct check_run *run, int count, tl_error *error)
 {
     if (!tl_session_apply(run->headless->session, &run->headless->settings, error) ||
         !tl_session_reset(run->headless->session, error))
@@ -299,12 +299,12 @@ static bool play_again(struct run *run, int count, tl_error *error)
     return done;
 }
 
-static uint64_t hash_of(const struct run *run)
+static uint64_t hash_of(const struct check_run *run)
 {
     return tl_hash(TL_HASH_START, run->hashes, (size_t)run->played * sizeof run->hashes[0]);
 }
 
-static void release(struct run *run)
+static void release(struct check_run *run)
 {
     tl_renderer_destroy(&run->auxiliary.white);
     tl_renderer_destroy(&run->auxiliary.white_shadowed);
@@ -321,15 +321,15 @@ bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *p
                    struct tl_check_outcome *out, tl_error *error)
 {
     *out = (struct tl_check_outcome){.broken = -1};
-    struct run run = {.headless = headless,
-                      .params = params,
-                      .outcome = out,
-                      .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
-                      .places = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
-                      .governor =
-                          params->budget_ms > 0 ? tl_quality_governor_create(params->budget_ms) : NULL,
-                      .levels = TL_NEW_ARRAY(struct tl_quality, (size_t)params->frames),
-                      .progress = tl_progress_begin("checking")};
+    struct check_run run = {.headless = headless,
+                            .params = params,
+                            .outcome = out,
+                            .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                            .places = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                            .governor =
+                                params->budget_ms > 0 ? tl_quality_governor_create(params->budget_ms) : NULL,
+                            .levels = TL_NEW_ARRAY(struct tl_quality, (size_t)params->frames),
+                            .progress = tl_progress_begin("checking")};
     int again = params->frames < 20 ? (params->frames + 1) / 2 : params->frames / 10;
     run.steps = params->frames + again;
     run.watch = tl_cloth_monitor_begin(headless->session, &headless->settings);

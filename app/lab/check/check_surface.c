@@ -162,7 +162,7 @@ static uint32_t *join_vertices(const tl_surface *surface, bool with_uv)
 }
 
 /* Edges of a triangle from its corner `from`, to the two that follow. */
-struct corner {
+struct face_corner {
     uint32_t vertex;
     struct vector first, second;
     double area;                /* twice */
@@ -170,14 +170,14 @@ struct corner {
     double u[2], v[2], uv_area; /* along the edges; twice, signed */
 };
 
-static struct corner corner_of(const tl_surface *surface, size_t triangle, int from)
+static struct face_corner corner_of(const tl_surface *surface, size_t triangle, int from)
 {
     const uint32_t *indices = &surface->indices[3 * triangle];
     const uint32_t at[3] = {indices[from], indices[(from + 1) % 3], indices[(from + 2) % 3]};
     struct vector origin = vector_of(surface->positions[at[0]]);
-    struct corner corner = {.vertex = at[0],
-                            .first = add_scaled(vector_of(surface->positions[at[1]]), -1, origin),
-                            .second = add_scaled(vector_of(surface->positions[at[2]]), -1, origin)};
+    struct face_corner corner = {.vertex = at[0],
+                                 .first = add_scaled(vector_of(surface->positions[at[1]]), -1, origin),
+                                 .second = add_scaled(vector_of(surface->positions[at[2]]), -1, origin)};
     struct vector normal = cross(corner.first, corner.second);
     corner.area = length(normal);
     if (corner.area > 0)
@@ -207,7 +207,7 @@ static struct fan *gather_fans(const tl_surface *surface, const uint32_t *group)
 {
     struct fan *fans = TL_NEW_ARRAY(struct fan, surface->vertex_count);
     for (size_t i = 0; i < surface->index_count; i++) {
-        struct corner corner = corner_of(surface, i / 3, (int)(i % 3));
+        struct face_corner corner = corner_of(surface, i / 3, (int)(i % 3));
         if (!(corner.area > NO_AREA))
             continue;
         double angle = atan2(corner.area, dot(corner.first, corner.second));
@@ -245,7 +245,7 @@ enum { UNDEFINED, DISAGREES, AGREES };
 /* MikkTSpace's direction of u in the face, sign(A) (t31 d1 - t21 d2), against the tangent: it is the mean of
  * such directions in the normal's plane, all of one handedness. v runs down, so that w is the opposite of the
  * UVs' own sign. */
-static int compare_face(const tl_surface *surface, const struct corner *corner, size_t vertex)
+static int compare_face(const tl_surface *surface, const struct face_corner *corner, size_t vertex)
 {
     const double flat = 1e-37, seen_edge_on = 1e-3;
     if (!(fabs(corner->uv_area) > flat) || !(corner->area > NO_AREA))
@@ -286,7 +286,7 @@ static int compare_faces(const tl_surface *surface, const struct corner_lists *l
 {
     int result = UNDEFINED;
     for (uint32_t i = lists->first[group]; i < lists->first[group + 1] && result != AGREES; i++) {
-        struct corner corner = corner_of(surface, lists->items[i] / 3, (int)(lists->items[i] % 3));
+        struct face_corner corner = corner_of(surface, lists->items[i] / 3, (int)(lists->items[i] % 3));
         int one = compare_face(surface, &corner, vertex);
         result = one > result ? one : result;
     }

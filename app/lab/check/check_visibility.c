@@ -41,7 +41,7 @@ static double depth_deviation(const float *texel)
 
 void tl_measure_moments(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     if (!has_facts(checked, TL_BIT(TL_SCENE_MAPS)))
         return;
     for (int i = 0; i < inside->regions.count; i++) {
@@ -92,7 +92,7 @@ void tl_measure_visibility(const struct tl_checked *checked, struct tl_finding *
 {
     if (!has_points(checked))
         return;
-    const struct tl_resources *inside = tl_renderer_look_inside(checked->renderer);
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     const struct tl_taps *taps = tl_points_taps(inside->points);
     size_t points = tl_points_report(inside->points).points;
     for (size_t i = 0; i < inside->samples.count; i++)
@@ -246,10 +246,11 @@ void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *findi
     if (!checked->is_sampled || !has_points(checked))
         return;
     struct witness *witness = TL_NEW(struct witness);
-    witness->inside = tl_renderer_look_inside(checked->renderer);
+    witness->inside = tl_renderer_frame_resources(checked->renderer);
     witness->trace = tl_trace_create(&error);
-    witness->values = tl_points_values(tl_renderer_look_inside(checked->renderer)->points, &witness->stride);
-    witness->taps = tl_points_taps(tl_renderer_look_inside(checked->renderer)->points);
+    witness->values =
+        tl_points_values(tl_renderer_frame_resources(checked->renderer)->points, &witness->stride);
+    witness->taps = tl_points_taps(tl_renderer_frame_resources(checked->renderer)->points);
     if (witness->trace &&
         tl_trace_update(witness->trace, checked->frame->surfaces, checked->frame->surface_count, &error)) {
         tally_answers(witness, checked->number);

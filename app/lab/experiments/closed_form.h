@@ -26,7 +26,7 @@ struct tl_tube {
 double tl_tube_row_height(const struct tl_tube *tube, int row);
 double tl_tube_width(const struct tl_tube *tube); /* of a cell */
 
-/* How far vertices of row 0..row_count sink; `out` has row_count + 1. */
+/* Displacement downwards of the vertices of rows 0..row_count, metres; `out` has row_count + 1. */
 void tl_tube_sink(const struct tl_tube *tube, const struct tl_cloth_fabric *fabric, double gravity,
                   double *out);
 

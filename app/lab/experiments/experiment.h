@@ -46,7 +46,7 @@ struct tl_technique {
     bool once;        /* pictures, page: under the first appearance only */
 };
 
-/* How the garment and its light look. */
+/* An appearance of the garment and its light. */
 struct tl_experiment_appearance {
     const char *name, *title;
     const char *assignments[TL_EXPERIMENT_ASSIGNMENTS]; /* over the experiment's; NULL ends them */

@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-static bool step(struct tl_picture *picture, enum tl_output output)
+static bool step(struct tl_experiment_picture *picture, enum tl_output output)
 {
     const struct tl_experiment *experiment = picture->experiment;
     const struct tl_experiment_appearance *end = experiment->appearances + experiment->appearance_count;
@@ -17,7 +17,7 @@ static bool step(struct tl_picture *picture, enum tl_output output)
     return picture->technique != NULL;
 }
 
-bool tl_picture_next(struct tl_picture *picture, enum tl_output output)
+bool tl_picture_next(struct tl_experiment_picture *picture, enum tl_output output)
 {
     while (step(picture, output))
         if (!picture->technique->once || picture->appearance == picture->experiment->appearances)
@@ -27,14 +27,14 @@ bool tl_picture_next(struct tl_picture *picture, enum tl_output output)
 
 size_t tl_picture_count(const struct tl_experiment *experiment, enum tl_output output)
 {
-    struct tl_picture picture = {.experiment = experiment};
+    struct tl_experiment_picture picture = {.experiment = experiment};
     size_t count = 0;
     while (tl_picture_next(&picture, output))
         count++;
     return count;
 }
 
-char *tl_picture_name(const struct tl_picture *picture, enum tl_output output)
+char *tl_picture_name(const struct tl_experiment_picture *picture, enum tl_output output)
 {
     const char *name = picture->technique->names[output];
     return picture->appearance ? tl_format("%s, %s", name, picture->appearance->title) : tl_copy_string(name);
@@ -49,7 +49,7 @@ static size_t append(const char **all, size_t count, const char *const *list, si
 
 #define OWN 7 /* assignments that depend on the object, the size and the preset */
 
-bool tl_picture_settings(const struct tl_picture *picture, enum tl_picture_object object, int side,
+bool tl_picture_settings(const struct tl_experiment_picture *picture, enum tl_picture_object object, int side,
                          bool reference, struct tl_settings *out, tl_error *error)
 {
     const struct tl_experiment *experiment = picture->experiment;

@@ -8,7 +8,7 @@
 /* A solid, and a sheet draped over a ball. */
 enum tl_picture_object { TL_PICTURE_SOLID, TL_PICTURE_SHEET, TL_PICTURE_OBJECTS };
 
-struct tl_picture {
+struct tl_experiment_picture {
     const struct tl_experiment *experiment;
     const struct tl_experiment_appearance *appearance; /* NULL: the experiment has none */
     const struct tl_technique *technique;
@@ -16,16 +16,16 @@ struct tl_picture {
 
 /* Steps to the experiment's next picture, appearance by appearance; from {experiment} to the first one. False
  * past the last one. */
-bool tl_picture_next(struct tl_picture *picture, enum tl_output output);
+bool tl_picture_next(struct tl_experiment_picture *picture, enum tl_output output);
 size_t tl_picture_count(const struct tl_experiment *experiment, enum tl_output output);
 
 /* "Gouraud, edges of 4 cm": technique and appearance. New string. */
-char *tl_picture_name(const struct tl_picture *picture, enum tl_output output);
+char *tl_picture_name(const struct tl_experiment_picture *picture, enum tl_output output);
 
 /* The settings that draw the picture as a square of `side` pixels; with `reference` those of its exact
  * evaluation. Settings are read from the scene's file for every picture, because a preset or fabric that an
  * assignment names is a layer below the other assignments. */
-bool tl_picture_settings(const struct tl_picture *picture, enum tl_picture_object object, int side,
+bool tl_picture_settings(const struct tl_experiment_picture *picture, enum tl_picture_object object, int side,
                          bool reference, struct tl_settings *out, tl_error *error);
 
 #endif

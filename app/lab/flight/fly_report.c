@@ -19,20 +19,21 @@ static struct tl_plot_options time_options(const struct tl_flight *flight)
 }
 
 /* One value of every frame over time, on one or more lines. */
-struct lines {
+struct flight_lines {
     struct tl_plot_point *points;
     size_t count;
     struct tl_plot_series series[TL_PLOT_STYLES];
     size_t series_count;
 };
 
-static struct lines make_lines(const struct tl_flight *flight)
+static struct flight_lines make_lines(const struct tl_flight *flight)
 {
-    return (struct lines){.points =
-                              TL_NEW_ARRAY(struct tl_plot_point, TL_PLOT_STYLES * (size_t)flight->count)};
+    return (struct flight_lines){
+        .points = TL_NEW_ARRAY(struct tl_plot_point, TL_PLOT_STYLES * (size_t)flight->count)};
 }
 
-static struct tl_plot_point *add_line(struct lines *lines, const struct tl_flight *flight, const char *name)
+static struct tl_plot_point *add_line(struct flight_lines *lines, const struct tl_flight *flight,
+                                      const char *name)
 {
     struct tl_plot_point *points = &lines->points[lines->count];
     for (int i = 0; i < flight->count; i++)
@@ -43,8 +44,8 @@ static struct tl_plot_point *add_line(struct lines *lines, const struct tl_fligh
     return points;
 }
 
-static void print_lines(struct lines *lines, const char *y_label, const struct tl_plot_options *options,
-                        const char *caption, FILE *out)
+static void print_lines(struct flight_lines *lines, const char *y_label,
+                        const struct tl_plot_options *options, const char *caption, FILE *out)
 {
     tl_report_plot_with(out,
                         &(struct tl_plot){.x_label = "seconds of the flight",
@@ -140,7 +141,7 @@ static void print_strip(const struct tl_flight_account *account, FILE *out)
     const struct tl_flight *flight = account->flight;
     double highest_ms = highest_shown(account), first_ms = flight->frames[0].total_ms;
     char name[40], caption[240];
-    struct lines lines = make_lines(flight);
+    struct flight_lines lines = make_lines(flight);
     struct tl_plot_point *frame = add_line(&lines, flight, "frame");
     struct tl_plot_point *cloth = add_line(&lines, flight, "cloth");
     for (int i = 0; i < flight->count; i++) {
@@ -223,7 +224,7 @@ static void print_stack(const struct tl_flight_account *account, FILE *out)
     double highest_ms = highest_shown(account);
     struct ranked ranked[TL_JOBS_MAX] = {{0}};
     int count = rank_jobs(flight, ranked), shown = count < JOBS_SHOWN ? count : JOBS_SHOWN;
-    struct lines lines = make_lines(flight);
+    struct flight_lines lines = make_lines(flight);
     struct tl_plot_point *layers[TL_PLOT_STYLES];
     layers[0] = add_line(&lines, flight, "cloth");
     for (int k = 0; k < shown; k++)
@@ -280,7 +281,7 @@ static int highest_level(const struct tl_flight *flight, int control)
 static void print_levels(const struct tl_flight *flight, FILE *out)
 {
     const double lane_height = 46, used = 0.72; /* of a lane, for its levels */
-    struct lines lines = make_lines(flight);
+    struct flight_lines lines = make_lines(flight);
     struct tl_plot_guide lanes[TL_CONTROL_COUNT];
     char names[TL_CONTROL_COUNT][40];
     size_t count = 0;
@@ -413,7 +414,7 @@ static void print_oracle(const struct tl_flight_account *account, FILE *out)
     char text[600], garment[200] = "None of them shows the garment. ";
     if (!figures->oracle_frames)
         return;
-    struct lines lines = make_lines(flight);
+    struct flight_lines lines = make_lines(flight);
     for (size_t k = 0; k < TL_COUNT(oracle_lines); k++) {
         struct tl_plot_point *points = add_line(&lines, flight, oracle_lines[k].name);
         int count = 0;

@@ -23,7 +23,7 @@
 #define MARGIN       4
 
 /* One drawn image of an object. */
-struct shot {
+struct gallery_shot {
     tl_image light; /* F32 RGBA, as tl_renderer_read gives it */
     tl_image shown; /* U8 RGB */
     double time_ms;
@@ -35,10 +35,10 @@ struct viewpoint {
     tl_session *session;
     tl_renderer *renderer; /* one each, because a revision is unique within one session only */
     struct tl_settings exact_settings;
-    struct shot exact; /* kept: successive pictures of a section often share it */
+    struct gallery_shot exact; /* kept: successive pictures of a section often share it */
 };
 
-struct drawing {
+struct gallery_drawing {
     tl_gpu *gpu;
     struct viewpoint viewpoints[TL_PICTURE_OBJECTS];
     int side;
@@ -46,7 +46,7 @@ struct drawing {
     size_t total; /* pictures */
 };
 
-static void release_shot(struct shot *shot)
+static void release_shot(struct gallery_shot *shot)
 {
     tl_image_release(&shot->light);
     tl_image_release(&shot->shown);
@@ -81,10 +81,10 @@ static bool draw_frame(struct viewpoint *viewpoint, float nudge, bool still, tl_
 
 /* Draws a first frame, which creates the resources that the settings need, then timed ones, then the picture.
  */
-static bool draw_timed(struct viewpoint *viewpoint, bool timed, struct shot *out, tl_error *error)
+static bool draw_timed(struct viewpoint *viewpoint, bool timed, struct gallery_shot *out, tl_error *error)
 {
     double taken[TIMED_FRAMES];
-    *out = (struct shot){.time_ms = NAN};
+    *out = (struct gallery_shot){.time_ms = NAN};
     for (int i = 0; timed && i <= TIMED_FRAMES; i++) {
         struct tl_stopwatch watch = tl_stopwatch_start();
         if (!draw_frame(viewpoint, (float)(i + 1) * NUDGE_RAD, false, error))
@@ -102,7 +102,8 @@ static bool draw_timed(struct viewpoint *viewpoint, bool timed, struct shot *out
 }
 
 /* |a - b|, exposed like the pictures and then brightened by DIFFERENCE. */
-static tl_image difference_of(const struct shot *tested, const struct shot *exact, float exposure_ev)
+static tl_image difference_of(const struct gallery_shot *tested, const struct gallery_shot *exact,
+                              float exposure_ev)
 {
     tl_image image = tl_image_create(tested->light.width, tested->light.height, 3, TL_IMAGE_U8);
     const float *a = tl_image_floats(&tested->light), *b = tl_image_floats(&exact->light);
@@ -124,8 +125,8 @@ static void paste(tl_image *onto, const tl_image *picture, int x, int y)
                3 * (size_t)picture->width);
 }
 
-static bool frame_picture(struct tl_gallery_entry *entry, const struct drawing *drawing,
-                          const struct shot tested[], tl_error *error)
+static bool frame_picture(struct tl_gallery_entry *entry, const struct gallery_drawing *drawing,
+                          const struct gallery_shot tested[], tl_error *error)
 {
     int side = drawing->side, top = TL_CANVAS_LETTER + 2 * MARGIN;
     tl_image canvas = tl_canvas_create(2 * side, top + 2 * side, PAPER);
@@ -146,12 +147,12 @@ static bool frame_picture(struct tl_gallery_entry *entry, const struct drawing *
 }
 
 static bool draw_settings(struct viewpoint *viewpoint, const struct tl_settings *settings, bool timed,
-                          struct shot *out, tl_error *error)
+                          struct gallery_shot *out, tl_error *error)
 {
     return set_up(viewpoint, settings, error) && draw_timed(viewpoint, timed, out, error);
 }
 
-static bool draw_exact(const struct drawing *drawing, int object, struct viewpoint *viewpoint,
+static bool draw_exact(const struct gallery_drawing *drawing, int object, struct viewpoint *viewpoint,
                        const struct tl_gallery_entry *entry, tl_error *error)
 {
     struct tl_settings settings;
@@ -164,17 +165,17 @@ static bool draw_exact(const struct drawing *drawing, int object, struct viewpoi
     return draw_settings(viewpoint, &settings, false, &viewpoint->exact, error);
 }
 
-static bool draw_tested(const struct drawing *drawing, int object, struct viewpoint *viewpoint,
-                        const struct tl_gallery_entry *entry, struct shot *out, tl_error *error)
+static bool draw_tested(const struct gallery_drawing *drawing, int object, struct viewpoint *viewpoint,
+                        const struct tl_gallery_entry *entry, struct gallery_shot *out, tl_error *error)
 {
     struct tl_settings settings;
     return tl_picture_settings(&entry->picture, object, drawing->side, false, &settings, error) &&
            draw_settings(viewpoint, &settings, true, out, error);
 }
 
-static bool draw_entry(struct drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
+static bool draw_entry(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
 {
-    struct shot tested[TL_PICTURE_OBJECTS] = {0};
+    struct gallery_shot tested[TL_PICTURE_OBJECTS] = {0};
     bool done = true;
     for (int i = 0; done && i < TL_PICTURE_OBJECTS; i++) {
         struct viewpoint *viewpoint = &drawing->viewpoints[i];
@@ -226,10 +227,10 @@ bool tl_gallery_has(const char *name, tl_error *error)
                    near ? ": did you mean " : " or another row of the technique set", near ? near : "");
 }
 
-static bool draw_section(struct drawing *drawing, const struct tl_experiment *section, bool quick,
+static bool draw_section(struct gallery_drawing *drawing, const struct tl_experiment *section, bool quick,
                          struct tl_gallery *out, tl_error *error)
 {
-    struct tl_picture picture = {.experiment = section};
+    struct tl_experiment_picture picture = {.experiment = section};
     bool done = true;
     for (size_t number = 1; done && !(quick && number > 1) && tl_picture_next(&picture, TL_OUTPUT_PICTURES);
          number++) {
@@ -248,8 +249,8 @@ static bool draw_section(struct drawing *drawing, const struct tl_experiment *se
     return done;
 }
 
-static bool draw_sections(struct drawing *drawing, bool quick, const char *only, struct tl_gallery *out,
-                          tl_error *error)
+static bool draw_sections(struct gallery_drawing *drawing, bool quick, const char *only,
+                          struct tl_gallery *out, tl_error *error)
 {
     const struct tl_experiment *section;
     drawing->total = count_pictures(quick, only);
@@ -264,7 +265,7 @@ static bool draw_sections(struct drawing *drawing, bool quick, const char *only,
 
 bool tl_gallery_draw(bool quick, const char *only, struct tl_gallery *out, tl_error *error)
 {
-    struct drawing drawing = {.side = 240};
+    struct gallery_drawing drawing = {.side = 240};
     *out = (struct tl_gallery){.side = drawing.side};
     drawing.gpu = tl_gpu_create_headless(error);
     bool ready = drawing.gpu != NULL;

@@ -14,7 +14,7 @@
 
 /* One picture, drawn. */
 struct tl_gallery_entry {
-    struct tl_picture picture;
+    struct tl_experiment_picture picture;
     char *setting;                      /* the picture's name */
     double error[TL_PICTURE_OBJECTS];   /* relative RMSE, or mean FLIP */
     double time_ms[TL_PICTURE_OBJECTS]; /* CPU */

@@ -188,7 +188,7 @@ static enum tl_outcome run_frames(tl_cloth *cloth, const struct subject *subject
     return outcome;
 }
 
-/* How far below the true equilibrium a solver comes to rest. */
+/* Distance below the true equilibrium at which a solver comes to rest. */
 static double slack(const tl_cloth *cloth, const struct subject *subject)
 {
     if (subject->params.solver != TL_CLOTH_PREVIEW || subject->tube.columns == 0)

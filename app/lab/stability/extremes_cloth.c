@@ -119,7 +119,7 @@ static void collapse(struct trial *trial)
     }
 }
 
-/* By half, well beyond the strain limit of preview. */
+/* Stretches the cloth by half, well beyond the strain limit of preview. */
 static void stretch(struct trial *trial)
 {
     const tl_mesh *mesh = &trial->garment.model.mesh;
@@ -421,7 +421,7 @@ static double fastest_frame_ms(int solver, double gravity)
     return fastest;
 }
 
-/* So little gravity that every velocity is denormal. */
+/* Gravity so small that every velocity is a denormal number. */
 static enum tl_outcome time_denormals(int solver, tl_error *found)
 {
     double ratio = fastest_frame_ms(solver, 1e-310) / fastest_frame_ms(solver, 9.81);

@@ -22,6 +22,7 @@ struct tl_stability {
 
 /* Counts a cell and adds its row, which has the axis and the outcome. The row is owned by `stability`. */
 cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome);
-/* All cells counted so far. */ int tl_stability_cells(const struct tl_stability *stability);
+/* Number of all cells counted so far. */
+int tl_stability_cells(const struct tl_stability *stability);
 
 #endif

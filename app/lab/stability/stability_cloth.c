@@ -20,12 +20,12 @@ struct single {
     tl_error error;
 };
 
-struct suite {
+struct cloth_suite {
     struct tl_envelope_sweep sweep;
     struct single *singles; /* [tl_cloth_extreme_count][TL_CLOTH_SOLVER_COUNT] */
 };
 
-static bool run_singles(struct suite *suite, bool quick, tl_error *error)
+static bool run_singles(struct cloth_suite *suite, bool quick, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("trying the extremes of cloth");
     size_t count = tl_cloth_extreme_count * TL_CLOTH_SOLVER_COUNT;
@@ -46,7 +46,7 @@ static bool run_singles(struct suite *suite, bool quick, tl_error *error)
            tl_fail(error, TL_INTERRUPTED, "stability: stopped among the extremes of cloth");
 }
 
-static void print_singles(const struct suite *suite)
+static void print_singles(const struct cloth_suite *suite)
 {
     printf("\n%-36s%-12s%s\n", "extreme", "solver", "");
     for (size_t i = 0; i < tl_cloth_extreme_count; i++)
@@ -76,7 +76,7 @@ static cJSON *number_or_null(double number)
     return isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull();
 }
 
-static void add_cells(const struct suite *suite, struct tl_stability *out)
+static void add_cells(const struct cloth_suite *suite, struct tl_stability *out)
 {
     const struct tl_envelope_sweep *sweep = &suite->sweep;
     for (size_t i = 0; i < sweep->count; i++) {
@@ -119,7 +119,7 @@ static bool save_picture(const struct tl_envelope_sweep *sweep, const char *fold
 
 bool tl_stability_cloth(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
-    struct suite suite = {0};
+    struct cloth_suite suite = {0};
     bool done = tl_envelope_sweep_run(arguments->quick, &suite.sweep, error) &&
                 run_singles(&suite, arguments->quick, error);
     if (done && !arguments->json) {

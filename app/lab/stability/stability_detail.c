@@ -12,7 +12,7 @@
 #define SIDE_M      0.01f
 #define SHIFT_SLANT 20 /* 1 / 0.05 of detail_slant */
 
-static const struct extreme {
+static const struct detail_extreme {
     const char *name;
     int side;       /* texels */
     float height_m; /* of its bumps */
@@ -26,7 +26,7 @@ static const struct extreme {
 static const float tilts_deg[] = {0, 60, 89.9f, 90, 120, 180};
 static const int steps[] = {1, 256};
 
-static tl_image make_heights(const struct extreme *extreme)
+static tl_image make_heights(const struct detail_extreme *extreme)
 {
     tl_image heights = tl_image_create(extreme->side, extreme->side, 1, TL_IMAGE_F32);
     for (int i = 0; i < extreme->side * extreme->side; i++) {
@@ -36,17 +36,18 @@ static tl_image make_heights(const struct extreme *extreme)
     return heights;
 }
 
-struct cell {
+struct detail_cell {
     enum tl_outcome outcome;
     double moved_m, bound_m;
 };
 
 /* Limited parallax may move by the height alone. */
-static struct cell judge(const struct extreme *extreme, vec2s from, vec2s to, float lit, double bound_m)
+static struct detail_cell judge(const struct detail_extreme *extreme, vec2s from, vec2s to, float lit,
+                                double bound_m)
 {
-    struct cell cell = {.bound_m = bound_m,
-                        .moved_m = (double)(SIDE_M * hypotf(to.x - from.x, to.y - from.y)),
-                        .outcome = TL_OUTCOME_SILENT};
+    struct detail_cell cell = {.bound_m = bound_m,
+                               .moved_m = (double)(SIDE_M * hypotf(to.x - from.x, to.y - from.y)),
+                               .outcome = TL_OUTCOME_SILENT};
     bool exact = extreme->height_m == 0 && cell.moved_m == 0;
     if (!isfinite(cell.moved_m) || !isfinite(lit))
         cell.outcome = TL_OUTCOME_NAN;
@@ -55,8 +56,8 @@ static struct cell judge(const struct extreme *extreme, vec2s from, vec2s to, fl
     return cell;
 }
 
-static void add(const struct extreme *extreme, const char *way, float tilt_deg, const struct cell *cell,
-                bool prints, struct tl_stability *out)
+static void add(const struct detail_extreme *extreme, const char *way, float tilt_deg,
+                const struct detail_cell *cell, bool prints, struct tl_stability *out)
 {
     cJSON *row = tl_stability_add(out, "detail", cell->outcome);
     cJSON_AddStringToObject(row, "extreme", extreme->name);
@@ -69,8 +70,8 @@ static void add(const struct extreme *extreme, const char *way, float tilt_deg, 
                tl_outcome_names[cell->outcome], cell->moved_m, cell->bound_m);
 }
 
-static void run_view(const struct extreme *extreme, const struct tl_height_field *field, float tilt_deg,
-                     bool prints, struct tl_stability *out)
+static void run_view(const struct detail_extreme *extreme, const struct tl_height_field *field,
+                     float tilt_deg, bool prints, struct tl_stability *out)
 {
     static const char *const relief_names[] = {"relief, 1 step", "relief, 256 steps"};
     const vec2s uv = {{0.37f, 0.61f}};
@@ -79,13 +80,13 @@ static void run_view(const struct extreme *extreme, const struct tl_height_field
     double height = fabs((double)extreme->height_m);
     for (int limited = 0; limited < 2; limited++) {
         vec2s to = tl_field_parallax(field, uv, view, limited);
-        struct cell cell = judge(extreme, uv, to, 1, limited ? height : SHIFT_SLANT * height);
+        struct detail_cell cell = judge(extreme, uv, to, 1, limited ? height : SHIFT_SLANT * height);
         add(extreme, limited ? "parallax_limited" : "parallax", tilt_deg, &cell, prints, out);
     }
     for (size_t s = 0; s < TL_COUNT(steps); s++) {
         struct tl_relief relief = tl_field_relief(field, uv, view, steps[s], 5);
         float lit = tl_field_lit(field, relief.uv, view, steps[s]);
-        struct cell cell = judge(extreme, uv, relief.uv, lit, SHIFT_SLANT * height);
+        struct detail_cell cell = judge(extreme, uv, relief.uv, lit, SHIFT_SLANT * height);
         add(extreme, relief_names[s], tilt_deg, &cell, prints, out);
     }
 }

@@ -19,18 +19,18 @@
 /* The noise of the reference lies below it. */
 #define EXACT_RMSE 0.001
 
-struct cell {
+struct light_cell {
     enum tl_outcome outcome;
     double rel_rmse, bound; /* NaN when there is no image */
     tl_error error;         /* why there is no figure */
 };
 
-struct suite {
+struct light_suite {
     struct tl_settings settings;
     tl_gpu *gpu;
     struct tl_variant_run methods[TL_EXTREME_METHODS], unshadowed, reference;
-    size_t stride;      /* from one drawn extreme to the next */
-    struct cell *cells; /* [tl_extreme_count][TL_EXTREME_METHODS] */
+    size_t stride;            /* from one drawn extreme to the next */
+    struct light_cell *cells; /* [tl_extreme_count][TL_EXTREME_METHODS] */
 };
 
 static const char *const method_names[TL_EXTREME_METHODS] = {
@@ -45,14 +45,14 @@ static const struct tl_technique *find_technique(const struct tl_experiment *exp
     return technique;
 }
 
-static bool prepare(struct suite *suite, const struct tl_arguments *arguments, tl_error *error)
+static bool prepare(struct light_suite *suite, const struct tl_arguments *arguments, tl_error *error)
 {
     const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_BOUNDS, "light");
     if (!tl_headless_settings(arguments, &suite->settings, error))
         return false;
     suite->settings.image.width = suite->settings.image.height = SIDE;
     suite->settings.image.supersample = 1;
-    suite->cells = TL_NEW_ARRAY(struct cell, tl_extreme_count * TL_EXTREME_METHODS);
+    suite->cells = TL_NEW_ARRAY(struct light_cell, tl_extreme_count * TL_EXTREME_METHODS);
     suite->gpu = tl_gpu_create_headless(error);
     if (!suite->gpu || !tl_variant_run_create(&suite->reference, suite->gpu, &experiment->reference,
                                               &suite->settings, error))
@@ -68,7 +68,7 @@ static bool prepare(struct suite *suite, const struct tl_arguments *arguments, t
     return true;
 }
 
-static void release(struct suite *suite)
+static void release(struct light_suite *suite)
 {
     for (int m = 0; m < TL_EXTREME_METHODS; m++)
         tl_variant_run_release(&suite->methods[m]);
@@ -123,10 +123,10 @@ static bool picture(struct tl_variant_run *variant, const struct tl_extreme *ext
            tl_renderer_read(variant->renderer, out, error);
 }
 
-static struct cell judge(const struct tl_extreme *extreme, const tl_image *image, const tl_image *reference,
-                         double bound)
+static struct light_cell judge(const struct tl_extreme *extreme, const tl_image *image,
+                               const tl_image *reference, double bound)
 {
-    struct cell cell = {.outcome = TL_OUTCOME_SILENT, .rel_rmse = NAN, .bound = bound};
+    struct light_cell cell = {.outcome = TL_OUTCOME_SILENT, .rel_rmse = NAN, .bound = bound};
     if (has_nan(image) || has_nan(reference))
         cell.outcome = TL_OUTCOME_NAN;
     else if (extreme->refused)
@@ -141,19 +141,19 @@ static struct cell judge(const struct tl_extreme *extreme, const tl_image *image
 }
 
 /* A refusal counts if it was expected and its message is not empty. */
-static struct cell refuse(const struct tl_extreme *extreme, const tl_error *error)
+static struct light_cell refuse(const struct tl_extreme *extreme, const tl_error *error)
 {
     bool clear =
         extreme->refused && error->message[0] && (error->code == TL_USAGE || error->code == TL_INPUT);
-    struct cell cell = {.outcome = clear ? TL_OUTCOME_REFUSED : TL_OUTCOME_SILENT,
-                        .rel_rmse = NAN,
-                        .bound = NAN,
-                        .error = *error};
+    struct light_cell cell = {.outcome = clear ? TL_OUTCOME_REFUSED : TL_OUTCOME_SILENT,
+                              .rel_rmse = NAN,
+                              .bound = NAN,
+                              .error = *error};
     return cell;
 }
 
 /* The bound of one method; NaN, which nothing keeps, when there is nothing to compare with. */
-static double bound_of(struct suite *suite, const struct tl_extreme *extreme, int method,
+static double bound_of(struct light_suite *suite, const struct tl_extreme *extreme, int method,
                        struct tl_extreme_scene *scene, const tl_image *reference)
 {
     if (extreme->bounds[method] != TL_NO_WORSE)
@@ -167,7 +167,7 @@ static double bound_of(struct suite *suite, const struct tl_extreme *extreme, in
     return bound;
 }
 
-static void run_extreme(struct suite *suite, size_t index)
+static void run_extreme(struct light_suite *suite, size_t index)
 {
     const struct tl_extreme *extreme = &tl_extremes[index];
     struct tl_extreme_scene scene;
@@ -177,7 +177,7 @@ static void run_extreme(struct suite *suite, size_t index)
                 (extreme->refused || picture(&suite->reference, extreme, &scene, &reference, &error));
     for (int m = 0; m < TL_EXTREME_METHODS; m++) {
         tl_image image = {0};
-        struct cell *cell = &suite->cells[index * TL_EXTREME_METHODS + (size_t)m];
+        struct light_cell *cell = &suite->cells[index * TL_EXTREME_METHODS + (size_t)m];
         if (made && picture(&suite->methods[m], extreme, &scene, &image, &error))
             *cell = judge(extreme, &image, extreme->refused ? &image : &reference,
                           extreme->refused ? NAN : bound_of(suite, extreme, m, &scene, &reference));
@@ -189,7 +189,7 @@ static void run_extreme(struct suite *suite, size_t index)
     tl_extreme_scene_release(&scene);
 }
 
-static bool run(struct suite *suite, tl_error *error)
+static bool run(struct light_suite *suite, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("drawing extremes");
     bool done = true;
@@ -204,12 +204,12 @@ static bool run(struct suite *suite, tl_error *error)
     return done;
 }
 
-static void print_table(const struct suite *suite)
+static void print_table(const struct light_suite *suite)
 {
     printf("%-31s %-6s %-8s %9s %8s  %s\n", "extreme", "", "", "rel. RMSE", "bound", "why");
     for (size_t i = 0; i < tl_extreme_count; i += suite->stride)
         for (int m = 0; m < TL_EXTREME_METHODS; m++) {
-            const struct cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
+            const struct light_cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
             printf("%-31s %-6s %-8s", m == 0 ? tl_extremes[i].name : "", method_names[m],
                    tl_outcome_names[cell->outcome]);
             if (isfinite(cell->rel_rmse) && !tl_extremes[i].refused)
@@ -225,11 +225,11 @@ static cJSON *number_or_null(double number)
     return isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull();
 }
 
-static void add_cells(const struct suite *suite, struct tl_stability *out)
+static void add_cells(const struct light_suite *suite, struct tl_stability *out)
 {
     for (size_t i = 0; i < tl_extreme_count; i += suite->stride)
         for (int m = 0; m < TL_EXTREME_METHODS; m++) {
-            const struct cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
+            const struct light_cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
             cJSON *row = tl_stability_add(out, "light", cell->outcome);
             cJSON_AddStringToObject(row, "extreme", tl_extremes[i].name);
             cJSON_AddStringToObject(row, "method", method_names[m]);
@@ -242,7 +242,7 @@ static void add_cells(const struct suite *suite, struct tl_stability *out)
 
 bool tl_stability_light(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
-    struct suite suite = {.stride = arguments->quick ? QUICK_STRIDE : 1};
+    struct light_suite suite = {.stride = arguments->quick ? QUICK_STRIDE : 1};
     struct tl_arguments scene = *arguments;
     tl_topic_default_scene(&scene, "review");
     bool done = prepare(&suite, &scene, error) && run(&suite, error);

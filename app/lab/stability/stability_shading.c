@@ -13,7 +13,7 @@
 
 static const float glossinesses[] = {0, 0.5f, 0.99f, 0.999999f, 1};
 
-static const struct extreme {
+static const struct shading_extreme {
     const char *name;
     vec3s normal, tangent, light, viewer;
 } extremes[] = {
@@ -42,7 +42,7 @@ static double peak_of(const struct tl_brdf *brdf, double a, double b)
     }
 }
 
-static void run_cell(const struct extreme *extreme, int model, const char *name, float glossiness,
+static void run_cell(const struct shading_extreme *extreme, int model, const char *name, float glossiness,
                      bool prints, struct tl_stability *out)
 {
     tl_material material = tl_material_default("extreme");

@@ -49,7 +49,7 @@ struct dress_run {
     tl_error refusal;
 };
 
-struct bench {
+struct cloth_bench {
     struct plan plan;
     struct rate rates[SIDES_MAX][THREADS_MAX][RUN_COUNT]; /* NaN: refused */
     double frames_ms[SIDES_MAX];
@@ -125,7 +125,7 @@ static bool run_baseline(tl_baseline *baseline, int side, double turn_ms, struct
 }
 
 /* Runs all solvers in turn, round after round, so that other load on the machine affects all alike. */
-static bool run_sheet(struct bench *bench, int size, int threads, tl_error *error)
+static bool run_sheet(struct cloth_bench *bench, int size, int threads, tl_error *error)
 {
     int side = bench->plan.sides[size];
     double turn_ms = bench->plan.turn_ms;
@@ -149,7 +149,7 @@ static bool run_sheet(struct bench *bench, int size, int threads, tl_error *erro
     return done;
 }
 
-static void run_frames(struct bench *bench, int size)
+static void run_frames(struct cloth_bench *bench, int size)
 {
     tl_garment sheet = tl_sheet_make(bench->plan.sides[size], TL_SHEET_FREE, false);
     const tl_mesh *mesh = &sheet.model.mesh;
@@ -223,7 +223,7 @@ static void settle_dress(const tl_garment *dress, struct dress_run *run)
     tl_avatar_release(&form);
 }
 
-static bool run_dresses(struct bench *bench, tl_error *error)
+static bool run_dresses(struct cloth_bench *bench, tl_error *error)
 {
     omp_set_num_threads(omp_get_num_procs());
     for (int d = 0; d < bench->plan.dress_count; d++) {
@@ -245,7 +245,7 @@ static bool run_dresses(struct bench *bench, tl_error *error)
 
 /* ---- Results ---- */
 
-static void print_rates(const struct bench *bench)
+static void print_rates(const struct cloth_bench *bench)
 {
     printf(
         "particles x substeps per second of CPU on one core, in millions, and in units of the plain loop in "
@@ -266,7 +266,7 @@ static void print_rates(const struct bench *bench)
         printf("%-10d %8.3f ms\n", bench->plan.sides[i] * bench->plan.sides[i], bench->frames_ms[i]);
 }
 
-static void print_dresses(const struct bench *bench)
+static void print_dresses(const struct cloth_bench *bench)
 {
     printf("\nthe dress comes to rest on the form, from panels:\n%-10s %-12s %8s %8s\n", "particles", "",
            "CPU s", "wall s");
@@ -280,7 +280,7 @@ static void print_dresses(const struct bench *bench)
     }
 }
 
-static void add_runs(const struct bench *bench, int variant, cJSON *object)
+static void add_runs(const struct cloth_bench *bench, int variant, cJSON *object)
 {
     cJSON *runs = cJSON_AddArrayToObject(object, "runs");
     for (int i = 0; i < bench->plan.side_count; i++)
@@ -296,7 +296,7 @@ static void add_runs(const struct bench *bench, int variant, cJSON *object)
         }
 }
 
-static void add_dresses(const struct bench *bench, cJSON *object)
+static void add_dresses(const struct cloth_bench *bench, cJSON *object)
 {
     cJSON *dresses = cJSON_AddArrayToObject(object, "dress");
     for (size_t i = 0; i < bench->dress_count; i++) {
@@ -314,7 +314,7 @@ static void add_dresses(const struct bench *bench, cJSON *object)
 }
 
 /* Each solver's own figure is that of the sheet of 10k particles (the middle one) on one thread. */
-static void print_json(const struct bench *bench)
+static void print_json(const struct cloth_bench *bench)
 {
     cJSON *object = cJSON_CreateObject(), *solvers = cJSON_AddArrayToObject(object, "solvers");
     int middle = bench->plan.side_count / 2;
@@ -338,7 +338,7 @@ static void print_json(const struct bench *bench)
     tl_json_print(object);
 }
 
-static bool run(struct bench *bench, tl_error *error)
+static bool run(struct cloth_bench *bench, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring cloth");
     int runs = bench->plan.side_count * bench->plan.thread_count;
@@ -359,7 +359,7 @@ bool tl_bench_cloth(const struct tl_arguments *arguments, tl_error *error)
     if (arguments->positional_count)
         return tl_fail(error, TL_USAGE, "bench: %s: cloth measures sheets of its own: name no scene",
                        arguments->positionals[0]);
-    struct bench *bench = TL_NEW(struct bench);
+    struct cloth_bench *bench = TL_NEW(struct cloth_bench);
     bench->plan = arguments->quick ? quick_plan : arguments->full ? full_plan : plain_plan;
     bool done = run(bench, error);
     bool dressing = !done && bench->dress_count > 0; /* stopped while dresses settled: the rest is whole */

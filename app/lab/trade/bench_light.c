@@ -18,16 +18,16 @@
 #define COMPARED_MAX 3
 #define REST_MAX     1024 /* frames at rest */
 
-struct schedule {
+struct light_schedule {
     int warm;          /* frames of history before the first measured one; FRONTIER.md measured with 16 */
     int measured;      /* at most FRAMES_MAX */
     int compare_every; /* every so many measured frames one is compared with the reference */
 };
-static const struct schedule full = {16, 12, 4}, quick = {2, 2, 2};
+static const struct light_schedule full = {16, 12, 4}, quick = {2, 2, 2};
 
 #define ROWS_MAX 8
 
-struct row {
+struct light_row {
     const char *name;
     struct tl_variant_run variant;
     double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
@@ -42,13 +42,13 @@ struct rest {
     struct tl_measured_error error;
 };
 
-struct bench {
+struct light_bench {
     struct rest rest; /* of review */
-    struct schedule schedule;
+    struct light_schedule schedule;
     struct tl_headless headless;
     tl_recording *recording;
     struct tl_variant_run reference;
-    struct row rows[ROWS_MAX];
+    struct light_row rows[ROWS_MAX];
     int row_count;
 };
 
@@ -57,7 +57,7 @@ struct row_summary {
     double worst_share; /* of a frame's square error: the most that one pixel holds */
 };
 
-static int find_index(const struct bench *bench, const char *name)
+static int find_index(const struct light_bench *bench, const char *name)
 {
     int i = 0;
     while (strcmp(bench->rows[i].name, name) != 0)
@@ -65,17 +65,17 @@ static int find_index(const struct bench *bench, const char *name)
     return i;
 }
 
-static const struct row *find_row(const struct bench *bench, const char *name)
+static const struct light_row *find_row(const struct light_bench *bench, const char *name)
 {
     return &bench->rows[find_index(bench, name)];
 }
 
-static int compared_count(const struct bench *bench)
+static int compared_count(const struct light_bench *bench)
 {
     return bench->schedule.measured / bench->schedule.compare_every;
 }
 
-static struct row_summary summarise(const struct bench *bench, const struct row *row)
+static struct row_summary summarise(const struct light_bench *bench, const struct light_row *row)
 {
     size_t frames = (size_t)bench->schedule.measured;
     struct row_summary summary = {.cpu_ms = tl_median(row->cpu_ms, frames),
@@ -88,13 +88,13 @@ static struct row_summary summarise(const struct bench *bench, const struct row 
     return summary;
 }
 
-static double coverage(const struct bench *bench)
+static double coverage(const struct light_bench *bench)
 {
     const struct tl_image_params *image = &bench->headless.settings.image;
     return (double)find_row(bench, "paper")->error[0].covered / ((double)image->width * image->height);
 }
 
-static bool prepare(struct bench *bench, const struct tl_arguments *arguments, tl_error *error)
+static bool prepare(struct light_bench *bench, const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_headless *headless = &bench->headless;
     if (!tl_headless_create(headless, arguments, error))
@@ -110,7 +110,7 @@ static bool prepare(struct bench *bench, const struct tl_arguments *arguments, t
     const struct tl_technique *technique = NULL;
     while ((technique = tl_experiment_next(experiment, TL_OUTPUT_TABLE, technique))) {
         assert(bench->row_count < ROWS_MAX);
-        struct row *row = &bench->rows[bench->row_count++];
+        struct light_row *row = &bench->rows[bench->row_count++];
         row->name = technique->table;
         if (!tl_variant_run_create(&row->variant, headless->gpu, &technique->setup, &headless->settings,
                                    error))
@@ -119,7 +119,7 @@ static bool prepare(struct bench *bench, const struct tl_arguments *arguments, t
     return true;
 }
 
-static void release(struct bench *bench)
+static void release(struct light_bench *bench)
 {
     for (int i = 0; i < bench->row_count; i++)
         tl_variant_run_release(&bench->rows[i].variant);
@@ -130,7 +130,7 @@ static void release(struct bench *bench)
 
 /* One frame before the first measured one. A technique without history draws only the last of them, to fill
  * its caches. */
-static bool warm_up(struct bench *bench, int number, tl_error *error)
+static bool warm_up(struct light_bench *bench, int number, tl_error *error)
 {
     struct tl_taken unused;
     tl_frame frame = tl_recording_frame(bench->recording, number);
@@ -143,7 +143,7 @@ static bool warm_up(struct bench *bench, int number, tl_error *error)
     return true;
 }
 
-static bool come_to_rest(struct bench *bench, const tl_frame *frame,
+static bool come_to_rest(struct light_bench *bench, const tl_frame *frame,
                          const struct tl_reference_frame *reference, tl_error *error)
 {
     struct tl_variant_run *variant = &bench->rows[find_index(bench, "review")].variant;
@@ -162,7 +162,7 @@ static bool come_to_rest(struct bench *bench, const tl_frame *frame,
     return tl_variant_run_compare(variant, reference, &rest->error, error);
 }
 
-static bool compare_all(struct bench *bench, const tl_frame *frame, int at, tl_error *error)
+static bool compare_all(struct light_bench *bench, const tl_frame *frame, int at, tl_error *error)
 {
     struct tl_reference_frame reference = {0};
     bool done = tl_reference_frame_draw(&bench->reference, frame, &reference, error);
@@ -175,13 +175,13 @@ static bool compare_all(struct bench *bench, const tl_frame *frame, int at, tl_e
 }
 
 /* Draws one frame by every technique in turn, so that other load on the machine affects all alike. */
-static bool measure(struct bench *bench, int number, tl_error *error)
+static bool measure(struct light_bench *bench, int number, tl_error *error)
 {
     int at = number - bench->schedule.warm, every = bench->schedule.compare_every;
     tl_frame frame = tl_recording_frame(bench->recording, number);
     for (int i = 0; i < bench->row_count; i++) {
         struct tl_taken taken;
-        struct row *row = &bench->rows[i];
+        struct light_row *row = &bench->rows[i];
         if (!tl_variant_run_draw(&row->variant, &frame, &taken, error))
             return false;
         row->cpu_ms[at] = taken.cpu_ms;
@@ -191,7 +191,7 @@ static bool measure(struct bench *bench, int number, tl_error *error)
     return at % every != every - 1 || compare_all(bench, &frame, at / every, error);
 }
 
-static bool run(struct bench *bench, tl_error *error)
+static bool run(struct light_bench *bench, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring light");
     int frames = bench->schedule.warm + bench->schedule.measured;
@@ -206,7 +206,7 @@ static bool run(struct bench *bench, tl_error *error)
     return done;
 }
 
-static void print_table(const struct bench *bench)
+static void print_table(const struct light_bench *bench)
 {
     struct tl_recording_report recording = tl_recording_report(bench->recording);
     const struct tl_image_params *image = &bench->headless.settings.image;
@@ -240,7 +240,7 @@ static void print_table(const struct bench *bench)
            review.flip_mean / paper.flip_mean);
 }
 
-static void print_json(const struct bench *bench)
+static void print_json(const struct light_bench *bench)
 {
     struct tl_recording_report recording = tl_recording_report(bench->recording);
     struct row_summary paper = summarise(bench, find_row(bench, "paper")),
@@ -278,7 +278,7 @@ static void print_json(const struct bench *bench)
 
 bool tl_bench_light(const struct tl_arguments *arguments, tl_error *error)
 {
-    struct bench *bench = TL_NEW(struct bench);
+    struct light_bench *bench = TL_NEW(struct light_bench);
     bench->schedule = arguments->quick ? quick : full;
     bool done = prepare(bench, arguments, error) && run(bench, error);
     if (done && arguments->json)

@@ -16,16 +16,16 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-struct schedule {
+struct shading_schedule {
     int side;   /* pixels */
     int cells;  /* of the mesh's side, two triangles each */
     int rounds; /* times that every variant is drawn */
 };
-static const struct schedule full = {512, 100, 4}, quick = {96, 20, 2};
+static const struct shading_schedule full = {512, 100, 4}, quick = {96, 20, 2};
 
 enum { ROWS_MAX = 40, APPEARANCES = 2 };
 
-struct row {
+struct shading_row {
     const char *name;
     enum tl_reflectance model;
     struct tl_shading_params shading;
@@ -33,8 +33,8 @@ struct row {
     double rel_rmse;        /* against exact evaluation of the same model */
 };
 
-struct bench {
-    struct schedule schedule;
+struct shading_bench {
+    struct shading_schedule schedule;
     tl_image decal, bumps;
     tl_mesh mesh;
     tl_material material;
@@ -42,7 +42,7 @@ struct bench {
     struct tl_shading_bench *trial;
     uint64_t shown; /* surfaces so far */
     const struct tl_experiment *experiment;
-    struct row rows[APPEARANCES][ROWS_MAX];
+    struct shading_row rows[APPEARANCES][ROWS_MAX];
     int row_count;
 };
 
@@ -102,7 +102,7 @@ static tl_image make_map(bool is_normal)
 }
 
 /* Shows the surface to the trial: with appearance 1 it has a decal and a normal map. */
-static bool show(struct bench *bench, int appearance, enum tl_reflectance model, tl_error *error)
+static bool show(struct shading_bench *bench, int appearance, enum tl_reflectance model, tl_error *error)
 {
     tl_material *material = &bench->material;
     material->gloss.model = (int)model;
@@ -121,7 +121,7 @@ static bool show(struct bench *bench, int appearance, enum tl_reflectance model,
 /* A row's params: defaults, then the experiment's assignments, then the technique's. The experiment is
  * limited to the tables "shading" and "material". */
 static bool set_row(const struct tl_experiment *experiment, const struct tl_technique *technique,
-                    struct row *row, tl_error *error)
+                    struct shading_row *row, tl_error *error)
 {
     struct tl_material_params material;
     struct tl_binding bindings[] = {{&tl_shading_options, &row->shading}, {&tl_material_options, &material}};
@@ -138,12 +138,12 @@ static bool set_row(const struct tl_experiment *experiment, const struct tl_tech
 }
 
 /* Every appearance measures the same techniques. */
-static bool list_rows(struct bench *bench, tl_error *error)
+static bool list_rows(struct shading_bench *bench, tl_error *error)
 {
     const struct tl_technique *technique = NULL;
     while ((technique = tl_experiment_next(bench->experiment, TL_OUTPUT_TABLE, technique))) {
         assert(bench->row_count < ROWS_MAX);
-        struct row row = {.cpu_ms = INFINITY, .wall_ms = INFINITY};
+        struct shading_row row = {.cpu_ms = INFINITY, .wall_ms = INFINITY};
         if (!set_row(bench->experiment, technique, &row, error))
             return false;
         for (int a = 0; a < APPEARANCES; a++)
@@ -165,8 +165,8 @@ static double relative_rmse(const tl_image *drawn, const tl_image *exact)
     return sqrt(squares / (double)count) / (sum / (double)count); /* alpha adds nothing to either */
 }
 
-static bool draw_once(struct bench *bench, const struct tl_shading_params *shading, struct tl_taken *taken,
-                      tl_error *error)
+static bool draw_once(struct shading_bench *bench, const struct tl_shading_params *shading,
+                      struct tl_taken *taken, tl_error *error)
 {
     tl_shading_bench_clear(bench->trial);
     struct tl_stopwatch watch = tl_stopwatch_start();
@@ -176,8 +176,8 @@ static bool draw_once(struct bench *bench, const struct tl_shading_params *shadi
 }
 
 /* Draws twice and measures the second draw: the first one loads what the technique before it evicted. */
-static bool draw_again(struct bench *bench, const struct tl_shading_params *shading, struct tl_taken *taken,
-                       tl_error *error)
+static bool draw_again(struct shading_bench *bench, const struct tl_shading_params *shading,
+                       struct tl_taken *taken, tl_error *error)
 {
     bool drawn = true;
     for (int i = 0; drawn && i < 2; i++)
@@ -186,7 +186,7 @@ static bool draw_again(struct bench *bench, const struct tl_shading_params *shad
 }
 
 /* Measures the error. It also makes programs and tables, outside of the measured time. */
-static bool measure_error(struct bench *bench, struct row *row, tl_error *error)
+static bool measure_error(struct shading_bench *bench, struct shading_row *row, tl_error *error)
 {
     const struct tl_shading_params *exact = tl_shading_options.defaults;
     struct tl_taken unused;
@@ -205,12 +205,13 @@ static bool measure_error(struct bench *bench, struct row *row, tl_error *error)
 
 /* Draws all techniques of one appearance and model in turn, so that other load on the machine affects all
  * alike. */
-static bool measure_model(struct bench *bench, int appearance, enum tl_reflectance model, tl_error *error)
+static bool measure_model(struct shading_bench *bench, int appearance, enum tl_reflectance model,
+                          tl_error *error)
 {
     bool done = show(bench, appearance, model, error);
     for (int round = -1; done && round < bench->schedule.rounds; round++)
         for (int i = 0; done && i < bench->row_count; i++) {
-            struct row *row = &bench->rows[appearance][i];
+            struct shading_row *row = &bench->rows[appearance][i];
             struct tl_taken taken;
             if (row->model != model)
                 continue;
@@ -225,7 +226,7 @@ static bool measure_model(struct bench *bench, int appearance, enum tl_reflectan
     return done && (!tl_interrupted() || tl_fail(error, TL_INTERRUPTED, "bench: stopped while shading"));
 }
 
-static bool run(struct bench *bench, tl_error *error)
+static bool run(struct shading_bench *bench, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring shading");
     int steps = APPEARANCES * (TL_REFLECT_BANKS + 1), done = 0;
@@ -241,14 +242,14 @@ static bool run(struct bench *bench, tl_error *error)
     return fine;
 }
 
-static double ratio_of(const struct bench *bench, int appearance, int variant)
+static double ratio_of(const struct shading_bench *bench, int appearance, int variant)
 {
     return bench->rows[appearance][variant].cpu_ms / bench->rows[0][0].cpu_ms;
 }
 
-static void print_table(const struct bench *bench)
+static void print_table(const struct shading_bench *bench)
 {
-    const struct schedule *schedule = &bench->schedule;
+    const struct shading_schedule *schedule = &bench->schedule;
     size_t triangles = bench->mesh.index_count / 3;
     printf("%d x %d pixels, all covered by %zu triangles under one point lamp; the best of %d draws each, "
            "process CPU time; errors against phong, exact, with the same model\n\n",
@@ -265,7 +266,7 @@ static void print_table(const struct bench *bench)
     }
 }
 
-static void print_json(const struct bench *bench)
+static void print_json(const struct shading_bench *bench)
 {
     size_t triangles = bench->mesh.index_count / 3;
     cJSON *object = cJSON_CreateObject();
@@ -275,7 +276,7 @@ static void print_json(const struct bench *bench)
     cJSON *rows = cJSON_AddArrayToObject(object, "rows");
     for (int appearance = 0; appearance < APPEARANCES; appearance++)
         for (int i = 0; i < bench->row_count; i++) {
-            const struct row *measured = &bench->rows[appearance][i];
+            const struct shading_row *measured = &bench->rows[appearance][i];
             cJSON *row = cJSON_CreateObject();
             cJSON_AddStringToObject(row, "name", bench->rows[0][i].name);
             cJSON_AddStringToObject(row, "look", bench->experiment->appearances[appearance].name);
@@ -288,7 +289,7 @@ static void print_json(const struct bench *bench)
     tl_json_print(object);
 }
 
-static void release(struct bench *bench)
+static void release(struct shading_bench *bench)
 {
     tl_mesh_release(&bench->mesh);
     tl_image_release(&bench->decal);
@@ -302,7 +303,7 @@ bool tl_bench_shading(const struct tl_arguments *arguments, tl_error *error)
     if (arguments->positional_count > 0 || arguments->assignment_count > 0)
         return tl_fail(error, TL_USAGE,
                        "bench shading: it has a mesh and settings of its own: leave scene and options out");
-    struct bench *bench = TL_NEW(struct bench);
+    struct shading_bench *bench = TL_NEW(struct shading_bench);
     bench->schedule = arguments->quick ? quick : full;
     bench->experiment = tl_experiment_find(TL_OUTPUT_TABLE, "shading");
     bench->mesh = make_mesh(bench->schedule.cells);

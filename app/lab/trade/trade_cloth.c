@@ -41,16 +41,17 @@ static const struct setting settings[] = {
 };
 
 /* The scenes of the sheet. */
-struct scene {
+struct cloth_scene {
     enum tl_sheet_hold hold;
     double frame_rate;
     bool damped;
     double settle_speed; /* m/s */
 };
-static const struct scene falling = {TL_SHEET_EDGE, 10, false,
-                                     0}, /* every step divides a tenth of a second */
+static const struct cloth_scene falling = {TL_SHEET_EDGE, 10, false,
+                                           0}, /* every step divides a tenth of a second */
     resting = {TL_SHEET_CORNERS, 30, true, 1e-3},
-                          calmest = {TL_SHEET_CORNERS, 30, true, 1e-4}; /* what others are compared with */
+                                calmest = {TL_SHEET_CORNERS, 30, true,
+                                           1e-4}; /* what others are compared with */
 
 /* Vertices a side; the finest is the reference only. */
 struct sizes {
@@ -65,7 +66,7 @@ struct shape {
     double energy, strain;
 };
 
-struct run {
+struct cloth_run {
     struct tl_trade_cloth *trade;
     bool quick;
     const struct sizes *sizes;
@@ -146,8 +147,8 @@ static double nearest_mirror(const struct shape *tested, const struct shape *tru
 
 /* ---- Running ---- */
 
-static tl_cloth *make_cloth(const tl_garment *sheet, const struct setting *setting, const struct scene *scene,
-                            tl_error *error)
+static tl_cloth *make_cloth(const tl_garment *sheet, const struct setting *setting,
+                            const struct cloth_scene *scene, tl_error *error)
 {
     struct tl_cloth_fabric fabric = *(const struct tl_cloth_fabric *)tl_cloth_fabric_options.defaults;
     struct tl_cloth_params params = *(const struct tl_cloth_params *)tl_cloth_options.defaults;
@@ -206,7 +207,7 @@ static bool fall(int side, const struct setting *setting, struct shape *out, str
     return done;
 }
 
-static bool rest(int side, const struct setting *setting, const struct scene *scene, struct shape *out,
+static bool rest(int side, const struct setting *setting, const struct cloth_scene *scene, struct shape *out,
                  struct tl_taken *taken, tl_error *error)
 {
     tl_garment sheet = tl_sheet_make(side, scene->hold, true);
@@ -228,7 +229,7 @@ static void note_refusal(struct tl_trade_cloth *trade, const char *name, int sid
     trade->refusals[trade->refusal_count++] = tl_format("%s, %d x %d: %s", name, side, side, error->message);
 }
 
-static bool measure(struct run *run, int side, const struct setting *setting, tl_error *error)
+static bool measure(struct cloth_run *run, int side, const struct setting *setting, tl_error *error)
 {
     struct tl_trade_cloth *trade = run->trade;
     struct shape shape = {0};
@@ -271,7 +272,7 @@ static bool measure(struct run *run, int side, const struct setting *setting, tl
 }
 
 /* The references of one size. */
-static bool find_truths(struct run *run, int side, tl_error *error)
+static bool find_truths(struct cloth_run *run, int side, tl_error *error)
 {
     const struct setting short_step = {"reference", "converged", 0, TRUTH_SHARE, 0, true},
                          own_step = {"reference", "at rest", 0, 0, 0, true};
@@ -283,7 +284,7 @@ static bool find_truths(struct run *run, int side, tl_error *error)
            (side > REST_SIDE || rest(side, &own_step, &calmest, &run->rested, &taken, error));
 }
 
-static bool find_finest(struct run *run, tl_error *error)
+static bool find_finest(struct cloth_run *run, tl_error *error)
 {
     const struct setting own = {"reference", "finest", 0, 1, 0, true},
                          half = {"reference", "finest", 0, 0.5, 0, true};
@@ -298,7 +299,7 @@ static bool find_finest(struct run *run, tl_error *error)
     return done;
 }
 
-static bool measure_all(struct run *run, tl_error *error)
+static bool measure_all(struct cloth_run *run, tl_error *error)
 {
     struct tl_progress progress = tl_progress_begin("measuring the trade of cloth");
     const int size_count = run->sizes->count, setting_count = (int)TL_COUNT(settings);
@@ -319,7 +320,7 @@ static bool measure_all(struct run *run, tl_error *error)
 bool tl_trade_cloth(bool quick, struct tl_trade_cloth *out, tl_error *error)
 {
     *out = (struct tl_trade_cloth){0};
-    struct run run = {.trade = out, .quick = quick, .sizes = quick ? &quick_sizes : &all_sizes};
+    struct cloth_run run = {.trade = out, .quick = quick, .sizes = quick ? &quick_sizes : &all_sizes};
     omp_set_num_threads(1); /* CPU time of one core, undisturbed */
     bool done = out->complete = measure_all(&run, error);
     release_shape(&run.finest);

@@ -396,7 +396,7 @@ static void *writable(const void *lent)
 /* A renderer's resources, writable. */
 static struct tl_resources *inside(const tl_renderer *renderer)
 {
-    return writable(tl_renderer_look_inside(renderer));
+    return writable(tl_renderer_frame_resources(renderer));
 }
 
 /* ---- Shadows ---- */

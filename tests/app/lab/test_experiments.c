@@ -38,7 +38,7 @@ static void test_every_id_has_a_picture(void **state)
 
 static void check_pictures(const struct tl_experiment *experiment, enum tl_output output)
 {
-    struct tl_picture picture = {.experiment = experiment};
+    struct tl_experiment_picture picture = {.experiment = experiment};
     assert_true(tl_picture_count(experiment, output) > 0);
     while (tl_picture_next(&picture, output))
         for (int object = 0; object < TL_PICTURE_OBJECTS; object++)

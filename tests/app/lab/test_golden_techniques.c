@@ -26,7 +26,7 @@ static int close_device(void **state)
     return 0;
 }
 
-static void draw(tl_gpu *gpu, const struct tl_picture *picture, tl_image *out)
+static void draw(tl_gpu *gpu, const struct tl_experiment_picture *picture, tl_image *out)
 {
     struct tl_settings settings;
     tl_error error = {0};
@@ -48,7 +48,7 @@ static void draw(tl_gpu *gpu, const struct tl_picture *picture, tl_image *out)
  * Returns their number. */
 static int check_experiment(tl_gpu *gpu, const struct tl_experiment *experiment, const char *family)
 {
-    struct tl_picture picture = {.experiment = experiment, .appearance = experiment->appearances};
+    struct tl_experiment_picture picture = {.experiment = experiment, .appearance = experiment->appearances};
     int count = 0;
     while ((picture.technique = tl_experiment_next(experiment, TL_OUTPUT_GOLDEN, picture.technique))) {
         tl_image image = {0};

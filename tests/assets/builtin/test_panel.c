@@ -49,7 +49,7 @@ static void test_delaunay(void **state)
     free(triangles);
 }
 
-static double smallest_angle(const tl_panel *panel)
+static double smallest_angle(const tl_panel_mesh *panel)
 {
     double smallest = M_PI;
     for (size_t t = 0; t < panel->triangle_count; t++) {
@@ -64,7 +64,7 @@ static double smallest_angle(const tl_panel *panel)
     return smallest * 180 / M_PI;
 }
 
-static double panel_area(const tl_panel *panel)
+static double panel_area(const tl_panel_mesh *panel)
 {
     double area = 0;
     for (size_t t = 0; t < panel->triangle_count; t++) {
@@ -86,7 +86,7 @@ static void test_rectangle(void **state)
         outline[i].segments = segments[i];
         assert_near(tl_curve_length(&outline[i]), i % 2 ? 0.3 : 0.5, 1e-12);
     }
-    tl_panel panel = tl_panel_cut(outline, 4, 0.02);
+    tl_panel_mesh panel = tl_panel_cut(outline, 4, 0.02);
     assert_near(panel_area(&panel), 0.15, 1e-12);
     assert_int_equal(panel.outline_count, 80);
     assert_near(panel.points[25].x, 0.5, 1e-12);
@@ -109,7 +109,7 @@ static void test_disc(void **state)
             .control = {{c, s}, {c - k * s, s + k * c}, {-s + k * c, c + k * s}, {-s, c}}, .segments = 20};
         assert_near(tl_curve_length(&outline[i]), M_PI / 2, 1e-3);
     }
-    tl_panel panel = tl_panel_cut(outline, 4, M_PI / 40);
+    tl_panel_mesh panel = tl_panel_cut(outline, 4, M_PI / 40);
     assert_near(panel_area(&panel), 40 * sin(2 * M_PI / 80), 1e-3);
     assert_true(smallest_angle(&panel) > 25);
     for (size_t i = 0; i < panel.outline_count; i++)

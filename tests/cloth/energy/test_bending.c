@@ -118,7 +118,7 @@ static tl_garment panel_strip(const struct strip *strip)
         outline[i] = tl_curve_line(corners[i], corners[(i + 1) % 4]);
         outline[i].segments = segments[i];
     }
-    tl_panel panel = tl_panel_cut(outline, 4, cell);
+    tl_panel_mesh panel = tl_panel_cut(outline, 4, cell);
     const struct sheet_shape clamp = {1, strip->rows, cell, height};
     tl_garment garment = sheet_make(&clamp, NULL);
     sheet_add(&garment, &panel);

@@ -266,7 +266,7 @@ static void visibility_is_that_of_the_points(void **state)
     for (int region = -1; region < 24; region += 5) {
         scene.settings.image.view_region = region;
         tl_image image = show(device->renderer, &scene, TL_VIEW_VISIBILITY);
-        const struct tl_resources *inside = tl_renderer_look_inside(device->renderer);
+        const struct tl_resources *inside = tl_renderer_frame_resources(device->renderer);
         size_t stride, checked = 0;
         const uint16_t *values = tl_points_values(inside->points, &stride);
         for (size_t i = 0; i < inside->samples.primary_count; i++) {

@@ -199,10 +199,11 @@ static void compare_all(struct test_device *device, const struct maps *maps, con
         test_frame((vec3s){{0.4f, 0.7f, 2.6f}}, (vec3s){{0, 0.55f, 0}}, 40, surfaces, 3, &environment);
     tl_image image = test_draw(device->renderer, &frame, &settings);
     struct layers *layers = TL_NEW(struct layers);
-    read_layer(&tl_renderer_look_inside(device->renderer)->gbuffer, TL_GBUFFER_POINT, layers->point);
-    read_layer(&tl_renderer_look_inside(device->renderer)->gbuffer, TL_GBUFFER_NORMAL, layers->normal);
-    read_layer(&tl_renderer_look_inside(device->renderer)->gbuffer, TL_GBUFFER_DIFFUSE, layers->diffuse);
-    read_layer(&tl_renderer_look_inside(device->renderer)->gbuffer, TL_GBUFFER_SPECULAR, layers->specular);
+    read_layer(&tl_renderer_frame_resources(device->renderer)->gbuffer, TL_GBUFFER_POINT, layers->point);
+    read_layer(&tl_renderer_frame_resources(device->renderer)->gbuffer, TL_GBUFFER_NORMAL, layers->normal);
+    read_layer(&tl_renderer_frame_resources(device->renderer)->gbuffer, TL_GBUFFER_DIFFUSE, layers->diffuse);
+    read_layer(&tl_renderer_frame_resources(device->renderer)->gbuffer, TL_GBUFFER_SPECULAR,
+               layers->specular);
 
     struct tl_casters casters;
     assert_ok(tl_casters_measure(surfaces, 3, &casters, &error), error);
