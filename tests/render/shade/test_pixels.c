@@ -1,0 +1,474 @@
+/* Pictures of ratios at vertices against pictures of ratios at every sample, as drawn by the renderer: the
+ * same cover, nearly the same light, whatever the material, the side, the turn of the light, the resolution;
+ * the same bits at any number of threads, and the same bits as without where the scene needs samples. */
+#include "tests/render/scenes.h"
+
+#include "assets/builtin/weave.h"
+#include "render/metrics/compare.h"
+#include "render/reference/random.h"
+
+#include "tests/testing.h"
+
+#include "config/memory.h"
+
+#include <omp.h>
+#include <string.h>
+
+#define WIDTH        450
+#define HEIGHT       400
+#define SMALL_WIDTH  72
+#define SMALL_HEIGHT 64
+#define TEXELS       64 /* a side of the maps */
+
+enum { MAP_COLOUR, MAP_NORMAL, MAP_GLOSS, MAP_HOLES, MAP_COUNT };
+
+struct drawn_scene {
+    struct test_scene scene, plain; /* with and without what an editor changed */
+    tl_image maps[MAP_COUNT];
+    tl_weave weave;
+};
+
+/* A dim blue sky, a warm wide lamp on one side, a sun on the other: nothing is the same when it is turned. */
+static vec3s lopsided(vec3s d)
+{
+    if (glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.7f, 0.9f, 0.4f}})) > 0.99966f)
+        return (vec3s){{1000, 900, 800}};
+    float lamp = fmaxf(glms_vec3_dot(d, glms_vec3_normalize((vec3s){{-0.8f, 0.5f, 0.5f}})), 0);
+    float warm = 2.5f * powf(lamp, 12);
+    return (vec3s){{0.15f + warm, 0.2f + 0.6f * warm, 0.3f + 0.1f * d.y + 0.3f * warm}};
+}
+
+static void make_maps(struct drawn_scene *drawn)
+{
+    struct tl_random random = tl_random_begin(18, 1);
+    drawn->maps[MAP_COLOUR] = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
+    drawn->maps[MAP_NORMAL] = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
+    drawn->maps[MAP_GLOSS] = tl_image_create(TEXELS, TEXELS, 1, TL_IMAGE_U8);
+    drawn->maps[MAP_HOLES] = tl_image_create(TEXELS, TEXELS, 4, TL_IMAGE_U8);
+    drawn->maps[MAP_NORMAL].linear = drawn->maps[MAP_GLOSS].linear = true;
+    for (size_t y = 0; y < TEXELS; y++)
+        for (size_t x = 0; x < TEXELS; x++) {
+            size_t i = y * TEXELS + x;
+            /* Stripes across u, so that a map that is mirrored or turned shows. */
+            uint8_t stripe = x % 16 < 5 ? 60 : 200;
+            uint8_t *colour = tl_image_bytes(&drawn->maps[MAP_COLOUR]) + 3 * i;
+            colour[0] = stripe, colour[1] = (uint8_t)(2 * x + y), colour[2] = 120;
+            vec3s n =
+                glms_vec3_normalize((vec3s){{0.3f * sinf(0.8f * (float)x), 0.2f * cosf(0.4f * (float)y), 1}});
+            for (size_t c = 0; c < 3; c++)
+                tl_image_bytes(&drawn->maps[MAP_NORMAL])[3 * i + c] =
+                    (uint8_t)lroundf(255 * (0.5f + 0.5f * n.raw[c]));
+            tl_image_bytes(&drawn->maps[MAP_GLOSS])[i] = (uint8_t)(200 + 55 * tl_random_unit(&random));
+            uint8_t *holes = tl_image_bytes(&drawn->maps[MAP_HOLES]) + 4 * i;
+            holes[0] = holes[1] = holes[2] = 180;
+            holes[3] = x % 16 < 4 && y % 16 < 6 ? 0 : 255;
+        }
+}
+
+static struct tl_map map_of(const tl_image *image)
+{
+    return (struct tl_map){.image = image, .transform = {.scale = {3, 2}, .rotation = 0.2f}};
+}
+
+/* A ball under a draped sheet above the ground. */
+static void open_scene(struct drawn_scene *drawn, int width, int height)
+{
+    *drawn = (struct drawn_scene){0};
+    make_maps(drawn);
+    struct test_scene *scene = &drawn->scene;
+    test_scene_open(scene, test_environment(512, 256, lopsided), (vec3s){{0.8f, 1.5f, 2}},
+                    (vec3s){{0, 0.6f, 0}}, 40, width, height);
+    test_scene_add(scene, test_sphere((vec3s){{0, 0.45f, 0}}, 0.38f, 32));
+    test_scene_add(scene, test_sheet(1, 0.55f, 0.07f, 2, 48));
+    struct tl_render_settings *settings = &scene->settings;
+    settings->light.visibility = TL_VISIBILITY_RAYS;
+    settings->light.method = TL_METHOD_PEM;
+    settings->light.lobe = TL_LOBE_DUAL;
+    settings->light.composition = TL_COMPOSE_RATIO;
+    settings->light.regions = 48;
+    settings->light.pem_size = 64;
+    settings->light.rounds = 3;
+    settings->light.repair = settings->light.repair_rest = 0;
+    settings->light.sun = true;
+    settings->light.reflect_scene = true;
+    settings->image.supersample = 1;
+    settings->image.ground = true;
+    settings->detail.minify = TL_DETAIL_MINIFY_LEAN;
+    scene->frame.still = true;
+    drawn->plain = *scene;
+}
+
+static void close_scene(struct drawn_scene *drawn)
+{
+    test_scene_close(&drawn->scene);
+    tl_weave_release(&drawn->weave);
+    for (int i = 0; i < MAP_COUNT; i++)
+        tl_image_release(&drawn->maps[i]);
+}
+
+/* Changes the plain scene. */
+typedef void editor(struct drawn_scene *drawn);
+
+static void edit(struct drawn_scene *drawn, editor *change)
+{
+    struct test_scene *scene = &drawn->scene;
+    scene->settings = drawn->plain.settings;
+    scene->frame = drawn->plain.frame;
+    for (size_t i = 0; i < scene->shape_count; i++) {
+        scene->shapes[i].material = tl_material_default("test");
+        scene->shapes[i].material.double_sided = true;
+    }
+    change(drawn);
+    test_scene_refresh(scene);
+}
+
+static tl_material *cloth_of(struct drawn_scene *drawn)
+{
+    return &drawn->scene.shapes[1].material;
+}
+
+static void be_matt(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->diffuse = (vec3s){{0.6f, 0.3f, 0.2f}};
+}
+
+static void be_glossy(struct drawn_scene *drawn)
+{
+    for (int i = 0; i < 2; i++) {
+        drawn->scene.shapes[i].material.specular = (vec3s){{0.3f, 0.2f, 0.1f}};
+        drawn->scene.shapes[i].material.glossiness = 0.9f;
+    }
+}
+
+static void be_satin(struct drawn_scene *drawn)
+{
+    tl_material *cloth = cloth_of(drawn);
+    cloth->diffuse = (vec3s){{0.3f, 0.022f, 0.045f}};
+    cloth->specular = (vec3s){{0.12f, 0.1f, 0.1f}};
+    cloth->glossiness = 0.94f;
+    cloth->gloss.model = TL_REFLECT_WARD;
+    cloth->gloss.width_weft = 0.3f;
+    cloth->gloss.width_warp = 0.1f;
+    cloth->gloss.rotation = 0.3f;
+}
+
+static void be_torrance_sparrow(struct drawn_scene *drawn)
+{
+    be_glossy(drawn);
+    cloth_of(drawn)->gloss.model = TL_REFLECT_TORRANCE_SPARROW;
+    cloth_of(drawn)->gloss.facets = TL_FACETS_BECKMANN;
+}
+
+static void be_woven(struct drawn_scene *drawn)
+{
+    struct tl_weave_params params = *(const struct tl_weave_params *)tl_weave_options.defaults;
+    params.pattern = TL_WEAVE_TWILL;
+    params.warp_pitch_mm = params.weft_pitch_mm = 5;
+    params.crimp_mm = 1.2f;
+    params.weft_tint[0] = params.weft_tint[1] = 0.3f;
+    if (!drawn->weave.tint.texels)
+        assert_true(tl_weave_create(&params, &drawn->weave));
+    be_satin(drawn);
+    cloth_of(drawn)->weave = &drawn->weave;
+}
+
+static void be_mapped(struct drawn_scene *drawn)
+{
+    tl_material *cloth = cloth_of(drawn);
+    be_glossy(drawn);
+    cloth->diffuse = (vec3s){{1, 1, 1}};
+    cloth->diffuse_map = map_of(&drawn->maps[MAP_COLOUR]);
+    cloth->normal_map = map_of(&drawn->maps[MAP_NORMAL]);
+    cloth->gloss_map = map_of(&drawn->maps[MAP_GLOSS]);
+}
+
+static void be_holed(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->diffuse_map = map_of(&drawn->maps[MAP_HOLES]);
+    cloth_of(drawn)->alpha_cutoff = 0.5f;
+}
+
+static void be_mapped_and_turned(struct drawn_scene *drawn)
+{
+    be_mapped(drawn);
+    drawn->scene.frame.environment_yaw = 1;
+}
+
+static void be_satin_and_turned(struct drawn_scene *drawn)
+{
+    be_satin(drawn);
+    drawn->scene.frame.environment_yaw = 1;
+}
+
+static void look_up(struct drawn_scene *drawn)
+{
+    drawn->scene.frame.camera.eye = (vec3s){{0.9f, 0.25f, 0.9f}};
+    drawn->scene.frame.camera.target = (vec3s){{0, 0.95f, 0}};
+}
+
+static void be_mapped_from_below(struct drawn_scene *drawn)
+{
+    be_mapped(drawn);
+    look_up(drawn);
+}
+
+static void be_satin_from_below(struct drawn_scene *drawn)
+{
+    be_satin(drawn);
+    look_up(drawn);
+}
+
+static void be_half_as_fine(struct drawn_scene *drawn)
+{
+    be_mapped(drawn);
+    drawn->scene.settings.image.scale = 0.5f;
+}
+
+static tl_image draw(const struct test_device *device, struct drawn_scene *drawn, int ratio_at)
+{
+    tl_error error = {0};
+    drawn->scene.settings.light.ratio_at = ratio_at;
+    assert_ok(tl_renderer_forget_scene(device->renderer, &error), error);
+    return test_scene_draw(&drawn->scene, device->renderer);
+}
+
+/* 1 where a shape, not the ground, is seen. */
+static tl_image mask_of(const struct test_device *device, const struct drawn_scene *drawn)
+{
+    struct test_scene scene = drawn->scene;
+    scene.settings.image.ground = false;
+    scene.settings.light.method = TL_METHOD_UNSHADOWED;
+    tl_image image = test_draw(device->renderer, &drawn->scene.frame, &scene.settings);
+    tl_image mask = tl_image_create(image.width, image.height, 1, TL_IMAGE_F32);
+    for (size_t i = 0; i < (size_t)image.width * (size_t)image.height; i++)
+        tl_image_floats(&mask)[i] = tl_image_floats(&image)[4 * i + 3];
+    tl_image_release(&image);
+    return mask;
+}
+
+/* Largest difference of cover. GL computes the ground's fading in a shader of its own. */
+static double cover_difference(const tl_image *a, const tl_image *b)
+{
+    double largest = 0;
+    for (size_t i = 0; i < (size_t)a->width * (size_t)a->height; i++)
+        largest =
+            fmax(largest, fabs((double)(tl_image_floats(a)[4 * i + 3] - tl_image_floats(b)[4 * i + 3])));
+    return largest;
+}
+#define COVER_TOLERANCE 2e-3
+
+struct picture_case {
+    const char *name;
+    editor *edit;
+    double all, cloth, worst; /* FLIP, means: of covered pixels, of the shapes', of the worst 5 % of these */
+};
+
+/* Bounds: measured, and a third of it; they detect a fault. What is largest is the normal map, whose normals
+ * lean by up to 17 degrees: the ratio at a vertex is that of the smooth normal. */
+static const struct picture_case pictures[] = {
+    {"matt", be_matt, 0.004, 0.0064, 0.0226},
+    {"glossy", be_glossy, 0.0052, 0.0103, 0.0398},
+    {"satin", be_satin, 0.0042, 0.0069, 0.0277},
+    {"torrance-sparrow", be_torrance_sparrow, 0.0051, 0.0099, 0.0401},
+    {"woven satin", be_woven, 0.0042, 0.0069, 0.0282},
+    {"maps", be_mapped, 0.0185, 0.0493, 0.2082},
+    {"cut-outs", be_holed, 0.0082, 0.0106, 0.0898},
+    {"maps, light turned", be_mapped_and_turned, 0.0179, 0.048, 0.1996},
+    {"satin, light turned", be_satin_and_turned, 0.0038, 0.006, 0.0234},
+    {"maps from below", be_mapped_from_below, 0.0755, 0.0755, 0.2767},
+    {"satin from below", be_satin_from_below, 0.0086, 0.0086, 0.0423},
+    {"maps, scale 0.5", be_half_as_fine, 0.0178, 0.0459, 0.1768},
+};
+
+static void check_picture(const struct test_device *device, struct drawn_scene *drawn,
+                          const struct picture_case *item)
+{
+    struct tl_comparison all;
+    struct tl_object_error cloth;
+    tl_error error = {0};
+    edit(drawn, item->edit);
+    tl_image sampled = draw(device, drawn, TL_RATIO_AT_SAMPLES);
+    tl_image interpolated = draw(device, drawn, TL_RATIO_AT_VERTICES);
+    tl_image mask = mask_of(device, drawn);
+    assert_ok(tl_image_compare(&interpolated, &sampled, 0, 0, &all, &error), error);
+    assert_ok(tl_image_compare_object(&interpolated, &sampled, &mask, 0, &cloth, &error), error);
+    double cover = cover_difference(&interpolated, &sampled);
+    printf("%-20s FLIP all %.4f, shapes %.4f, worst %.4f; rel. RMSE %.4f; cover %.1e\n", item->name,
+           all.flip_mean, cloth.flip_mean, cloth.flip_worst, all.rel_rmse, cover);
+    assert_true(memcmp(interpolated.texels, sampled.texels, 16 * (size_t)WIDTH * HEIGHT) != 0);
+    assert_true(cloth.pixels > WIDTH * HEIGHT / 10);
+    assert_near(cover, 0, COVER_TOLERANCE);
+    assert_near(all.flip_mean, 0, item->all);
+    assert_near(cloth.flip_mean, 0, item->cloth);
+    assert_near(cloth.flip_worst, 0, item->worst);
+    tl_image_release(&mask);
+    tl_image_release(&interpolated);
+    tl_image_release(&sampled);
+}
+
+static void test_pictures(void **state)
+{
+    struct drawn_scene drawn;
+    open_scene(&drawn, WIDTH, HEIGHT);
+    for (size_t i = 0; i < TL_COUNT(pictures); i++)
+        check_picture(*state, &drawn, &pictures[i]);
+    close_scene(&drawn);
+}
+
+static void test_threads(void **state)
+{
+    struct drawn_scene drawn;
+    open_scene(&drawn, WIDTH, HEIGHT);
+    edit(&drawn, be_woven);
+    const int threads = omp_get_max_threads();
+    tl_image images[3];
+    for (int i = 0; i < 3; i++) {
+        omp_set_num_threads(i + 1);
+        images[i] = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
+    }
+    omp_set_num_threads(threads);
+    for (int i = 1; i < 3; i++)
+        assert_memory_equal(images[i].texels, images[0].texels, 16 * (size_t)WIDTH * HEIGHT);
+    for (int i = 0; i < 3; i++)
+        tl_image_release(&images[i]);
+    close_scene(&drawn);
+}
+
+/* ---- Scenes that need samples ---- */
+
+static void have_nothing(struct drawn_scene *drawn)
+{
+    be_woven(drawn);
+}
+
+static void have_a_lamp(struct drawn_scene *drawn)
+{
+    drawn->scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, 1, 0.3f}}, 2);
+    drawn->scene.frame.lamp_count = 1;
+}
+
+static void have_a_coat(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->coat = 0.5f;
+    cloth_of(drawn)->coat_glossiness = 0.9f;
+}
+
+static void have_openness(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->openness = 0.3f;
+}
+
+static void have_transmission(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
+}
+
+static void have_a_mirror(struct drawn_scene *drawn)
+{
+    be_glossy(drawn);
+    cloth_of(drawn)->glossiness = 0.999f;
+}
+
+static void have_relief(struct drawn_scene *drawn)
+{
+    be_woven(drawn);
+    drawn->scene.settings.detail.mode = TL_DETAIL_RELIEF;
+}
+
+static void have_parallax(struct drawn_scene *drawn)
+{
+    be_woven(drawn);
+    drawn->scene.settings.detail.mode = TL_DETAIL_PARALLAX;
+}
+
+static void have_horizons(struct drawn_scene *drawn)
+{
+    be_woven(drawn);
+    drawn->scene.settings.detail.shadow = TL_DETAIL_SHADOW_HORIZON;
+}
+
+static void have_a_height_map(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->height_map = map_of(&drawn->maps[MAP_GLOSS]);
+    cloth_of(drawn)->height_m = 0.002f;
+}
+
+static void have_aovs(struct drawn_scene *drawn)
+{
+    drawn->scene.frame.aovs = true;
+}
+
+static void have_occlusion_only(struct drawn_scene *drawn)
+{
+    drawn->scene.settings.light.method = TL_METHOD_AO;
+}
+
+static void have_regions_as_lights(struct drawn_scene *drawn)
+{
+    drawn->scene.settings.light.method = TL_METHOD_LIGHTS;
+}
+
+static void have_no_shadow(struct drawn_scene *drawn)
+{
+    drawn->scene.settings.light.method = TL_METHOD_UNSHADOWED;
+}
+
+static void have_one_lobe(struct drawn_scene *drawn)
+{
+    drawn->scene.settings.light.lobe = TL_LOBE_SINGLE;
+}
+
+static void have_a_view(struct drawn_scene *drawn)
+{
+    drawn->scene.settings.image.view = TL_VIEW_VISIBILITY;
+}
+
+static const struct {
+    const char *name;
+    editor *edit;
+    bool needs_samples;
+} needs[] = {
+    {"nothing", have_nothing, false},
+    {"matt", be_matt, false},
+    {"a lamp", have_a_lamp, true},
+    {"a coat", have_a_coat, true},
+    {"openness", have_openness, true},
+    {"transmission", have_transmission, true},
+    {"a mirror", have_a_mirror, true},
+    {"relief", have_relief, true},
+    {"parallax", have_parallax, true},
+    {"horizon shadows", have_horizons, true},
+    {"a height map", have_a_height_map, true},
+    {"aovs", have_aovs, true},
+    {"method ao", have_occlusion_only, true},
+    {"method lights", have_regions_as_lights, true},
+    {"method unshadowed", have_no_shadow, true},
+    {"one lobe", have_one_lobe, true},
+    {"a view", have_a_view, true},
+};
+
+static void test_scenes_that_need_samples(void **state)
+{
+    struct drawn_scene drawn;
+    open_scene(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
+    drawn.plain.settings.light.rounds = 1;
+    for (size_t i = 0; i < TL_COUNT(needs); i++) {
+        edit(&drawn, needs[i].edit);
+        tl_image sampled = draw(*state, &drawn, TL_RATIO_AT_SAMPLES);
+        tl_image wanted = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
+        bool same = memcmp(sampled.texels, wanted.texels, 16 * (size_t)SMALL_WIDTH * SMALL_HEIGHT) == 0;
+        if (same != needs[i].needs_samples)
+            print_error("%s: the images are %s\n", needs[i].name, same ? "the same" : "not the same");
+        assert_int_equal(same, needs[i].needs_samples);
+        tl_image_release(&sampled);
+        tl_image_release(&wanted);
+    }
+    close_scene(&drawn);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pictures), cmocka_unit_test(test_threads),
+                                       cmocka_unit_test(test_scenes_that_need_samples)};
+    return cmocka_run_group_tests(tests, test_device_open, test_device_close);
+}
