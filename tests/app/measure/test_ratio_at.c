@@ -1,0 +1,101 @@
+/* Pictures of garments that people look at, with ratios at vertices against ratios at every sample: the
+ * garment's FLIP, as shown. tests/render/shade/test_pixels.c takes the parts one by one. */
+#include "tests/testing.h"
+
+#include "app/measure/measure.h"
+#include "app/scene/session.h"
+#include "config/memory.h"
+
+struct garment_case {
+    const char *name, *option;
+    const char *file;   /* real data, or NULL: the built-in dress */
+    double mean, worst; /* measured, and a third of it: they detect a fault */
+};
+
+static const struct garment_case cases[] = {
+    {"satin", "scene.fabric=satin", NULL, 0.026, 0.098},
+    {"denim", "scene.fabric=denim", NULL, 0.0225, 0.086},
+    {"cotton", "scene.fabric=cotton_plain", NULL, 0.0275, 0.131},
+    {"casual suit", "scene.garment=", "garments/mh_male_casualsuit06.glb", 0.049, 0.225},
+};
+
+static void draw(tl_renderer *renderer, const tl_frame *frame, struct tl_render_settings *settings, int at,
+                 tl_image *shown)
+{
+    tl_error error = {0};
+    settings->light.ratio_at = at;
+    assert_ok(tl_renderer_forget_scene(renderer, &error), error);
+    assert_ok(tl_renderer_draw(renderer, frame, settings, &error), error);
+    assert_ok(tl_renderer_show_image(renderer, shown, &error), error);
+}
+
+static void check_garment(tl_renderer *renderer, const struct garment_case *item)
+{
+    char option[1100];
+    snprintf(option, sizeof option, "%s%s", item->option, item->file ? test_data(item->file) : "");
+    const char *const assignments[] = {option,
+                                       "cloth.edge_m=0.04",
+                                       "cloth.settle_s=0.5",
+                                       "image.width=450",
+                                       "image.height=400",
+                                       "image.supersample=1",
+                                       "light.rounds=2",
+                                       "light.repair_rest=0"};
+    const struct tl_settings_source source = {NULL, assignments, TL_COUNT(assignments)};
+    struct tl_settings settings;
+    tl_error error = {0};
+    assert_ok(tl_settings_load(&settings, &source, &error), error);
+    tl_session *session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    struct tl_render_settings render = tl_settings_render(&settings);
+    tl_frame frame = tl_session_frame(session);
+    tl_image sampled, interpolated, mask;
+    struct tl_object_error result;
+    frame.still = frame.aovs = true;
+    draw(renderer, &frame, &render, TL_RATIO_AT_SAMPLES, &sampled);
+    assert_ok(tl_renderer_read_garment(renderer, &mask, &error), error);
+    frame.aovs = false;
+    draw(renderer, &frame, &render, TL_RATIO_AT_VERTICES, &interpolated);
+    assert_ok(tl_image_compare_object(&interpolated, &sampled, &mask, 0, &result, &error), error);
+    printf("%-12s %6zu pixels, FLIP mean %.4f, worst %.4f\n", item->name, result.pixels, result.flip_mean,
+           result.flip_worst);
+    assert_true(result.pixels > 5000 && result.flip_mean > 0);
+    assert_near(result.flip_mean, 0, item->mean);
+    assert_near(result.flip_worst, 0, item->worst);
+    tl_image_release(&sampled);
+    tl_image_release(&interpolated);
+    tl_image_release(&mask);
+    tl_session_destroy(&session);
+}
+
+static void check_at(size_t index)
+{
+    tl_error error = {0};
+    tl_gpu *gpu = tl_gpu_create_headless(&error);
+    assert_ok(gpu != NULL, error);
+    tl_renderer *renderer = tl_renderer_create(gpu, &error);
+    assert_ok(renderer != NULL, error);
+    check_garment(renderer, &cases[index]);
+    tl_renderer_destroy(&renderer);
+    tl_gpu_destroy(&gpu);
+}
+
+static void test_fabrics(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < 3; i++)
+        check_at(i);
+}
+
+static void test_suit(void **state)
+{
+    (void)state;
+    test_data(cases[3].file);
+    check_at(3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_fabrics), cmocka_unit_test(test_suit)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
