@@ -433,7 +433,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     if (resources->valid) /* the first frame has no earlier one to differ from */
         renderer->moving = changed;
     renderer->frame = *frame;
-    renderer->counts = tl_work_count(frame);
+    renderer->counts = tl_work_count(frame, &used);
     renderer->settings = used;
     memcpy(renderer->signatures, signatures, sizeof signatures);
     set_inputs(renderer, resources);

@@ -61,7 +61,7 @@ struct coming {
     const tl_quality_governor *governor;
     const tl_renderer *renderer;
     struct tl_quality_scope full;
-    tl_bits running;                     /* jobs, at the levels of the last frame */
+    tl_bits running[2];                  /* jobs, at the levels of the last frame, by the level of RATIO */
     tl_bits started[TL_CONTROL_COUNT];   /* ... and with those that another level of a control starts */
     bool is_ready[TL_BUDGET_LEVELS_MAX]; /* levels of regions */
 };
@@ -89,7 +89,8 @@ static double cost_of(const void *context, const uint8_t *of)
     const struct tl_quality_scope applied = tl_quality_scope_at(&levels, &coming->full);
     double load = tl_renderer_load(coming->renderer);
     struct tl_work cloth = cloth_work(&applied);
-    return tl_renderer_predict_ms(coming->renderer, &applied.drawn, coming->running) +
+    return tl_renderer_predict_ms(coming->renderer, &applied.drawn,
+                                  coming->running[levels.of[TL_CONTROL_RATIO]]) +
            known_ms(&governor->cloth, &cloth, load) + known_ms(&governor->other, &any_work, load);
 }
 
@@ -104,7 +105,9 @@ static double change_of(const void *context, const uint8_t *of)
     const struct tl_quality levels = levels_of(of);
     tl_bits jobs = 0;
     for (int k = 0; k < TL_CONTROL_COUNT; k++)
-        jobs |= of[k] != governor->choice.levels.of[k] ? coming->started[k] & ~coming->running : 0;
+        jobs |= of[k] != governor->choice.levels.of[k]
+                    ? coming->started[k] & ~coming->running[of[TL_CONTROL_RATIO]]
+                    : 0;
     bool is_shorter = of[TL_CONTROL_CLOTH] < governor->choice.levels.of[TL_CONTROL_CLOTH];
     if (!jobs && !is_shorter)
         return 0;
@@ -134,9 +137,11 @@ static struct coming look_ahead(const tl_quality_governor *governor, const tl_re
                                 const tl_frame *frame, const struct tl_quality_scope *full)
 {
     struct coming coming = {.governor = governor, .renderer = renderer, .full = *full};
-    struct tl_quality_scope now = tl_quality_scope_at(&governor->choice.levels, full);
-    coming.running = tl_renderer_predict_jobs(renderer, frame, &now.drawn);
-    for (int control = 0; control < TL_CONTROL_COUNT; control++) {
+    for (int level = 0; level < governor->level_counts[TL_CONTROL_RATIO]; level++) {
+        struct tl_quality_scope at = at_level(&coming, TL_CONTROL_RATIO, level);
+        coming.running[level] = tl_renderer_predict_jobs(renderer, frame, &at.drawn);
+    }
+    for (int control = TL_CONTROL_RATIO + 1; control < TL_CONTROL_COUNT; control++) {
         int level = governor->choice.levels.of[control], other = level > 0 ? level - 1 : level + 1;
         struct tl_quality_scope then = at_level(&coming, control, other);
         if (other < governor->level_counts[control] && control != TL_CONTROL_CLOTH)

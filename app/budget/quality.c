@@ -5,19 +5,19 @@
 #include <assert.h>
 #include <math.h>
 
-const char *const tl_control_names[] = {"refresh", "regions", "relief", "cloth", "scale", NULL};
+const char *const tl_control_names[] = {"ratio", "refresh", "regions", "relief", "cloth", "scale", NULL};
 
 /* Each level divides the scale by the fourth root of two, so two levels halve the number of samples. */
 static const float scales[] = {1,      0.841f, 0.707f, 0.595f, 0.5f,   0.42f, 0.354f,
                                0.297f, 0.25f,  0.21f,  0.177f, 0.149f, 0.125f};
 
-static const int level_counts[TL_CONTROL_COUNT] = {3, 4, 3, 3, TL_COUNT(scales)};
+static const int level_counts[TL_CONTROL_COUNT] = {2, 3, 4, 3, 3, TL_COUNT(scales)};
 
 #define REGIONS_MIN  24
 #define REFRESH_MIN  2
 #define RELIEF_MIN   8
 #define SUBSTEPS_MIN 8    /* of the preview solver, per frame */
-#define SCALE_MIN    0.1f /* of the option */
+#define SAMPLES_MIN  0.5f /* a pixel side: below a quarter of the pixels a garment cannot be judged */
 
 static int halved(int value, int times, int minimum)
 {
@@ -54,13 +54,16 @@ struct tl_quality_scope tl_quality_scope_at(const struct tl_quality *levels,
     struct tl_light_params *light = &applied.drawn.light;
     int *steps = &applied.drawn.detail.steps;
     float *scale = &applied.drawn.image.scale;
+    if (levels->of[TL_CONTROL_RATIO] > 0)
+        light->ratio_at = TL_RATIO_AT_VERTICES;
     if (levels->of[TL_CONTROL_REFRESH] > 0)
         light->refresh = halved(all_refreshed(light), levels->of[TL_CONTROL_REFRESH], REFRESH_MIN);
     light->regions = halved(light->regions, levels->of[TL_CONTROL_REGIONS], REGIONS_MIN);
     *steps = halved(*steps, levels->of[TL_CONTROL_RELIEF], RELIEF_MIN);
     apply_cloth(levels->of[TL_CONTROL_CLOTH], &applied.cloth);
     assert(levels->of[TL_CONTROL_SCALE] < TL_COUNT(scales));
-    *scale = fmaxf(*scale * scales[levels->of[TL_CONTROL_SCALE]], fminf(*scale, SCALE_MIN));
+    float least = SAMPLES_MIN / (float)applied.drawn.image.supersample;
+    *scale = fmaxf(*scale * scales[levels->of[TL_CONTROL_SCALE]], fminf(*scale, least));
     return applied;
 }
 
@@ -96,6 +99,8 @@ static bool is_used(enum tl_control control, const struct tl_quality_scope *full
 {
     const struct tl_light_params *light = &full->drawn.light;
     switch (control) {
+    case TL_CONTROL_RATIO:
+        return light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS;
     case TL_CONTROL_REFRESH:
     case TL_CONTROL_REGIONS:
         return has_regions(light);
@@ -112,6 +117,7 @@ static bool is_same(const struct tl_quality_scope *a, const struct tl_quality_sc
 {
     return a->drawn.light.regions == b->drawn.light.regions &&
            a->drawn.light.refresh == b->drawn.light.refresh &&
+           a->drawn.light.ratio_at == b->drawn.light.ratio_at &&
            a->drawn.detail.steps == b->drawn.detail.steps &&
            a->drawn.image.scale == b->drawn.image.scale && // NOLINT: whether it was changed at all
            a->cloth.dt == b->cloth.dt &&                   // NOLINT
@@ -144,6 +150,8 @@ static double substeps_of(const struct tl_cloth_params *cloth)
 double tl_quality_value(enum tl_control control, const struct tl_quality_scope *scope)
 {
     switch (control) {
+    case TL_CONTROL_RATIO:
+        return scope->drawn.light.ratio_at;
     case TL_CONTROL_REFRESH:
         return all_refreshed(&scope->drawn.light);
     case TL_CONTROL_REGIONS:
@@ -203,6 +211,9 @@ static double sampling_square(const struct tl_image_params *image)
 /* Fewer steps of relief make no visible difference (0.0004 at 8 steps). */
 static const double relief_errors[] = {0, UNSEEN, 2 * UNSEEN};
 
+/* Ratios that are interpolated between vertices: against ratios at every sample, all else the same. */
+static const double ratio_errors[] = {0, 0.004};
+
 /* Error of the next frame from the same state, where a hem swings: a replayed flight's image against the
  * original, mean of three frames. It is not the error after many frames, when two runs have diverged into
  * drapes that are both plausible. */
@@ -215,7 +226,8 @@ double tl_quality_error(const struct tl_quality *levels, const struct tl_quality
     const struct tl_quality_scope at = tl_quality_scope_at(levels, full);
     double relief = relief_errors[levels->of[TL_CONTROL_RELIEF]],
            cloth = cloth_errors[levels->of[TL_CONTROL_CLOTH]];
-    double square = relief * relief + cloth * cloth;
+    double ratio = ratio_errors[at.drawn.light.ratio_at] - ratio_errors[full->drawn.light.ratio_at];
+    double square = relief * relief + cloth * cloth + ratio * ratio;
     if (has_regions(&full->drawn.light)) {
         double unseen = UNSEEN * (levels->of[TL_CONTROL_REGIONS] + levels->of[TL_CONTROL_REFRESH]);
         square += fmax(light_square(&at.drawn.light) - light_square(&full->drawn.light), unseen * unseen);

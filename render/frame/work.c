@@ -5,6 +5,7 @@
 
 #include "render/frame/facts.h"
 #include "render/inspect/legend.h"
+#include "render/visibility/refresh.h"
 
 #include <math.h>
 
@@ -32,6 +33,14 @@ static double refreshed(const struct tl_light_params *light)
     return light->rays * (light->refresh > 0 && light->refresh < regions ? light->refresh : regions);
 }
 
+/* While the scene rests a frame traces more rays than in motion, and none once every region has its rounds. */
+static double rays_of_rest(const struct tl_resources *resources)
+{
+    if (resources->scene_round == 0)
+        return 1;
+    return resources->points_are_done ? 0 : TL_REST_HASTE;
+}
+
 static bool is_glossy(const tl_material *material)
 {
     return glms_vec3_max(material->specular) > 0 || material->specular_map.image;
@@ -42,8 +51,10 @@ static bool is_bumpy(const tl_material *material)
     return material->weave || material->normal_map.image;
 }
 
-struct tl_work_counts tl_work_count(const tl_frame *frame)
+struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings)
 {
+    struct tl_render_settings at_vertices = *settings;
+    at_vertices.light.ratio_at = TL_RATIO_AT_VERTICES;
     const tl_surface *surfaces = frame->surfaces;
     size_t count = frame->surface_count;
     struct tl_lamp lamps[TL_LAMPS_MAX];
@@ -51,6 +62,7 @@ struct tl_work_counts tl_work_count(const tl_frame *frame)
                                     .is_glossy = tl_materials_have(surfaces, count, is_glossy),
                                     .is_bumpy = tl_materials_have(surfaces, count, is_bumpy),
                                     .is_faceted = tl_materials_have(surfaces, count, tl_material_is_faceted)};
+    counts.fits_vertices = tl_frame_facts(frame, &at_vertices) & TL_BIT(TL_SCENE_RATIOS);
     for (size_t i = 0; i < count; i++)
         counts.triangles += (double)surfaces[i].index_count / 3;
     return counts;
@@ -66,9 +78,12 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
                                     const struct tl_render_settings *settings)
 {
     const struct tl_samples *samples = &resources->samples;
+    const struct tl_id_buffer *ids = &resources->ids;
     const struct tl_light_params *light = &settings->light;
-    double then = (double)samples->width * samples->height, now = texels_of(&settings->image);
-    double covered_then = (double)tl_samples_seen(samples);
+    bool were_ids = resources->facts & TL_BIT(TL_SCENE_RATIOS);
+    double then = were_ids ? (double)ids->width * ids->height : (double)samples->width * samples->height;
+    double covered_then = were_ids ? (double)ids->covered : (double)tl_samples_seen(samples);
+    double now = texels_of(&settings->image);
     double covered = then > 0 ? covered_then / then * now : COVERED_AT_FIRST * now;
     bool shadowed = light->method != TL_METHOD_UNSHADOWED;
     return (struct tl_work_seen){
@@ -78,7 +93,8 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
         .points = points_seen((double)tl_points_visible(resources->points), covered_then, covered),
         .lobes = lobes_of(counts, light),
         .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
-        .refreshed = refreshed(light),
+        .refreshed = refreshed(light) * rays_of_rest(resources),
+        .at_vertices = counts->fits_vertices && light->ratio_at == TL_RATIO_AT_VERTICES,
         .is_bumpy = counts->is_bumpy,
         .suns = shadowed ? resources->suns.count : 0,
         .lamps = counts->lamps,
@@ -144,7 +160,8 @@ struct tl_work tl_trace_work(const void *context)
 struct tl_work tl_points_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-4 * seen->triangles, (4e-5 + 1e-4 * seen->suns) * seen->covered,
+    double samples = seen->at_vertices ? 0 : (4e-5 + 1e-4 * seen->suns) * seen->covered;
+    return (struct tl_work){{1e-4 * seen->triangles, samples,
                              2e-4 * seen->points, 8e-5 * seen->points * seen->refreshed}};
 }
 

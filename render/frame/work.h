@@ -13,6 +13,7 @@ struct tl_work_seen {
     double lobes;           /* at most, that a sample sums them through */
     double refreshed;       /* rays a point */
     double triangles;
+    bool at_vertices;   /* ratios at vertices light the pixels */
     bool is_bumpy;      /* something has maps of normals or heights */
     double lamps, suns; /* lit; that stand apart */
     double new_regions; /* as lights that are not kept from an earlier frame */
@@ -21,9 +22,10 @@ struct tl_work_seen {
 struct tl_work_counts {
     double triangles;
     int lamps;
+    bool fits_vertices; /* ratios at vertices can light the pixels */
     bool is_glossy, is_faceted, is_bumpy; /* any material */
 };
-struct tl_work_counts tl_work_count(const tl_frame *frame);
+struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings);
 /* `counts` of the last frame, whose resources these are. */
 struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
                                     const struct tl_render_settings *settings);
