@@ -198,6 +198,7 @@ void tl_renderer_forget(tl_renderer *renderer)
     renderer->rest = (struct tl_rest){0};
     tl_points_destroy(&renderer->resources.points); /* visibility at points refines earlier values */
     renderer->resources.points = tl_points_create();
+    tl_ratios_release(&renderer->resources.ratios); /* half of them are of the frame before */
 }
 
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
@@ -212,6 +213,7 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     tl_surfaces_use_detail(renderer->resources.surfaces, &renderer->resources.detail);
     tl_points_destroy(&renderer->resources.points);
     renderer->resources.points = tl_points_create();
+    tl_ratios_release(&renderer->resources.ratios);
     tl_trace_destroy(&renderer->resources.trace);
     renderer->resources.trace = tl_trace_create(error);
     return renderer->resources.trace != NULL;

@@ -206,6 +206,7 @@
     IO(READS, yaw)                                                                                           \
     IO(READS, ray_options)                                                                                   \
     IO(READS, scene_round)                                                                                   \
+    IO(SEES, round)                                                                                          \
     IO(SEES, moment)                                                                                         \
     IO(SEES, facts)                                                                                          \
     IO(WRITES_HANDLE, points)                                                                                \
@@ -215,7 +216,9 @@
     IO(READS, ids)                                                                                           \
     IO(READS, shade_materials)                                                                               \
     IO(READS_HANDLE, points)                                                                                 \
-    IO(READS_HANDLE, lights)                                                                                 \
+    IO(READS, lights)                                                                                        \
+    IO(SEES, regions_revision)                                                                               \
+    IO(SEES, environment)                                                                                    \
     IO(READS, exact)                                                                                         \
     IO(READS, yaw)                                                                                           \
     IO(READS, camera)                                                                                        \

@@ -1,4 +1,5 @@
 /* Jobs that light what the camera sees. */
+#include "config/hash.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -61,10 +62,19 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
                                         .environment_yaw = *job->yaw,
                                         .params = &job->ray_options->params,
                                         .moved = *job->scene_round == 0,
+                                        .only_camera =
+                                            at_vertices && *job->scene_round > 0 && *job->round == 0,
                                         .whole_rounds = job->moment->still};
     take_rounds(job, &request);
     *job->points_are_done = tl_points_are_done(job->points);
     return true;
+}
+
+static uint64_t light_revision(const struct tl_ratios_job *job)
+{
+    const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
+    uint64_t hash = tl_hash(TL_HASH_START, parts, sizeof parts);
+    return tl_hash(hash, job->yaw, sizeof *job->yaw);
 }
 
 bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
@@ -74,11 +84,12 @@ bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
                                               .ranges = &job->shapes->ranges,
                                               .materials = job->shade_materials,
                                               .points = job->points,
-                                              .lights = job->lights,
+                                              .lights = *job->lights,
                                               .lobes = job->exact->lobes,
                                               .environment_yaw = *job->yaw,
                                               .eye = job->camera->view.eye,
-                                              .params = job->light_options};
+                                              .params = job->light_options,
+                                              .light_revision = light_revision(job)};
     tl_ratios_make(job->ratios, &request);
     return true;
 }

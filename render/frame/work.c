@@ -33,12 +33,15 @@ static double refreshed(const struct tl_light_params *light)
     return light->rays * (light->refresh > 0 && light->refresh < regions ? light->refresh : regions);
 }
 
-/* While the scene rests a frame traces more rays than in motion, and none once every region has its rounds. */
-static double rays_of_rest(const struct tl_resources *resources)
+/* While the scene rests a frame traces more rays than in motion, or fewer where the camera moves over ratios at
+ * vertices, and none once every region has its rounds. */
+static double rays_of_rest(const struct tl_resources *resources, bool at_vertices)
 {
     if (resources->scene_round == 0)
         return 1;
-    return resources->points_are_done ? 0 : TL_REST_HASTE;
+    if (resources->points_are_done)
+        return 0;
+    return at_vertices && resources->round == 0 ? 0.5 : TL_REST_HASTE;
 }
 
 static bool is_glossy(const tl_material *material)
@@ -84,6 +87,7 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
     double then = were_ids ? (double)ids->width * ids->height : (double)samples->width * samples->height;
     double covered_then = were_ids ? (double)ids->covered : (double)tl_samples_seen(samples);
     double now = texels_of(&settings->image);
+    bool at_vertices = counts->fits_vertices && light->ratio_at == TL_RATIO_AT_VERTICES;
     double covered = then > 0 ? covered_then / then * now : COVERED_AT_FIRST * now;
     bool shadowed = light->method != TL_METHOD_UNSHADOWED;
     return (struct tl_work_seen){
@@ -93,8 +97,8 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
         .points = points_seen((double)tl_points_visible(resources->points), covered_then, covered),
         .lobes = lobes_of(counts, light),
         .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
-        .refreshed = refreshed(light) * rays_of_rest(resources),
-        .at_vertices = counts->fits_vertices && light->ratio_at == TL_RATIO_AT_VERTICES,
+        .refreshed = refreshed(light) * rays_of_rest(resources, at_vertices),
+        .at_vertices = at_vertices,
         .is_bumpy = counts->is_bumpy,
         .suns = shadowed ? resources->suns.count : 0,
         .lamps = counts->lamps,

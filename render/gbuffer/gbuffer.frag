@@ -41,10 +41,10 @@ vec2 octahedral(vec3 n)
     return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * away;
 }
 
-uint triangle_number()
+// `place`: among those that are drawn.
+uint with_side(uint place)
 {
-    uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;
-    return (number + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
+    return (place + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
 }
 
 #ifdef ONLY_TRIANGLE
@@ -54,7 +54,7 @@ void main()
     if (surface_cut_away(surface_colour(uv).a))
         discard;
 #endif
-    out_triangle = triangle_number();
+    out_triangle = with_side(first_triangle + uint(gl_PrimitiveID)); // the CPU looks its number up (ids.c)
 }
 #else
 void main()
@@ -117,6 +117,6 @@ void main()
     out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
 #endif
     out_specular = vec4(ks, horizon.y);
-    out_triangle = triangle_number();
+    out_triangle = with_side(texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r);
 }
 #endif

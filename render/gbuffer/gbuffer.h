@@ -53,7 +53,7 @@ struct tl_gbuffer_request {
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_detail_params *detail; /* NULL: normals alone */
     bool frames;                           /* with the layer of tangents */
-    bool only_triangle; /* one layer, that of TL_GBUFFER_TRIANGLE: an ID buffer */
+    bool only_triangle; /* one layer, like TL_GBUFFER_TRIANGLE but with places in cull.numbers: an ID buffer */
     const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
 };
 

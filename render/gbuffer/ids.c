@@ -28,22 +28,36 @@ static void reserve(struct tl_id_buffer *buffer, const struct tl_gbuffer_request
     }
 }
 
-/* Threads may mark one triangle at once: they write the same. */
-static void mark_seen(struct tl_id_buffer *buffer)
+/* Replaces places among the triangles that were drawn by the triangles' numbers, row by row, and marks these.
+ * Threads may mark one triangle at once: they write the same. */
+static size_t number_row(struct tl_id_buffer *buffer, const uint32_t *numbers, int y)
 {
-    size_t count = (size_t)buffer->width * (size_t)buffer->height, covered = 0;
+    uint32_t *row = buffer->ids + (size_t)y * (size_t)buffer->width, before = 0, id = 0;
+    size_t covered = 0;
+    for (int x = 0; x < buffer->width; x++) {
+        if (row[x] != before) { /* runs are the rule */
+            before = row[x];
+            id = 0;
+            if (before != 0) {
+                uint32_t triangle = numbers[(before & ~TL_SAMPLE_BACK) - 1], back = before & TL_SAMPLE_BACK;
+                id = (triangle + 1) | back;
+                __atomic_store_n(&buffer->marks[2 * (size_t)triangle + (back ? 1 : 0)], 1, __ATOMIC_RELAXED);
+            }
+        }
+        row[x] = id;
+        covered += id != 0;
+    }
+    return covered;
+}
+
+static void number_pixels(struct tl_id_buffer *buffer)
+{
+    const uint32_t *numbers = buffer->drawn.cull.numbers;
+    size_t covered = 0;
     memset(buffer->marks, 0, 2 * buffer->triangle_count);
 #pragma omp parallel for schedule(static) reduction(+ : covered)
-    for (size_t i = 0; i < count; i++) {
-        uint32_t id = buffer->ids[i];
-        if (id == 0)
-            continue;
-        covered++;
-        if (i > 0 && id == buffer->ids[i - 1])
-            continue; /* runs are the rule */
-        size_t triangle = (id & ~TL_SAMPLE_BACK) - 1;
-        __atomic_store_n(&buffer->marks[2 * triangle + (id & TL_SAMPLE_BACK ? 1 : 0)], 1, __ATOMIC_RELAXED);
-    }
+    for (int y = 0; y < buffer->height; y++)
+        covered += number_row(buffer, numbers, y);
     buffer->covered = covered;
 }
 
@@ -66,7 +80,7 @@ bool tl_ids_draw(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuff
     glGetTextureImage(buffer->drawn.target.colours[0].id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
                       (GLsizei)((size_t)buffer->width * (size_t)buffer->height * sizeof *buffer->ids),
                       buffer->ids);
-    mark_seen(buffer);
+    number_pixels(buffer);
     list_seen(buffer);
     return true;
 }

@@ -397,6 +397,35 @@ TL_INLINE tl_quad shade_pixel(const struct scene *scene, const struct pixel_run 
     return colour;
 }
 
+/* Pixels of a flat run from x on, until the triangle ends. Returns where that is. */
+TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run, const uint32_t *row, int x, int y,
+                         tl_quad *out)
+{
+    const struct tl_pixels_request *request = scene->request;
+    const struct tl_pixel_triangle *triangle = run->triangle;
+    const int width = request->ids->width, suns = request->suns->count;
+    const size_t first = (size_t)y * (size_t)width;
+    const uint32_t id = row[x];
+    float base[3], step[3];
+    for (int i = 0; i < 3; i++) {
+        const float *e = triangle->edges[i];
+        step[i] = e[0];
+        base[i] = e[0] * (0.5f - triangle->x0) + e[1] * ((float)y + 0.5f - triangle->y0) + e[2];
+    }
+    for (; x < width && row[x] == id; x++) {
+        float a = tl_greater(base[0] + step[0] * (float)x, 0),
+              b = tl_greater(base[1] + step[1] * (float)x, 0),
+              c = tl_greater(base[2] + step[2] * (float)x, 0);
+        tl_quad colour = (a * run->diffuse[0] + b * run->diffuse[1] + c * run->diffuse[2]) *
+                         (1 / tl_greater(a + b + c, 1e-30f));
+        for (int i = 0; i < suns; i++)
+            colour += sun_seen(request, i, first + (size_t)x) * run->sunlight[i];
+        colour[3] = 1;
+        out[x] = colour;
+    }
+    return x;
+}
+
 TL_CLONES static void shade_rows(const struct scene *scene, int first, int last, float *image)
 {
     const struct tl_id_buffer *ids = scene->request->ids;
@@ -406,16 +435,21 @@ TL_CLONES static void shade_rows(const struct scene *scene, int first, int last,
         tl_quad *out = (tl_quad *)image + (size_t)y * (size_t)width;
         uint32_t before = 0;
         struct pixel_run run = {0};
-        for (int x = 0; x < width; x++) {
+        for (int x = 0; x < width;) {
             if (row[x] == 0) {
-                out[x] = (tl_quad){0, 0, 0, 0};
+                out[x++] = (tl_quad){0, 0, 0, 0};
                 continue;
             }
             if (row[x] != before) {
                 begin_run(scene, &scene->request->triangles[tl_ids_place(ids, row[x])], &run);
                 before = row[x];
             }
-            out[x] = shade_pixel(scene, &run, x, y);
+            if (run.is_flat && !run.is_mixed && !run.is_fading) {
+                x = shade_flat(scene, &run, row, x, y, out);
+            } else {
+                out[x] = shade_pixel(scene, &run, x, y);
+                x++;
+            }
         }
     }
 }

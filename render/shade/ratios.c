@@ -104,6 +104,8 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
 /* Corners that triangles share are listed once, for the first of these. */
 static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
+    bool all = ratios->update == 0 || ratios->light_revision != request->light_revision;
+    ratios->light_revision = request->light_revision;
     ratios->count = 0;
     ratios->update++;
     for (size_t i = 0; i < request->ids->seen_count; i++) {
@@ -113,11 +115,12 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
             tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
         reserve(ratios, ratios->count + 3);
         for (int k = 0; k < 3; k++) {
-            uint32_t *stamp = &ratios->stamps[2 * (ratios->first_vertex[index] + corners[k]) +
-                                              (seen & TL_SAMPLE_BACK ? 1 : 0)];
-            if (*stamp == ratios->update)
+            size_t place = 2 * (ratios->first_vertex[index] + corners[k]) + (seen & TL_SAMPLE_BACK ? 1 : 0);
+            uint32_t before = ratios->stamps[place];
+            ratios->stamps[place] = ratios->update;
+            bool is_known = !all && before != 0 && before + 1 == ratios->update;
+            if (before == ratios->update || (is_known && (place / 2 + ratios->update) % 2 == 0))
                 continue;
-            *stamp = ratios->update;
             place_sample(ratios, request, seen, index, surface, corners[k]);
         }
     }

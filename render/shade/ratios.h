@@ -21,8 +21,9 @@ struct tl_vertex_ratios {
     size_t surface_count, vertex_count;
     size_t *first_vertex;          /* [surface_count + 1] */
     struct tl_vertex_ratio *items; /* [2 vertex_count]: front, back */
-    uint32_t *stamps;              /* ...: update in which it was made */
+    uint32_t *stamps;              /* ...: update in which it was last seen; 0: never */
     uint32_t update;
+    uint64_t light_revision;
     size_t count, capacity; /* of those made in the last update */
     struct tl_samples samples;
     struct tl_taps *taps;
@@ -40,8 +41,11 @@ struct tl_ratios_request {
     float environment_yaw; /* rad */
     vec3s eye;
     const struct tl_light_params *params;
+    uint64_t light_revision; /* changes with the environment, its yaw and the surfaces' materials */
 };
 
+/* Makes the ratios of half of the vertices that are seen, the other half in the next update, and of all that
+ * were not seen in the last one; of all when the light has changed. */
 void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request);
 void tl_ratios_release(struct tl_vertex_ratios *ratios);
 size_t tl_ratios_bytes(const struct tl_vertex_ratios *ratios);

@@ -37,6 +37,8 @@ struct tl_points_request {
     const struct tl_ray_params *params;
     bool moved; /* surfaces, environment or yaw differ from the last frame: values are replaced, not averaged
                  */
+    bool only_camera;  /* nothing but the camera moved: what is known of the scene is as true as before, and a
+                          frame must be quick */
     bool whole_rounds; /* every frame traces all regions, however long that takes */
 };
 

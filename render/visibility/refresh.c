@@ -181,7 +181,8 @@ static void select_at_rest(const struct tl_refresh *refresh, const struct tl_clu
 {
     float needs[TL_REGIONS_MAX], set[TL_REGIONS_MAX];
     int count = refresh->request->regions->count;
-    int wanted = TL_REST_HASTE * refresh->request->params->refresh;
+    int wanted = refresh->request->params->refresh;
+    wanted = refresh->request->only_camera ? (wanted + 1) / 2 : TL_REST_HASTE * wanted;
     measure_needs(refresh, cluster, lanes, needs, set);
     for (int i = 0; i < count; i++) {
         bool left = cluster->rounds[i] < refresh->request->params->rounds;
