@@ -265,6 +265,16 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
     return governor->choice;
 }
 
+struct tl_quality tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
+                                           const struct tl_settings *settings)
+{
+    const struct tl_quality_scope full = tl_quality_scope_of(settings);
+    tl_bits jobs = tl_renderer_predict_jobs(renderer, frame, &full.drawn);
+    bool is_slow = tl_renderer_predict_ms(renderer, &full.drawn, jobs) > TL_REST_MS;
+    bool has_ratios = tl_quality_count(TL_CONTROL_RATIO, &full) > 1;
+    return (struct tl_quality){.of[TL_CONTROL_RATIO] = is_slow && has_ratios};
+}
+
 void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_renderer *renderer,
                                const tl_frame *frame, const struct tl_settings *settings,
                                struct tl_quality_step out[TL_CONTROL_COUNT])

@@ -227,8 +227,10 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
         end = append(end, stop, "%s%.0f ms", has_frames ? " of " : "budget ", (double)budget_ms);
     else
         end = append(end, stop, "%sno budget", has_frames ? ", " : "");
-    if (tl_review_is_sharp(review))
-        end = append(end, stop, ": full quality");
+    if (tl_review_is_sharp(review)) { /* ratios at vertices are all that an image at rest may save */
+        append(end, stop, levels->of[TL_CONTROL_RATIO] > 0 ? ": sharp" : ": full quality");
+        return (struct tl_panel_strip){times, all->count, budget_ms, label};
+    }
     const char *before = ": ";
     for (int i = 0; i < TL_CONTROL_COUNT; i++)
         if (levels->of[i] > 0 && i != TL_CONTROL_SCALE) {

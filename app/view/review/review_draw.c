@@ -12,6 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What decides the quality of an image: the budget, TL_REST_MS, or nothing but the settings. */
+enum tl_pace { TL_PACE_BUDGET, TL_PACE_REST, TL_PACE_EXACT };
+
 static const char *base_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -154,12 +157,24 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
         tl_quality_governor_choose(review->governor, review->renderer, &coming, settings);
 }
 
+/* The levels of an image at rest, and more samples a pixel than a preset for motion asks for: edges without steps. */
+static void choose_rest(struct tl_review *review, struct tl_settings *settings)
+{
+    const int smooth = 2;
+    const tl_frame coming = tl_session_frame(review->session);
+    settings->image.supersample =
+        settings->image.supersample > smooth ? settings->image.supersample : smooth;
+    review->quality_choice.levels = tl_quality_governor_rest(review->renderer, &coming, settings);
+}
+
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
  * are compared. */
-static bool draw_image(struct tl_review *review, const struct tl_settings *settings, bool is_paced,
+static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum tl_pace pace,
                        tl_error *error)
 {
     struct tl_quality *levels = &review->quality_choice.levels;
+    struct tl_settings smooth = *settings;
+    bool is_paced = pace == TL_PACE_BUDGET;
     review->times.lap_s = tl_clock_s();
     if (!is_paced)
         *levels = (struct tl_quality){{0}};
@@ -169,6 +184,10 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
         return false;
     if (is_paced)
         choose_levels(review, settings);
+    if (pace == TL_PACE_REST) {
+        choose_rest(review, &smooth);
+        settings = &smooth;
+    }
     b = tl_quality_apply(levels, settings);
     if (!tl_session_apply(review->session, &b, error))
         return false;
@@ -189,6 +208,7 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     review->drawn_count++;
     review->is_new = true;
     review->is_paced = is_paced;
+    review->is_exact = pace == TL_PACE_EXACT;
     tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
              tl_session_frame_number(review->session), review->times.draw);
     return true;
@@ -207,7 +227,7 @@ static void accept_settings(struct tl_review *review, const struct tl_settings *
 }
 
 /* Draws `wanted`. When that fails, reports it and draws `good` instead; false only when that fails too. */
-static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
+static bool redraw(struct tl_review *review, enum tl_pace pace, tl_error *error)
 {
     int width, height;
     bool is_another = review->changed || review->image_is_old; /* new content, rather than a refinement */
@@ -215,7 +235,7 @@ static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
     review->wanted.image.width = width;
     review->wanted.image.height = height;
     struct tl_settings followed = tl_review_drawable_settings(review);
-    if (!draw_image(review, &followed, is_paced, error)) {
+    if (!draw_image(review, &followed, pace, error)) {
         if (tl_interrupted())
             return false;
         tl_review_report_error(review, error);
@@ -223,30 +243,27 @@ static bool redraw(struct tl_review *review, bool is_paced, tl_error *error)
         review->good.image.width = width;
         review->good.image.height = height;
         review->wanted = review->good;
-        if (!draw_image(review, &review->good, is_paced, error))
+        if (!draw_image(review, &review->good, pace, error))
             return false;
     } else {
         accept_settings(review, &followed);
     }
     review->changed = review->image_is_old = false;
     int redraws_min =
-        is_paced || !is_another ? 1 : 2; /* ImGui needs a second frame to find the size of new texts */
+        pace == TL_PACE_BUDGET || !is_another ? 1 : 2; /* ImGui needs a second frame to find the size of new texts */
     review->redraws = review->redraws > redraws_min ? review->redraws : redraws_min;
     return true;
 }
 
 bool tl_review_is_sharp(const struct tl_review *review)
 {
-    for (int i = 0; i < TL_CONTROL_COUNT; i++)
-        if (review->quality_choice.levels.of[i] > 0)
-            return false;
-    return true;
+    return review->drawn_count > 0 && !review->is_paced;
 }
 
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
-    bool is_done = tl_review_is_sharp(review) && !review->changed && !review->image_is_old;
-    return is_done || redraw(review, false, error);
+    bool is_done = review->is_exact && !review->changed && !review->image_is_old;
+    return is_done || redraw(review, TL_PACE_EXACT, error);
 }
 
 bool tl_review_is_at_rest(const struct tl_review *review)
@@ -263,5 +280,6 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error)
     bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
-    return waits || !is_due || redraw(review, tl_review_is_moving(review), error);
+    return waits || !is_due ||
+           redraw(review, tl_review_is_moving(review) ? TL_PACE_BUDGET : TL_PACE_REST, error);
 }

@@ -1,5 +1,5 @@
 /* When an image of the review window is drawn, and how it gets on the screen: within the budget while
- * something moves, at the settings' quality as soon as nothing does. Owns `times`, the governor, and the
+ * something moves, sharp and with smooth edges as soon as nothing does. Owns `times`, the governor, and the
  * flags changed, image_is_old, is_paced and is_new. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_DRAW_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_DRAW_H
@@ -9,9 +9,9 @@
 /* Simulates and draws what is due. What cannot be drawn is reported, and the last good settings are drawn
  * instead; false only when these fail too, or on an interrupt. */
 bool tl_review_update_image(struct tl_review *review, tl_error *error);
-/* Whether the image has the settings' full quality. */
+/* Whether the image is one of a rest: every pixel drawn, edges smoothed. */
 bool tl_review_is_sharp(const struct tl_review *review);
-/* Draws an image of full quality, unless there is one. */
+/* Draws an image at the quality of the settings, as `toile render` does, unless there is one. */
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error);
 /* Whether drawing again would not refine the image: its jittered rounds are averaged. */
 bool tl_review_is_at_rest(const struct tl_review *review);
