@@ -128,8 +128,9 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
     for (int i = 0; i < job->suns->count; i++)
         request.sun_visibility[i] = job->sun_pixels->visible[i];
     const struct tl_size_input *size = job->size;
-    if (size->columns == size->width && size->rows == size->height) {
-        tl_pixels_shade(&request, tl_present_begin_cpu_image(job->present, size->width, size->height));
+    int side = size->columns / size->width;
+    if (side * size->width == size->columns && side * size->height == size->rows) {
+        tl_pixels_shade(&request, side, tl_present_begin_cpu_image(job->present, size->width, size->height));
         free(triangles);
         return true;
     }
@@ -138,7 +139,7 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
                                    .to_width = size->width,
                                    .to_height = size->height};
     float *shaded = tl_alloc(4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
-    tl_pixels_shade(&request, shaded);
+    tl_pixels_shade(&request, 1, shaded);
     resample.from = shaded;
     resample.to = tl_present_begin_cpu_image(job->present, size->width, size->height);
     tl_resample(&resample);

@@ -426,13 +426,14 @@ TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run,
     return x;
 }
 
-TL_CLONES static void shade_rows(const struct scene *scene, int first, int last, float *image)
+/* Rows first .. last - 1 of the ID buffer to `to`. */
+TL_CLONES static void shade_rows(const struct scene *scene, int first, int last, float *to)
 {
     const struct tl_id_buffer *ids = scene->request->ids;
     const int width = ids->width;
     for (int y = first; y < last; y++) {
         const uint32_t *row = ids->ids + (size_t)y * (size_t)width;
-        tl_quad *out = (tl_quad *)image + (size_t)y * (size_t)width;
+        tl_quad *out = (tl_quad *)to + (size_t)(y - first) * (size_t)width;
         uint32_t before = 0;
         struct pixel_run run = {0};
         for (int x = 0; x < width;) {
@@ -472,7 +473,46 @@ static void place_rays(const struct tl_pixels_request *request, struct scene *sc
         glms_vec3_add(scene->first, glms_vec3_scale(glms_vec3_add(scene->across, scene->up), 0.5f));
 }
 
-void tl_pixels_shade(const struct tl_pixels_request *request, float *image)
+static void shade_all(const struct scene *scene, float *image)
+{
+    const int width = scene->request->ids->width, height = scene->request->ids->height;
+#pragma omp parallel for schedule(dynamic)
+    for (int first = 0; first < height; first += ROWS)
+        shade_rows(scene, first, first + ROWS < height ? first + ROWS : height,
+                   image + 4 * (size_t)first * (size_t)width);
+}
+
+/* A pixel of the image from `side` rows of samples. */
+TL_CLONES static void average_rows(const float *rows, int width, int side, float *to)
+{
+    const tl_quad *samples = (const tl_quad *)rows;
+    const float share = 1 / (float)(side * side);
+    for (int x = 0; x < width / side; x++) {
+        tl_quad sum = {0, 0, 0, 0};
+        for (int j = 0; j < side; j++)
+            for (int i = 0; i < side; i++)
+                sum += samples[j * width + x * side + i];
+        ((tl_quad *)to)[x] = share * sum;
+    }
+}
+
+/* Row by row, so that samples never leave the cache. */
+static void shade_and_average(const struct scene *scene, int side, float *image)
+{
+    const int width = scene->request->ids->width, height = scene->request->ids->height / side;
+#pragma omp parallel
+    {
+        float *rows = TL_NEW_ARRAY(float, 4 * (size_t)side * (size_t)width);
+#pragma omp for schedule(dynamic, 4)
+        for (int y = 0; y < height; y++) {
+            shade_rows(scene, y * side, (y + 1) * side, rows);
+            average_rows(rows, width, side, image + 4 * (size_t)y * (size_t)(width / side));
+        }
+        free(rows);
+    }
+}
+
+void tl_pixels_shade(const struct tl_pixels_request *request, int side, float *image)
 {
     struct blends *blends = TL_NEW(struct blends);
     struct scene scene = {.request = request,
@@ -483,9 +523,9 @@ void tl_pixels_shade(const struct tl_pixels_request *request, float *image)
     place_rays(request, &scene);
     for (int i = 0; i < request->suns->count; i++)
         scene.suns[i] = tl_turn_direction(request->suns->items[i].direction, request->environment_yaw);
-#pragma omp parallel for schedule(dynamic)
-    for (int first = 0; first < request->ids->height; first += ROWS)
-        shade_rows(&scene, first, first + ROWS < request->ids->height ? first + ROWS : request->ids->height,
-                   image);
+    if (side == 1)
+        shade_all(&scene, image);
+    else
+        shade_and_average(&scene, side, image);
     free(blends);
 }
