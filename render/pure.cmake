@@ -58,6 +58,7 @@ add_library(toile_light STATIC
   plan/plan.c
   present/behind.c
   present/resample.c
+  present/resolve.c
   present/tone_map.c
   reference/detail.c
   reference/gather.c

@@ -310,10 +310,8 @@
     IO(READS, yaw)                                                                                           \
     IO(READS, camera)                                                                                        \
     IO(READS, view_options)                                                                                  \
-    IO(READS, gbuffer)                                                                                       \
     IO(WRITES, light)                                                                                        \
-    IO(WRITES, strain_range)                                                                                 \
-    IO(USES, gpu)
+    IO(WRITES, strain_range)
 
 #define TL_ENVMAP_LOBES_JOB(IO)                                                                              \
     IO(READS, environment)                                                                                   \

@@ -128,13 +128,18 @@ bool tl_run_inspect(const struct tl_inspect_job *job, tl_error *error)
                                                .view = &job->camera->view,
                                                .environment_yaw = *job->yaw};
     tl_inspect_paint(&request, job->light->texels);
-    tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
+    tl_light_buffer_finish(job->light, job->samples);
     return true;
 }
 
 bool tl_run_resolve(const struct tl_resolve_job *job, tl_error *error)
 {
     (void)error;
+    if (job->light->is_finished) {
+        tl_present_resolve_texels(job->present, job->light->texels, job->size->columns, job->size->rows,
+                                  job->size->width, job->size->height);
+        return true;
+    }
     tl_present_resolve(job->present, *job->gpu, &job->light->target.colours[0],
                        &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->width, job->size->height);
     return true;

@@ -194,7 +194,10 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
     }
     tl_compose(&request, job->light->texels);
     add_lamps(job, &request);
-    tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
+    if (*job->facts & TL_BIT(TL_SCENE_LAMPS)) /* the rest of their light is added on the GPU */
+        tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
+    else
+        tl_light_buffer_finish(job->light, job->samples);
     return true;
 }
 

@@ -34,6 +34,7 @@ void tl_light_buffer_begin(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl
 {
     const float black[] = {0, 0, 0, 0};
     allocate(buffer, gpu, gbuffer);
+    buffer->is_finished = false;
     if (is_first)
         glClearNamedFramebufferfv(buffer->target.id, GL_COLOR, 0, black);
     glBindFramebuffer(GL_FRAMEBUFFER, buffer->target.id);
@@ -53,7 +54,21 @@ void tl_light_buffer_clear(struct tl_light_buffer *buffer, int width, int height
         buffer->texels = tl_alloc(bytes, 1);
         buffer->bytes = bytes;
     }
-    memset(buffer->texels, 0, bytes);
+    buffer->is_finished = false;
+    size_t row_floats = 4 * (size_t)width;
+#pragma omp parallel for
+    for (int y = 0; y < height; y++)
+        memset(buffer->texels + (size_t)y * row_floats, 0, row_floats * sizeof *buffer->texels);
+}
+
+void tl_light_buffer_finish(struct tl_light_buffer *buffer, const struct tl_samples *samples)
+{
+#pragma omp parallel for
+    for (size_t i = 0; i < samples->primary_count; i++) {
+        float *alpha = buffer->texels + 4 * (size_t)samples->items[i].texel + 3;
+        *alpha = samples->items[i].cover - *alpha;
+    }
+    buffer->is_finished = true;
 }
 
 void tl_light_buffer_send(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl_target *gbuffer)

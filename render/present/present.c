@@ -2,7 +2,7 @@
 
 #include "config/memory.h"
 #include "render/gpu/shaders.h"
-#include "render/present/resample.h"
+#include "render/present/resolve.h"
 
 #include <epoxy/gl.h>
 
@@ -71,15 +71,21 @@ static void resolve_by_resampling(struct tl_present *present, const tl_texture *
 #pragma omp parallel for
     for (size_t i = 0; i < count; i++) /* as resolve.frag has it */
         light[4 * i + 3] = point[4 * i + 3] - light[4 * i + 3];
-    const struct tl_resample resample = {.from = light,
-                                         .from_width = lights->width,
-                                         .from_height = lights->height,
-                                         .to = tl_present_begin_cpu_image(present, width, height),
-                                         .to_width = width,
-                                         .to_height = height};
-    tl_resample(&resample);
+    tl_present_resolve_texels(present, light, lights->width, lights->height, width, height);
     free(point);
     free(light);
+}
+
+void tl_present_resolve_texels(struct tl_present *present, const float *texels, int columns, int rows,
+                               int width, int height)
+{
+    const struct tl_resample resolve = {.from = texels,
+                                        .from_width = columns,
+                                        .from_height = rows,
+                                        .to = tl_present_begin_cpu_image(present, width, height),
+                                        .to_width = width,
+                                        .to_height = height};
+    tl_resolve(&resolve);
 }
 
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,

@@ -46,6 +46,10 @@ bool tl_present_reload(struct tl_present *present, tl_error *error); /* its shad
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
                         const tl_texture *points, int width, int height);
 
+/* The same for light on the CPU, [rows][columns][4]: premultiplied by the coverage in alpha. */
+void tl_present_resolve_texels(struct tl_present *present, const float *texels, int columns, int rows,
+                               int width, int height);
+
 /* Begins an image that is made on the CPU: tl_linear_image_begin_cpu. */
 float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height);
 /* Takes an image that was made elsewhere: F32 RGBA, rows downwards. */

@@ -3,8 +3,8 @@
 #include "assets/builtin/weave.h"
 #include "config/memory.h"
 #include "render/brdf/brdf.h"
-#include "render/scene/view.h"
 #include "render/reference/shading_point.h"
+#include "render/scene/view.h"
 
 #include "tests/testing.h"
 

@@ -79,7 +79,6 @@ static void open_scene(struct test_scene *scene, tl_environment environment, int
     scene->settings.light.visibility = TL_VISIBILITY_RAYS;
     scene->settings.light.composition = TL_COMPOSE_RATIO;
     scene->settings.light.regions = 8;
-    scene->settings.image.scale = 0.9f; /* such images are made on the CPU */
 }
 
 static void expect_same_backgrounds(tl_renderer *renderer, struct test_scene *scene, const char *where)
