@@ -226,15 +226,17 @@ static void choose_in_motion(tl_quality_governor *governor, const struct tl_budg
     tl_debug("governor: %s", choice->reason);
 }
 
-/* Level 0 of every control. At rest no next frame is waited for. The first frame runs every job at any level,
- * and the memory that it allocates makes the first frames at other levels cheap. */
+/* Level 0 of every control. At rest no next frame is waited for. The first frame of a motion within a budget,
+ * of whose cost nothing is known, has ratios at vertices: they are the first to be saved. */
 static void choose_whole(tl_quality_governor *governor, const struct tl_budget *budget)
 {
-    const uint8_t best[TL_BUDGET_CONTROLS_MAX] = {0};
+    uint8_t best[TL_BUDGET_CONTROLS_MAX] = {0};
+    bool is_hurried = governor->budget_ms > 0 && governor->rested < REST_FRAMES;
+    best[TL_CONTROL_RATIO] = is_hurried && budget->level_counts[TL_CONTROL_RATIO] > 1;
     governor->choice.change_ms = budget->change(budget->context, best);
     governor->choice.predicted_ms = governor->choice.min_ms =
         budget->cost(budget->context, best) + governor->choice.change_ms;
-    governor->choice.levels = (struct tl_quality){{0}};
+    governor->choice.levels = levels_of(best);
 }
 
 struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governor, tl_renderer *renderer,

@@ -41,8 +41,8 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
                                                     const tl_frame *frame,
                                                     const struct tl_settings *settings);
 
-/* Returns the levels of an image at rest, for which nobody waits but the next gesture: full quality; with ratios
- * at vertices where a frame would hold that gesture up for longer than TL_REST_MS. */
+/* Returns the levels of an image at rest, for which nobody waits but the next gesture: full quality; with
+ * ratios at vertices where a frame would hold that gesture up for longer than TL_REST_MS. */
 #define TL_REST_MS 300
 struct tl_quality tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
                                            const struct tl_settings *settings);

@@ -1,8 +1,9 @@
 /* Quality controls: what is reduced so that a frame fits its budget, level by level; what a level makes of
  * the settings, and how much it adds to their error.
  *
- * Errors are mean FLIP against the ray-traced image over covered pixels, in motion, and independent: their
- * squares add. They are measured by `toile trade --axis levels`. Threads: all functions are pure. */
+ * Errors are mean FLIP against the ray-traced image over covered pixels, in motion (that of fewer samples
+ * counts twice: missing detail is seen without a comparison), and independent: their squares add. They are
+ * measured by `toile trade --axis levels`. Threads: all functions are pure. */
 #ifndef TOILE_APP_BUDGET_QUALITY_H
 #define TOILE_APP_BUDGET_QUALITY_H
 

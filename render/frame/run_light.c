@@ -138,7 +138,7 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
                                    .from_height = size->rows,
                                    .to_width = size->width,
                                    .to_height = size->height};
-    float *shaded = tl_alloc(4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
+    float *shaded = tl_resize(NULL, 4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
     tl_pixels_shade(&request, 1, shaded);
     resample.from = shaded;
     resample.to = tl_present_begin_cpu_image(job->present, size->width, size->height);

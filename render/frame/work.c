@@ -33,8 +33,8 @@ static double refreshed(const struct tl_light_params *light)
     return light->rays * (light->refresh > 0 && light->refresh < regions ? light->refresh : regions);
 }
 
-/* While the scene rests a frame traces more rays than in motion, or fewer where the camera moves over ratios at
- * vertices, and none once every region has its rounds. */
+/* While the scene rests a frame traces more rays than in motion, or fewer where the camera moves over ratios
+ * at vertices, and none once every region has its rounds. */
 static double rays_of_rest(const struct tl_resources *resources, bool at_vertices)
 {
     if (resources->scene_round == 0)
@@ -165,8 +165,8 @@ struct tl_work tl_points_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
     double samples = seen->at_vertices ? 0 : (4e-5 + 1e-4 * seen->suns) * seen->covered;
-    return (struct tl_work){{1e-4 * seen->triangles, samples,
-                             2e-4 * seen->points, 8e-5 * seen->points * seen->refreshed}};
+    return (struct tl_work){
+        {1e-4 * seen->triangles, samples, 2e-4 * seen->points, 8e-5 * seen->points * seen->refreshed}};
 }
 
 struct tl_work tl_compose_work(const void *context)

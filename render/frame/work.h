@@ -22,7 +22,7 @@ struct tl_work_seen {
 struct tl_work_counts {
     double triangles;
     int lamps;
-    bool fits_vertices; /* ratios at vertices can light the pixels */
+    bool fits_vertices;                   /* ratios at vertices can light the pixels */
     bool is_glossy, is_faceted, is_bumpy; /* any material */
 };
 struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings);

@@ -97,7 +97,7 @@ void tl_resample(const struct tl_resample *resample)
     struct reads *columns = list_reads(resample->from_width, resample->to_width);
     struct reads *rows = list_reads(resample->from_height, resample->to_height);
     int row_floats = 4 * resample->to_width;
-    float *wide = TL_NEW_ARRAY(float, (size_t)row_floats *(size_t)resample->from_height);
+    float *wide = tl_resize(NULL, (size_t)row_floats * (size_t)resample->from_height, sizeof *wide);
 #pragma omp parallel for
     for (int y = 0; y < resample->from_height; y++)
         resample_row(resample->from + 4 * (size_t)y * (size_t)resample->from_width, resample->from_width,

@@ -398,8 +398,8 @@ TL_INLINE tl_quad shade_pixel(const struct scene *scene, const struct pixel_run 
 }
 
 /* Pixels of a flat run from x on, until the triangle ends. Returns where that is. */
-TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run, const uint32_t *row, int x, int y,
-                         tl_quad *out)
+TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run, const uint32_t *row, int x,
+                         int y, tl_quad *out)
 {
     const struct tl_pixels_request *request = scene->request;
     const struct tl_pixel_triangle *triangle = run->triangle;

@@ -28,8 +28,8 @@ struct tl_pixels_request {
     float environment_yaw; /* rad */
 };
 
-/* Writes RGBA [height / side][width / side] of the ID buffer, rows upwards: means of `side` x `side` samples; 0
- * where nothing is covered. `side` divides both. */
+/* Writes RGBA [height / side][width / side] of the ID buffer, rows upwards: means of `side` x `side` samples;
+ * 0 where nothing is covered. `side` divides both. */
 void tl_pixels_shade(const struct tl_pixels_request *request, int side, float *image);
 
 #endif

@@ -157,13 +157,13 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
         tl_quality_governor_choose(review->governor, review->renderer, &coming, settings);
 }
 
-/* The levels of an image at rest, and more samples a pixel than a preset for motion asks for: edges without steps. */
+/* The levels of an image at rest, and more samples a pixel than a preset for motion asks for: edges without
+ * steps. */
 static void choose_rest(struct tl_review *review, struct tl_settings *settings)
 {
     const int smooth = 2;
     const tl_frame coming = tl_session_frame(review->session);
-    settings->image.supersample =
-        settings->image.supersample > smooth ? settings->image.supersample : smooth;
+    settings->image.supersample = settings->image.supersample > smooth ? settings->image.supersample : smooth;
     review->quality_choice.levels = tl_quality_governor_rest(review->renderer, &coming, settings);
 }
 
@@ -249,8 +249,9 @@ static bool redraw(struct tl_review *review, enum tl_pace pace, tl_error *error)
         accept_settings(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    int redraws_min =
-        pace == TL_PACE_BUDGET || !is_another ? 1 : 2; /* ImGui needs a second frame to find the size of new texts */
+    int redraws_min = pace == TL_PACE_BUDGET || !is_another
+                          ? 1
+                          : 2; /* ImGui needs a second frame to find the size of new texts */
     review->redraws = review->redraws > redraws_min ? review->redraws : redraws_min;
     return true;
 }

@@ -246,7 +246,7 @@ static void records_come_back(void **unused)
 }
 
 #define HEADS                                                                                                \
-    "frame,warm_up,total_ms,level_ratio,level_refresh,level_regions,level_relief,level_cloth,level_scale,"    \
+    "frame,warm_up,total_ms,level_ratio,level_refresh,level_regions,level_relief,level_cloth,level_scale,"   \
     "job_light_ms,new\n"
 
 static void broken_records_are_refused(void **unused)
