@@ -178,8 +178,8 @@ static void draw_surfaces(const struct tl_gbuffer *gbuffer, const struct tl_gbuf
 static bool draw_triangles(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
                            tl_error *error)
 {
-    bool has_masked = tl_surfaces_have(request->surfaces, TL_PARTS_MASKED);
-    for (int masked = 0; masked <= has_masked; masked++) {
+    int programs = tl_surfaces_have(request->surfaces, TL_PARTS_MASKED) ? 2 : 1;
+    for (int masked = 0; masked < programs; masked++) {
         const tl_program *program = program_of(gbuffer, gpu, request, masked, error);
         if (!program)
             return false;

@@ -158,7 +158,7 @@ int tl_fan_table_look_up(const struct tl_fan_table *table, const struct tl_brdf_
         return 0;
     float side = tl_fan_fetch(table, glms_vec3_dot(viewer, frame->tangent),
                               glms_vec3_dot(viewer, frame->bitangent), cosine, glossiness, sums);
-    for (int k = 0; k < table->lobe_count; k++) {
+    for (size_t k = 0; k < (size_t)table->lobe_count; k++) {
         const tl_quad at = sums[2 * k], weight = sums[2 * k + 1];
         vec3s d = glms_vec3_scale(frame->tangent, side * at[0]);
         d = glms_vec3_add(d, glms_vec3_scale(frame->bitangent, side * at[1]));

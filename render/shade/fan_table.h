@@ -95,7 +95,7 @@ TL_INLINE void tl_fan_add_nodes(const struct tl_fan_table *table, const struct t
         const tl_quad *lobe = (const tl_quad *)&nodes[(i >> 1) * TL_FAN_AZIMUTHS + (i & 1)];
         bool reversed = orders >> i & 1;
         lobe += reversed ? 2 * (table->lobe_count - 1) : 0;
-        for (int k = 0; k < table->lobe_count; k++, lobe += reversed ? -2 : 2) {
+        for (size_t k = 0; k < (size_t)table->lobe_count; k++, lobe += reversed ? -2 : 2) {
             sums[2 * k] += weight * lobe[0];
             sums[2 * k + 1] += weight * lobe[1];
         }
@@ -128,8 +128,8 @@ TL_INLINE float tl_fan_fetch(const struct tl_fan_table *table, float x, float y,
     const struct tl_fan_node *nodes = tl_fan_nodes(table, gloss.first, row.first, column.first);
     int orders = (int)nodes->lobes[0].orders;
     tl_fan_add_nodes(table, nodes, orders, 1 - gloss.share, row, column, sums);
-    tl_fan_add_nodes(table, nodes + TL_FAN_COSINES * TL_FAN_AZIMUTHS, orders >> 4, gloss.share, row, column,
-                     sums);
+    tl_fan_add_nodes(table, nodes + (size_t)TL_FAN_COSINES * TL_FAN_AZIMUTHS, orders >> 4, gloss.share, row,
+                     column, sums);
     return side;
 }
 

@@ -203,10 +203,12 @@ void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surf
                              size_t count, uint64_t shapes_revision, const struct tl_detail_params *detail,
                              int fan)
 {
-    if (materials->shapes_revision != shapes_revision)
+    if (materials->shapes_revision != shapes_revision) {
         tl_shade_materials_release(materials);
-    free(materials->first_parts);
-    free(materials->parts);
+    } else {
+        free(materials->first_parts);
+        free(materials->parts);
+    }
     materials->shapes_revision = shapes_revision;
     materials->detail = *detail;
     materials->surface_count = count;
@@ -236,7 +238,13 @@ void tl_shade_materials_release(struct tl_shade_materials *materials)
     free(materials->fans);
     free(materials->first_parts);
     free(materials->parts);
-    *materials = (struct tl_shade_materials){0};
+    /* one by one: clang's analyser does not follow pointers through the assignment of a whole struct */
+    materials->images = NULL;
+    materials->fans = NULL;
+    materials->first_parts = NULL;
+    materials->parts = NULL;
+    materials->image_count = materials->fan_count = materials->surface_count = 0;
+    materials->shapes_revision = 0;
 }
 
 size_t tl_shade_materials_bytes(const struct tl_shade_materials *materials)

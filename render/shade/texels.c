@@ -18,6 +18,7 @@ static float value_of(const struct tl_map_texture *map, int level, size_t index,
         return c == 3 ? 1 : 0;
     size_t at = index * (size_t)channels + (size_t)c;
     if (level > 0)
+        /* cppcheck-suppress arrayIndexOutOfBoundsCond; level < map->level_count */
         return map->levels[level][at];
     if (map->image->type == TL_IMAGE_F32)
         return tl_image_floats(map->image)[at];
