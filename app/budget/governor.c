@@ -10,6 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Samples a pixel side at least, where ratios at vertices make them cheap: with a quarter of the pixels a
+ * garment can be judged. Rather fewer frames a second than fewer samples. Scenes whose samples are dear (open
+ * cloth, lamps) may go lower. */
+#define SAMPLES_MIN 0.5f
+
 /* After this many frames without a change the viewer is looking at a still image. */
 #define REST_FRAMES 3
 
@@ -155,6 +160,23 @@ static struct coming look_ahead(const tl_quality_governor *governor, const tl_re
     return coming;
 }
 
+static bool has_cheap_samples(const struct tl_quality_governor *governor, const struct coming *coming)
+{
+    return governor->level_counts[TL_CONTROL_RATIO] > 1 && coming->running[0] != coming->running[1];
+}
+
+static int count_scales(const struct tl_quality_governor *governor, const struct coming *coming)
+{
+    int count = 1;
+    for (; count < governor->level_counts[TL_CONTROL_SCALE]; count++) {
+        struct tl_quality levels = {.of[TL_CONTROL_SCALE] = (uint8_t)count};
+        const struct tl_quality_scope at = tl_quality_scope_at(&levels, &coming->full);
+        if (at.drawn.image.scale * (float)at.drawn.image.supersample < SAMPLES_MIN - 1e-3f)
+            break;
+    }
+    return count;
+}
+
 static struct tl_budget budget_of(const tl_quality_governor *governor, const struct coming *coming)
 {
     struct tl_budget budget = {.control_count = TL_CONTROL_COUNT,
@@ -163,6 +185,8 @@ static struct tl_budget budget_of(const tl_quality_governor *governor, const str
                                .error = error_of,
                                .context = coming};
     memcpy(budget.level_counts, governor->level_counts, sizeof governor->level_counts);
+    if (has_cheap_samples(governor, coming))
+        budget.level_counts[TL_CONTROL_SCALE] = count_scales(governor, coming);
     return budget;
 }
 
@@ -253,6 +277,7 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
         prepare_regions(governor, renderer, frame, &full);
     const struct coming coming = look_ahead(governor, renderer, frame, &full);
     const struct tl_budget budget = budget_of(governor, &coming);
+    governor->level_counts[TL_CONTROL_SCALE] = budget.level_counts[TL_CONTROL_SCALE];
     governor->choice.reason[0] = '\0';
     if (governor->budget_ms > 0 && governor->rested < REST_FRAMES && governor->cloth.runs > 0)
         choose_in_motion(governor, &budget);
@@ -267,14 +292,18 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
     return governor->choice;
 }
 
-struct tl_quality tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
-                                           const struct tl_settings *settings)
+struct tl_quality_rest tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
+                                                const struct tl_settings *settings)
 {
     const struct tl_quality_scope full = tl_quality_scope_of(settings);
-    tl_bits jobs = tl_renderer_predict_jobs(renderer, frame, &full.drawn);
-    bool is_slow = tl_renderer_predict_ms(renderer, &full.drawn, jobs) > TL_REST_MS;
-    bool has_ratios = tl_quality_count(TL_CONTROL_RATIO, &full) > 1;
-    return (struct tl_quality){.of[TL_CONTROL_RATIO] = is_slow && has_ratios};
+    struct tl_quality_rest rest = {.is_slow = true};
+    for (int level = 0; level < tl_quality_count(TL_CONTROL_RATIO, &full) && rest.is_slow; level++) {
+        rest.levels.of[TL_CONTROL_RATIO] = (uint8_t)level;
+        const struct tl_quality_scope at = tl_quality_scope_at(&rest.levels, &full);
+        tl_bits jobs = tl_renderer_predict_jobs(renderer, frame, &at.drawn);
+        rest.is_slow = tl_renderer_predict_ms(renderer, &at.drawn, jobs) > TL_REST_MS;
+    }
+    return rest;
 }
 
 void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_renderer *renderer,

@@ -44,8 +44,12 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
 /* Returns the levels of an image at rest, for which nobody waits but the next gesture: full quality; with
  * ratios at vertices where a frame would hold that gesture up for longer than TL_REST_MS. */
 #define TL_REST_MS 300
-struct tl_quality tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
-                                           const struct tl_settings *settings);
+struct tl_quality_rest {
+    struct tl_quality levels;
+    bool is_slow; /* even so */
+};
+struct tl_quality_rest tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
+                                                const struct tl_settings *settings);
 
 /* Learns from a frame drawn at the levels chosen last: its plan with took_ms, the time of the cloth, and the
  * total time from the choice to the finished image. */

@@ -16,8 +16,8 @@ static const int level_counts[TL_CONTROL_COUNT] = {2, 3, 4, 3, 3, TL_COUNT(scale
 #define REGIONS_MIN  24
 #define REFRESH_MIN  2
 #define RELIEF_MIN   8
-#define SUBSTEPS_MIN 8    /* of the preview solver, per frame */
-#define SAMPLES_MIN  0.5f /* a pixel side: below a quarter of the pixels a garment cannot be judged */
+#define SUBSTEPS_MIN 8     /* of the preview solver, per frame */
+#define SAMPLES_MIN  0.25f /* a pixel side: with fewer a garment cannot be made out */
 
 static int halved(int value, int times, int minimum)
 {

@@ -157,14 +157,19 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
         tl_quality_governor_choose(review->governor, review->renderer, &coming, settings);
 }
 
-/* The levels of an image at rest, and more samples a pixel than a preset for motion asks for: edges without
- * steps. */
+/* The levels of an image at rest, and more samples a pixel than a preset for motion asks for, so that edges
+ * have no steps; but for scenes in which these would take long. */
 static void choose_rest(struct tl_review *review, struct tl_settings *settings)
 {
-    const int smooth = 2;
+    const int smooth = 2, asked = settings->image.supersample;
     const tl_frame coming = tl_session_frame(review->session);
-    settings->image.supersample = settings->image.supersample > smooth ? settings->image.supersample : smooth;
-    review->quality_choice.levels = tl_quality_governor_rest(review->renderer, &coming, settings);
+    settings->image.supersample = asked > smooth ? asked : smooth;
+    struct tl_quality_rest rest = tl_quality_governor_rest(review->renderer, &coming, settings);
+    if (rest.is_slow) {
+        settings->image.supersample = asked;
+        rest = tl_quality_governor_rest(review->renderer, &coming, settings);
+    }
+    review->quality_choice.levels = rest.levels;
 }
 
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
