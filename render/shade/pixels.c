@@ -5,6 +5,7 @@
 #include "render/light/terms.h"
 #include "render/shade/look.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -220,9 +221,10 @@ TL_INLINE tl_quad light_of_facets(const struct scene *scene, const struct pixel_
             bitangent = turned_quad(scene, gloss->frame.bitangent, side),
             normal = turned_quad(scene, gloss->frame.normal, 1);
     /* All lobes of a fan have the same exponent. */
-    const struct tl_exponent_blend blend = blend_of(scene, nodes[fan->lobe_count / 2 * 2][3]);
+    const struct tl_exponent_blend blend = blend_of(scene, nodes[fan->lobe_count & ~1][3]);
     for (int k = 0; k < fan->lobe_count; k++) {
-        const tl_quad local = nodes[2 * k], weight = nodes[2 * k + 1];
+        const size_t node = 2 * (size_t)k;
+        const tl_quad local = nodes[node], weight = nodes[node + 1];
         tl_quad d = local[0] * tangent + local[1] * bitangent + local[2] * normal;
         tl_quad exact =
             tl_lobes_fetch_quad(scene->request->lobes, tl_octahedral_place(d[0], d[1], d[2]), blend);
@@ -445,6 +447,7 @@ TL_CLONES static void shade_rows(const struct scene *scene, int first, int last,
                 begin_run(scene, &scene->request->triangles[tl_ids_place(ids, row[x])], &run);
                 before = row[x];
             }
+            assert(run.triangle); /* of the first covered pixel */
             if (run.is_flat && !run.is_mixed && !run.is_fading) {
                 x = shade_flat(scene, &run, row, x, y, out);
             } else {

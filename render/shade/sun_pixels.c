@@ -68,8 +68,8 @@ static bool start_of(const struct bundle *bundle, uint32_t pixel, vec3s *start)
 {
     const struct tl_id_buffer *ids = bundle->request->ids;
     const struct tl_pixel_triangle *triangle = triangle_at(bundle->request, pixel);
-    const struct tl_pixel_weights weights = tl_pixel_weigh(
-        triangle, (float)(pixel % (uint32_t)ids->width) + 0.5f, (float)(pixel / (uint32_t)ids->width) + 0.5f);
+    const uint32_t x = pixel % (uint32_t)ids->width, y = pixel / (uint32_t)ids->width;
+    const struct tl_pixel_weights weights = tl_pixel_weigh(triangle, (float)x + 0.5f, (float)y + 0.5f);
     vec3s corners[3], normals[3];
     for (int i = 0; i < 3; i++) {
         corners[i] = triangle->surface->positions[triangle->corners[i]];
