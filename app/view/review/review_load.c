@@ -7,13 +7,12 @@
 #include <omp.h>
 #include <string.h>
 
-/* Whether an appearance must be loaded first: the session does not have it, and it was not loaded last. The
- * session's own settings also hold the quality levels of the last image, which are nobody's wish.
+/* Whether an appearance must be loaded first: the session does not have it, and it was not loaded last.
  * Nothing can be prepared for an environment sequence, whose light changes with every frame. While a slider
  * is held, options whose rows say AT_ONCE are applied at once. */
 static bool needs_appearance(const struct tl_review *review, const struct tl_settings *settings)
 {
-    struct tl_settings present = review->good;
+    struct tl_settings present = *tl_session_settings(review->session);
     if (review->editing)
         tl_settings_take(settings, &present, (struct tl_option_filter){.any_of = TL_AFFECTS_AT_ONCE});
     return !tl_session_light_plays(review->session) && tl_session_needs_appearance(&present, settings) &&
@@ -27,7 +26,8 @@ static bool is_slow(const struct tl_review *review, const struct tl_settings *se
            needs_appearance(review, settings);
 }
 
-/* Sets the options that need loading to the values that the session has. */
+/* Sets the options that need loading to the values that the session has; but an appearance is the last one
+ * that was drawn, because the session's own settings also hold the quality levels of the last image. */
 static void keep_present(const struct tl_review *review, struct tl_settings *settings)
 {
     const struct tl_settings *present = tl_session_settings(review->session);
@@ -76,7 +76,7 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
     struct tl_settings drawn = review->wanted;
     if (kind == TL_LOAD_LIGHT &&
         needs_appearance(review, &drawn)) /* the appearance is loaded after the light */
-        tl_appearance_take(&review->good, &drawn);
+        tl_appearance_take(tl_session_settings(review->session), &drawn);
     const struct tl_settings other = tl_review_settings_a(review, &drawn);
     struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_APPEARANCE ? 2 : 1,
                                     .of = {light_of(review, &drawn), light_of(review, &other)}};
