@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "render/env/cube.h"
+#include "render/visibility/sun_rays.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +11,6 @@
 #define CELL            4  /* pixels a side */
 #define BUNDLE          16 /* rays */
 #define ROWS            16 /* that a thread takes at a time */
-#define REACH           2  /* pixels: a penumbra is looked for in a square of 2 REACH + 1 a side */
 #define MORE            8  /* rays for a pixel in it */
 #define SEEN_SUN(state) ((state) == DARK || (state) == LIT)
 
@@ -228,17 +228,6 @@ static size_t fill_cells(const struct tl_sun_pixels_request *request, vec3s dire
     return rays;
 }
 
-/* States spread over REACH pixels to both sides, along the rows. */
-static void spread_along(const uint8_t *states, uint8_t *out, int width)
-{
-    memcpy(out, states, (size_t)width);
-    for (int shift = 1; shift <= REACH; shift++)
-        for (int x = shift; x < width; x++) {
-            out[x] |= states[x - shift];
-            out[x - shift] |= states[x];
-        }
-}
-
 /* Pixels near the edge of a shadow, with the origins of their rays. */
 struct penumbra {
     size_t count;
@@ -253,7 +242,8 @@ static void list_penumbra(const struct tl_sun_pixels *pixels, const struct bundl
 {
     const int width = bundle->request->ids->width, height = bundle->request->ids->height;
     for (int y = first_row; y < end_row; y++) {
-        int first = y > REACH ? y - REACH : 0, last = y + REACH < height ? y + REACH : height - 1;
+        int first = y > TL_SUN_REACH ? y - TL_SUN_REACH : 0,
+            last = y + TL_SUN_REACH < height ? y + TL_SUN_REACH : height - 1;
         const size_t row = (size_t)y * (size_t)width;
         for (size_t x = 0; x < (size_t)width; x++) {
             uint8_t state = pixels->states[row + x], about = 0;
@@ -323,8 +313,8 @@ static size_t soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pix
     size_t rays = 0;
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < height; y++)
-        spread_along(pixels->states + (size_t)y * (size_t)width, pixels->spread + (size_t)y * (size_t)width,
-                     width);
+        tl_sun_spread_along(pixels->states + (size_t)y * (size_t)width,
+                            pixels->spread + (size_t)y * (size_t)width, width);
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)
     for (int y = 0; y < height; y += ROWS)
         rays += soften_rows(pixels, request, sun, y, y + ROWS < height ? y + ROWS : height);
