@@ -20,25 +20,39 @@ TL_INLINE struct tl_octahedral_place tl_octahedral_place(float x, float y, float
     float scale = 0.5f / (fabsf(x) + fabsf(y) + fabsf(z));
     float u = x * scale, v = z * scale;
     /* Below the horizon 1 - |v| = |u| + |y|. */
-    float outwards = y < 0 ? -y * scale : 0;
+    float outwards = tl_greater(-y, 0) * scale;
     u += copysignf(outwards, u);
     v += copysignf(outwards, v);
     return (struct tl_octahedral_place){u + 0.5f, v + 0.5f};
 }
 
+/* The four texels about a place: the index of the first, and the shares of the second column and row. */
+struct tl_lobe_texels {
+    int first;
+    float right, below;
+};
+
+TL_INLINE struct tl_lobe_texels tl_lobe_texels_about(int side, struct tl_octahedral_place place)
+{
+    float x = place.u * (float)side + 0.5f, y = place.v * (float)side + 0.5f, last = (float)side + 0.5f;
+    x = tl_lesser(tl_greater(x, 0), last); /* NaN becomes 0, too */
+    y = tl_lesser(tl_greater(y, 0), last);
+    int column = (int)x, row = (int)y;
+    return (struct tl_lobe_texels){row * (side + 2) + column, x - (float)column, y - (float)row};
+}
+
+TL_INLINE tl_quad tl_lobe_texels_mean(const struct tl_lobe_map *map, struct tl_lobe_texels at)
+{
+    const tl_quad *top = (const tl_quad *)map->texels + at.first;
+    const tl_quad *bottom = top + map->side + 2;
+    tl_quad upper = top[0] + at.right * (top[1] - top[0]),
+            lower = bottom[0] + at.right * (bottom[1] - bottom[0]);
+    return upper + at.below * (lower - upper);
+}
+
 TL_INLINE tl_quad tl_lobe_map_fetch(const struct tl_lobe_map *map, struct tl_octahedral_place place)
 {
-    float x = place.u * (float)map->side + 0.5f, y = place.v * (float)map->side + 0.5f,
-          last = (float)map->side + 0.5f;
-    x = x > 0 ? x < last ? x : last : 0; /* NaN becomes 0, too */
-    y = y > 0 ? y < last ? y : last : 0;
-    int column = (int)x, row = (int)y;
-    float right = x - (float)column, below = y - (float)row;
-    const tl_quad *top =
-        (const tl_quad *)map->texels + (size_t)row * (size_t)(map->side + 2) + (size_t)column;
-    const tl_quad *bottom = top + map->side + 2;
-    tl_quad upper = top[0] + right * (top[1] - top[0]), lower = bottom[0] + right * (bottom[1] - bottom[0]);
-    return upper + below * (lower - upper);
+    return tl_lobe_texels_mean(map, tl_lobe_texels_about(map->side, place));
 }
 
 /* The exponents of the blend must exist. RGB, 0. */

@@ -102,11 +102,15 @@ TL_INLINE void tl_fan_add_nodes(const struct tl_fan_table *table, const struct t
     }
 }
 
-/* The interpolated node of a viewer (x, y, cosine > 0) in the frame of the threads. Directions are of the
- * frame that is turned by half a turn about the normal where y < 0: the return value is 1 or -1, a factor on
- * their x and y; they are not normalised. */
-TL_INLINE float tl_fan_fetch(const struct tl_fan_table *table, float x, float y, float cosine,
-                             float glossiness, tl_quad sums[2 * TL_LOBE_FIT_MAX])
+/* Where the table is read. */
+struct tl_fan_place {
+    struct tl_fan_between row, column, gloss;
+    float side; /* 1 or -1, a factor on the x and y of directions: the frame is turned where y < 0 */
+};
+
+/* Of a viewer (x, y, cosine > 0) in the frame of the threads. */
+TL_INLINE struct tl_fan_place tl_fan_place(const struct tl_fan_table *table, float x, float y, float cosine,
+                                           float glossiness)
 {
     float side = y < 0 ? -1.0f : 1.0f;
     struct tl_fan_between column = tl_fan_between(
@@ -114,30 +118,52 @@ TL_INLINE float tl_fan_fetch(const struct tl_fan_table *table, float x, float y,
     float sine = sqrtf(tl_greater(1 - cosine * cosine, 0));
     float elevation = tl_fan_azimuth(sine, cosine) * (2 / 3.14159265f);
     struct tl_fan_between row = tl_fan_between(sqrtf(elevation) * TL_FAN_ROWS - TL_FAN_FIRST, TL_FAN_COSINES);
-    for (int k = 0; k < 2 * table->lobe_count; k++)
-        sums[k] = (tl_quad){0, 0, 0, 0};
-    if (table->gloss_count == 1) {
-        const struct tl_fan_node *nodes = tl_fan_nodes(table, 0, row.first, column.first);
-        tl_fan_add_nodes(table, nodes, (int)nodes->lobes[0].orders, 1, row, column, sums);
-        return side;
-    }
     struct tl_fan_between gloss =
         tl_fan_between((glossiness - table->gloss_low) / (table->gloss_high - table->gloss_low) *
                            (float)(table->gloss_count - 1),
                        table->gloss_count);
-    const struct tl_fan_node *nodes = tl_fan_nodes(table, gloss.first, row.first, column.first);
-    int orders = (int)nodes->lobes[0].orders;
-    tl_fan_add_nodes(table, nodes, orders, 1 - gloss.share, row, column, sums);
-    tl_fan_add_nodes(table, nodes + (size_t)TL_FAN_COSINES * TL_FAN_AZIMUTHS, orders >> 4, gloss.share, row,
-                     column, sums);
-    return side;
+    return (struct tl_fan_place){row, column, gloss, side};
 }
 
-/* The weight of a lobe at a reflectance. */
-TL_INLINE float tl_fan_weight(float low, float high, float f0)
+/* The interpolated node: of each lobe its direction, which is not normalised, and its logarithm; then its
+ * weights. */
+TL_INLINE void tl_fan_fetch(const struct tl_fan_table *table, const struct tl_fan_place *at,
+                            tl_quad sums[2 * TL_LOBE_FIT_MAX])
 {
-    return f0 < TL_FAN_LOW_F0 ? low * f0 / TL_FAN_LOW_F0
-                              : low + (high - low) * (f0 - TL_FAN_LOW_F0) / (1 - TL_FAN_LOW_F0);
+    for (int k = 0; k < 2 * table->lobe_count; k++)
+        sums[k] = (tl_quad){0, 0, 0, 0};
+    const struct tl_fan_node *nodes = tl_fan_nodes(table, at->gloss.first, at->row.first, at->column.first);
+    int orders = (int)nodes->lobes[0].orders;
+    if (table->gloss_count == 1) {
+        tl_fan_add_nodes(table, nodes, orders, 1, at->row, at->column, sums);
+        return;
+    }
+    tl_fan_add_nodes(table, nodes, orders, 1 - at->gloss.share, at->row, at->column, sums);
+    tl_fan_add_nodes(table, nodes + (size_t)TL_FAN_COSINES * TL_FAN_AZIMUTHS, orders >> 4, at->gloss.share,
+                     at->row, at->column, sums);
+}
+
+/* The weight of a lobe at a reflectance, by channel: these shares of its weights at the low and at the high
+ * F0. */
+struct tl_fan_shares {
+    tl_quad low, high;
+};
+
+TL_INLINE float tl_fan_high_share(float f0)
+{
+    return tl_greater((f0 - TL_FAN_LOW_F0) * (1 / (1 - TL_FAN_LOW_F0)), 0);
+}
+
+TL_INLINE float tl_fan_low_share(float f0)
+{
+    return f0 < TL_FAN_LOW_F0 ? f0 * (1 / TL_FAN_LOW_F0) : 1 - tl_fan_high_share(f0);
+}
+
+TL_INLINE struct tl_fan_shares tl_fan_shares(tl_quad f0)
+{
+    return (struct tl_fan_shares){
+        {tl_fan_low_share(f0[0]), tl_fan_low_share(f0[1]), tl_fan_low_share(f0[2]), 0},
+        {tl_fan_high_share(f0[0]), tl_fan_high_share(f0[1]), tl_fan_high_share(f0[2]), 0}};
 }
 
 /* The lobes towards a viewer above the surface, as tl_lobe_fit_make gives them. Returns their number. */

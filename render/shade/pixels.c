@@ -2,8 +2,7 @@
 
 #include "config/memory.h"
 #include "render/env/lobes_fetch.h"
-#include "render/light/terms.h"
-#include "render/shade/look.h"
+#include "render/shade/pixels_internal.h"
 
 #include <assert.h>
 #include <math.h>
@@ -12,87 +11,46 @@
 
 #define ROWS 8 /* that a thread takes at a time */
 
-/* Blends of exponents by the base-2 logarithm of the exponent, in steps that a blend is linear over. */
-#define BLEND_STEPS   64 /* an octave */
-#define BLEND_OCTAVES 10
-
-struct blends {
-    struct tl_exponent_blend items[BLEND_STEPS * BLEND_OCTAVES + 1];
-};
-
-/* What all pixels share. */
-struct scene {
-    const struct tl_pixels_request *request;
-    const struct blends *blends;
-    float turn_cosine, turn_sine; /* of the environment's yaw */
-    vec3s first, across, up;      /* the ray through pixel (0, 0), and its changes */
-    vec3s suns[TL_SUNS_MAX];      /* directions, world */
-};
-
 /* ---- A run of pixels of one triangle ---- */
 
 struct pixel_run {
     const struct tl_pixel_triangle *triangle;
     const struct tl_shade_part *part;
     tl_quad diffuse[3], glossy[3]; /* ratios at the corners; where the run is flat `diffuse` is the light */
-    vec3s normals[3];
-    vec4s tangents[3];
-    vec2s uvs[3];
+    tl_quad normals[3], tangents[3];
+    tl_quad uvs[3];                /* u, v, u, v */
+    tl_quad slopes[3], slope;      /* of the weights, not normalised: across twice, up twice; their sum */
     tl_quad sunlight[TL_SUNS_MAX]; /* of a flat run, where all of the sun is seen */
     bool is_mixed;                 /* some corners are covered, some are not */
     bool is_flat;                  /* matt, of one colour and one normal */
     bool is_fading;                /* the ground where it fades */
 };
 
-TL_INLINE tl_quad exact_light(const struct scene *scene, vec3s direction, struct tl_exponent_blend blend)
-{
-    float c = scene->turn_cosine, s = scene->turn_sine;
-    struct tl_octahedral_place place = tl_octahedral_place(c * direction.x - s * direction.z, direction.y,
-                                                           s * direction.x + c * direction.z);
-    return tl_lobes_fetch_quad(scene->request->lobes, place, blend);
-}
-
-static const struct tl_exponent_blend only_diffuse = {.index = 0};
-
-TL_INLINE tl_quad quad_of(vec3s v)
-{
-    return (tl_quad){v.x, v.y, v.z, 0};
-}
-
-/* K_1 without a power. */
-TL_INLINE float diffuse_lobe(float cosine)
-{
-    return 0.318309886f * tl_greater(cosine, 0);
-}
-
-/* Share of a sun's disc above the plane of the smooth normal. */
-TL_INLINE float sun_above(const struct tl_sun *sun, float cosine)
-{
-    return disc_share(cosine / tl_greater(sun->radius, 1e-3f));
-}
-
 /* Of one normal and one colour: the light at the corners is all that a pixel interpolates. */
-static void flatten(const struct scene *scene, struct pixel_run *run)
+static void flatten(const struct tl_pixel_scene *scene, struct pixel_run *run)
 {
     const struct tl_pixels_request *request = scene->request;
-    vec3s normal = glms_vec3_scale(run->normals[0], run->triangle->back ? -1.0f : 1.0f);
-    tl_quad colour = quad_of(run->part->material->diffuse);
-    tl_quad light = colour * exact_light(scene, normal, only_diffuse);
+    const float side = run->triangle->back ? -1.0f : 1.0f;
+    const vec3s normal = {{side * run->normals[0][0], side * run->normals[0][1], side * run->normals[0][2]}};
+    const vec3s d = tl_pixel_turned(scene, normal);
+    tl_quad colour = tl_pixel_quad(run->part->material->diffuse);
+    tl_quad light = colour * tl_lobe_map_fetch(&request->lobes->maps[0], tl_octahedral_place(d.x, d.y, d.z));
     for (int i = 0; i < 3; i++)
         run->diffuse[i] *= light;
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
         float cosine = glms_vec3_dot(scene->suns[i], normal);
-        run->sunlight[i] = colour * quad_of(sun->power) * (diffuse_lobe(cosine) * sun_above(sun, cosine));
+        run->sunlight[i] = colour * tl_pixel_quad(sun->power) *
+                           (tl_pixel_diffuse_lobe(cosine) * tl_pixel_sun_above(sun, cosine));
     }
 }
 
 static bool has_one_normal(const struct pixel_run *run)
 {
     for (int k = 1; k < 3; k++)
-        if (run->normals[k].x != run->normals[0].x || run->normals[k].y != run->normals[0].y ||
-            run->normals[k].z != run->normals[0].z)
-            return false;
+        for (int c = 0; c < 3; c++)
+            if (run->normals[k][c] != run->normals[0][c])
+                return false;
     return true;
 }
 
@@ -108,7 +66,7 @@ static bool fades(const struct tl_pixels_request *request, const struct tl_pixel
     return false;
 }
 
-static void begin_run(const struct scene *scene, const struct tl_pixel_triangle *triangle,
+static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_triangle *triangle,
                       struct pixel_run *run)
 {
     const struct tl_pixels_request *request = scene->request;
@@ -123,22 +81,20 @@ static void begin_run(const struct scene *scene, const struct tl_pixel_triangle 
         run->diffuse[i] = *(const tl_quad *)ratio->diffuse;
         run->glossy[i] = *(const tl_quad *)ratio->glossy;
         covered += run->glossy[i][3];
-        run->normals[i] = surface->normals[vertex];
-        run->tangents[i] = surface->tangents ? surface->tangents[vertex] : (vec4s){{0, 0, 0, 0}};
-        run->uvs[i] = surface->uvs ? surface->uvs[vertex] : (vec2s){{0, 0}};
+        run->normals[i] = tl_pixel_quad(surface->normals[vertex]);
+        const vec4s tangent = surface->tangents ? surface->tangents[vertex] : (vec4s){{0, 0, 0, 0}};
+        run->tangents[i] = (tl_quad){tangent.x, tangent.y, tangent.z, tangent.w};
+        const vec2s uv = surface->uvs ? surface->uvs[vertex] : (vec2s){{0, 0}};
+        run->uvs[i] = (tl_quad){uv.x, uv.y, uv.x, uv.y};
+        const float *e = triangle->edges[i];
+        run->slopes[i] = (tl_quad){e[0], e[0], e[1], e[1]};
     }
+    run->slope = run->slopes[0] + run->slopes[1] + run->slopes[2];
     run->is_mixed = covered > 0 && covered < 3;
     run->is_fading = fades(request, triangle);
     run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->fan && has_one_normal(run);
     if (run->is_flat)
         flatten(scene, run);
-}
-
-TL_INLINE vec3s weighted3(const vec3s v[3], const float w[3])
-{
-    return (vec3s){{w[0] * v[0].x + w[1] * v[1].x + w[2] * v[2].x,
-                    w[0] * v[0].y + w[1] * v[1].y + w[2] * v[2].y,
-                    w[0] * v[0].z + w[1] * v[1].z + w[2] * v[2].z}};
 }
 
 /* What is seen is rarely covered: corners that are do not count beside others that are not. */
@@ -158,187 +114,9 @@ TL_INLINE tl_quad weighted_quad(const tl_quad v[3], const float w[3])
     return w[0] * v[0] + w[1] * v[1] + w[2] * v[2];
 }
 
-TL_INLINE struct tl_exponent_blend blend_of(const struct scene *scene, float log_exponent)
-{
-    float at = tl_greater(tl_lesser(log_exponent, BLEND_OCTAVES), 0) * BLEND_STEPS;
-    return scene->blends->items[(int)(at + 0.5f)];
-}
-
 /* ---- A pixel ---- */
 
-/* The gloss, which depends on the viewer. */
-struct gloss {
-    /* Two lobes: */
-    vec3s mirror, reflectance;
-    float exponent;
-    /* Facets: */
-    struct tl_brdf_frame frame;
-    float x, y, cosine; /* the viewer in it */
-};
-
-/* As tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
-TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, const struct tl_look *look,
-                                        const struct tl_look_at *at)
-{
-    vec3s n = look->normal, t = {{at->tangent.x, at->tangent.y, at->tangent.z}};
-    t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
-    float square = glms_vec3_dot(t, t);
-    if (!(square > 1e-12f)) {
-        vec3s axis = fabsf(n.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}};
-        t = glms_vec3_cross(axis, n);
-        square = glms_vec3_dot(t, t);
-    }
-    t = glms_vec3_scale(t, 1 / sqrtf(square));
-    vec3s left = glms_vec3_cross(n, t);
-    vec3s turned = glms_vec3_add(glms_vec3_scale(t, part->turn_cosine),
-                                 glms_vec3_scale(left, at->side * part->turn_sine));
-    float handedness = at->tangent.w * at->side < 0 ? -1.0f : 1.0f;
-    return (struct tl_brdf_frame){n, turned, glms_vec3_scale(glms_vec3_cross(n, turned), handedness)};
-}
-
-/* A direction of the world in the environment, as a quad. */
-TL_INLINE tl_quad turned_quad(const struct scene *scene, vec3s d, float scale)
-{
-    float c = scene->turn_cosine, s = scene->turn_sine;
-    return scale * (tl_quad){c * d.x - s * d.z, d.y, s * d.x + c * d.z, 0};
-}
-
-/* The exact light of the lobes of a fan. */
-TL_INLINE tl_quad light_of_facets(const struct scene *scene, const struct pixel_run *run,
-                                  const struct tl_look *look, const struct tl_look_at *at,
-                                  struct gloss *gloss)
-{
-    const struct tl_fan_table *fan = run->part->fan;
-    tl_quad nodes[2 * TL_LOBE_FIT_MAX], light = {0, 0, 0, 0};
-    gloss->frame = frame_of(run->part, look, at);
-    gloss->x = glms_vec3_dot(at->viewer, gloss->frame.tangent);
-    gloss->y = glms_vec3_dot(at->viewer, gloss->frame.bitangent);
-    gloss->cosine = glms_vec3_dot(at->viewer, gloss->frame.normal);
-    if (!(gloss->cosine > 0))
-        return light;
-    float side = tl_fan_fetch(fan, gloss->x, gloss->y, gloss->cosine, look->glossiness, nodes);
-    tl_quad tangent = turned_quad(scene, gloss->frame.tangent, side),
-            bitangent = turned_quad(scene, gloss->frame.bitangent, side),
-            normal = turned_quad(scene, gloss->frame.normal, 1);
-    /* All lobes of a fan have the same exponent. */
-    const struct tl_exponent_blend blend = blend_of(scene, nodes[fan->lobe_count & ~1][3]);
-    for (int k = 0; k < fan->lobe_count; k++) {
-        const size_t node = 2 * (size_t)k;
-        const tl_quad local = nodes[node], weight = nodes[node + 1];
-        tl_quad d = local[0] * tangent + local[1] * bitangent + local[2] * normal;
-        tl_quad exact =
-            tl_lobes_fetch_quad(scene->request->lobes, tl_octahedral_place(d[0], d[1], d[2]), blend);
-        light += exact * (tl_quad){tl_fan_weight(weight[0], weight[1], look->f0.x),
-                                   tl_fan_weight(weight[0], weight[1], look->f0.y),
-                                   tl_fan_weight(weight[0], weight[1], look->f0.z), 0};
-    }
-    return light;
-}
-
-TL_INLINE vec3s schlick(vec3s f0, float cosine)
-{
-    float away = 1 - tl_greater(tl_lesser(cosine, 1), 0), fifth = away * away * away * away * away;
-    vec3s f;
-    for (int c = 0; c < 3; c++)
-        f.raw[c] = f0.raw[c] + (tl_lesser(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
-    return f;
-}
-
-TL_INLINE tl_quad light_of_lobe(const struct scene *scene, const struct tl_look *look,
-                                const struct tl_look_at *at, struct gloss *gloss)
-{
-    float cosine = glms_vec3_dot(look->normal, at->viewer);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(look->normal, 2 * tl_greater(cosine, 0)), at->viewer);
-    gloss->mirror = tl_unit_or(mirror, look->normal);
-    gloss->reflectance = schlick(look->f0, cosine);
-    gloss->exponent = 1 / tl_greater(1 - look->glossiness, 1e-6f);
-    return quad_of(gloss->reflectance) *
-           exact_light(scene, gloss->mirror, blend_of(scene, tl_log2(gloss->exponent)));
-}
-
-/* tl_brdf_gloss_under_disc of Ward's facets. */
-TL_INLINE vec3s ward_under_sun(const struct tl_gloss *model, const struct gloss *gloss, vec3s f0,
-                               vec3s viewer, const struct tl_sun *sun, vec3s direction)
-{
-    const struct tl_brdf_frame *frame = &gloss->frame;
-    float cos_a = glms_vec3_dot(frame->normal, direction);
-    if (!(cos_a > 0 && gloss->cosine > 0))
-        return (vec3s){{0, 0, 0}};
-    float wider = sun->radius * sun->radius / 8;
-    float u = model->width_weft * model->width_weft + wider,
-          v = model->width_warp * model->width_warp + wider;
-    vec3s sum = glms_vec3_add(direction, viewer);
-    float x = glms_vec3_dot(frame->tangent, sum), y = glms_vec3_dot(frame->bitangent, sum),
-          z = glms_vec3_dot(frame->normal, sum);
-    float lobe = tl_exp2(-1.44269504f * (x * x / u + y * y / v) / (z * z)) *
-                 sqrtf(cos_a / (gloss->cosine * u * v)) * (1 / (4 * (float)M_PI));
-    return glms_vec3_scale(schlick(f0, 0.5f * sqrtf(glms_vec3_dot(sum, sum))), lobe);
-}
-
-TL_INLINE bool is_plain_ward(const struct tl_gloss *model)
-{
-    return model->model == TL_REFLECT_WARD && model->fresnel == TL_FRESNEL_SCHLICK &&
-           model->width_weft >= 1e-3f && model->width_warp >= 1e-3f && model->width_weft <= 1 &&
-           model->width_warp <= 1;
-}
-
-TL_INLINE vec3s gloss_under_sun(const struct pixel_run *run, const struct tl_sun *sun, vec3s direction,
-                                const struct tl_look *look, const struct tl_look_at *at,
-                                const struct gloss *gloss)
-{
-    const tl_material *material = run->part->material;
-    if (!run->part->fan) {
-        float exponent = lobe_broadened_exponent(gloss->exponent, sun->radius * GLM_SQRT1_2f);
-        float cosine = tl_greater(glms_vec3_dot(direction, gloss->mirror), 1e-30f);
-        return glms_vec3_scale(gloss->reflectance,
-                               0.159154943f * (exponent + 1) * tl_power(cosine, exponent));
-    }
-    if (is_plain_ward(&material->gloss))
-        return ward_under_sun(&material->gloss, gloss, look->f0, at->viewer, sun, direction);
-    struct tl_brdf brdf = tl_brdf_of(material, look->f0, look->glossiness);
-    return tl_brdf_gloss_under_disc(&brdf, &gloss->frame, direction, at->viewer, sun->radius);
-}
-
-TL_INLINE tl_quad light_of_sun(const struct scene *scene, const struct pixel_run *run, int sun, float visible,
-                               const struct tl_look *look, const struct tl_look_at *at,
-                               const struct gloss *gloss)
-{
-    const struct tl_sun *item = &scene->request->suns->items[sun];
-    vec3s direction = scene->suns[sun];
-    float seen = visible * sun_above(item, at->side * glms_vec3_dot(direction, at->smooth));
-    if (!(seen > 0))
-        return (tl_quad){0, 0, 0, 0};
-    vec3s light = glms_vec3_scale(look->diffuse, diffuse_lobe(glms_vec3_dot(direction, look->normal)));
-    if (run->part->fan || run->part->is_glossy)
-        light = glms_vec3_add(light, gloss_under_sun(run, item, direction, look, at, gloss));
-    return seen * quad_of(item->power) * quad_of(light);
-}
-
-TL_INLINE struct tl_look_at look_at(const struct pixel_run *run, const struct tl_pixel_weights *weights,
-                                    vec3s ray)
-{
-    struct tl_look_at at = {.normal = weighted3(run->normals, weights->at),
-                            .viewer = glms_vec3_negate(tl_unit_or(ray, (vec3s){{0, 1, 0}})),
-                            .side = run->triangle->back ? -1.0f : 1.0f};
-    at.smooth = tl_unit_or(at.normal, (vec3s){{0, 1, 0}});
-    if (run->part->has_bumps || run->part->fan)
-        for (int k = 0; k < 4; k++)
-            at.tangent.raw[k] = weights->at[0] * run->tangents[0].raw[k] +
-                                weights->at[1] * run->tangents[1].raw[k] +
-                                weights->at[2] * run->tangents[2].raw[k];
-    if (run->part->has_maps)
-        for (int k = 0; k < 2; k++) {
-            at.uv[k] = at.change[k][0] = at.change[k][1] = 0;
-            for (int i = 0; i < 3; i++) {
-                at.uv[k] += weights->at[i] * run->uvs[i].raw[k];
-                at.change[k][0] += weights->across[i] * run->uvs[i].raw[k];
-                at.change[k][1] += weights->up[i] * run->uvs[i].raw[k];
-            }
-        }
-    return at;
-}
-
-static float cover_of(const struct scene *scene, const struct pixel_run *run, const float weights[3])
+static float cover_of(const struct tl_pixel_scene *scene, const struct pixel_run *run, const float weights[3])
 {
     const vec3s *p = run->triangle->surface->positions;
     const uint32_t *corners = run->triangle->corners;
@@ -350,58 +128,85 @@ static float cover_of(const struct scene *scene, const struct pixel_run *run, co
     return tl_ground_cover(scene->request->ground, x, z);
 }
 
-TL_INLINE float sun_seen(const struct tl_pixels_request *request, int sun, size_t pixel)
-{
-    const float *visible = request->sun_visibility[sun];
-    return visible ? visible[pixel] : 1;
-}
-
-TL_INLINE tl_quad shade_look(const struct scene *scene, const struct pixel_run *run,
-                             const struct tl_pixel_weights *weights, const float ratio_weights[3], int x,
-                             int y, size_t pixel)
+/* A pixel of a flat run. */
+TL_INLINE tl_quad flat_pixel(const struct tl_pixel_scene *scene, const struct pixel_run *run,
+                             const float ratio_weights[3], size_t pixel)
 {
     const struct tl_pixels_request *request = scene->request;
-    vec3s ray = glms_vec3_add(scene->first, glms_vec3_add(glms_vec3_scale(scene->across, (float)x),
-                                                          glms_vec3_scale(scene->up, (float)y)));
-    struct tl_look_at at = look_at(run, weights, ray);
-    struct tl_look look = tl_look_evaluate(run->part, &request->materials->detail, &at);
-    tl_quad colour = quad_of(look.diffuse) * exact_light(scene, look.normal, only_diffuse) *
-                     weighted_quad(run->diffuse, ratio_weights);
-    struct gloss gloss = {0};
-    if (run->part->fan)
-        colour += light_of_facets(scene, run, &look, &at, &gloss) * weighted_quad(run->glossy, ratio_weights);
-    else if (run->part->is_glossy)
-        colour += light_of_lobe(scene, &look, &at, &gloss) * weighted_quad(run->glossy, ratio_weights);
+    tl_quad colour = weighted_quad(run->diffuse, ratio_weights);
     for (int i = 0; i < request->suns->count; i++)
-        colour += light_of_sun(scene, run, i, sun_seen(request, i, pixel), &look, &at, &gloss);
+        colour += tl_pixel_sun_seen(request, i, pixel) * run->sunlight[i];
     return colour;
 }
 
-TL_INLINE tl_quad shade_pixel(const struct scene *scene, const struct pixel_run *run, int x, int y)
+/* Interpolates what the other pixels are evaluated from. */
+TL_INLINE void fill_lane(const struct pixel_run *run, const struct tl_pixel_weights *weights,
+                         struct tl_look_lanes *look, int lane)
 {
-    const struct tl_pixels_request *request = scene->request;
-    const size_t pixel = (size_t)y * (size_t)request->ids->width + (size_t)x;
-    struct tl_pixel_weights weights = tl_pixel_weigh(run->triangle, (float)x + 0.5f, (float)y + 0.5f);
+    const tl_quad normal = weighted_quad(run->normals, weights->at);
+    look->side[lane] = run->triangle->back ? -1.0f : 1.0f;
+    for (int c = 0; c < 3; c++)
+        look->normal[c][lane] = normal[c];
+    if (run->part->has_bumps || run->part->fan) {
+        const tl_quad tangent = weighted_quad(run->tangents, weights->at);
+        for (int c = 0; c < 4; c++)
+            look->tangent[c][lane] = tangent[c];
+    }
+    if (run->part->has_maps) {
+        const tl_quad uv = weighted_quad(run->uvs, weights->at);
+        tl_quad change = {0, 0, 0, 0};
+        for (int i = 0; i < 3; i++)
+            change += weights->scale * (run->slopes[i] - weights->at[i] * run->slope) * run->uvs[i];
+        for (int k = 0; k < 2; k++) {
+            look->uv[k][lane] = uv[k];
+            look->change[k][0][lane] = change[k];
+            look->change[k][1][lane] = change[k + 2];
+        }
+    }
+}
+
+TL_INLINE void flush(const struct tl_pixel_scene *scene, struct tl_pixel_lanes *lanes)
+{
+    if (lanes->look.count > 0)
+        tl_pixel_lanes_shade(scene, lanes);
+    lanes->look.count = 0;
+}
+
+/* Writes a pixel's colour, now or with its lanes. */
+TL_INLINE void shade_pixel(const struct tl_pixel_scene *scene, const struct pixel_run *run, int x, int y,
+                           struct tl_pixel_lanes *lanes, tl_quad *to)
+{
+    const size_t pixel = (size_t)y * (size_t)scene->request->ids->width + (size_t)x;
+    const struct tl_pixel_weights weights = tl_pixel_weigh(run->triangle, (float)x + 0.5f, (float)y + 0.5f);
     float ratio_weights[3] = {weights.at[0], weights.at[1], weights.at[2]};
     if (run->is_mixed)
         uncover(run, ratio_weights);
-    tl_quad colour;
-    if (run->is_flat) {
-        colour = weighted_quad(run->diffuse, ratio_weights);
-        for (int i = 0; i < request->suns->count; i++)
-            colour += sun_seen(request, i, pixel) * run->sunlight[i];
-    } else {
-        colour = shade_look(scene, run, &weights, ratio_weights, x, y, pixel);
-    }
     float cover = run->is_fading ? cover_of(scene, run, weights.at) : 1;
-    colour *= cover;
-    colour[3] = cover;
-    return colour;
+    if (run->is_flat) {
+        tl_quad colour = cover * flat_pixel(scene, run, ratio_weights, pixel);
+        colour[3] = cover;
+        *to = colour;
+        return;
+    }
+    if (lanes->look.part != run->part)
+        flush(scene, lanes);
+    const int lane = lanes->look.count++;
+    lanes->look.part = run->part;
+    lanes->x[lane] = (float)x;
+    lanes->y[lane] = (float)y;
+    lanes->pixel[lane] = pixel;
+    lanes->cover[lane] = cover;
+    lanes->to[lane] = to;
+    lanes->diffuse_ratio[lane] = weighted_quad(run->diffuse, ratio_weights);
+    lanes->glossy_ratio[lane] = weighted_quad(run->glossy, ratio_weights);
+    fill_lane(run, &weights, &lanes->look, lane);
+    if (lanes->look.count == TL_LANES)
+        flush(scene, lanes);
 }
 
 /* Pixels of a flat run from x on, until the triangle ends. Returns where that is. */
-TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run, const uint32_t *row, int x,
-                         int y, tl_quad *out)
+TL_INLINE int shade_flat(const struct tl_pixel_scene *scene, const struct pixel_run *run, const uint32_t *row,
+                         int x, int y, tl_quad *out)
 {
     const struct tl_pixels_request *request = scene->request;
     const struct tl_pixel_triangle *triangle = run->triangle;
@@ -421,7 +226,7 @@ TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run,
         tl_quad colour = (a * run->diffuse[0] + b * run->diffuse[1] + c * run->diffuse[2]) *
                          (1 / tl_greater(a + b + c, 1e-30f));
         for (int i = 0; i < suns; i++)
-            colour += sun_seen(request, i, first + (size_t)x) * run->sunlight[i];
+            colour += tl_pixel_sun_seen(request, i, first + (size_t)x) * run->sunlight[i];
         colour[3] = 1;
         out[x] = colour;
     }
@@ -429,10 +234,11 @@ TL_INLINE int shade_flat(const struct scene *scene, const struct pixel_run *run,
 }
 
 /* Rows first .. last - 1 of the ID buffer to `to`. */
-TL_CLONES static void shade_rows(const struct scene *scene, int first, int last, float *to)
+TL_CLONES static void shade_rows(const struct tl_pixel_scene *scene, int first, int last, float *to)
 {
     const struct tl_id_buffer *ids = scene->request->ids;
     const int width = ids->width;
+    struct tl_pixel_lanes lanes = {0};
     for (int y = first; y < last; y++) {
         const uint32_t *row = ids->ids + (size_t)y * (size_t)width;
         tl_quad *out = (tl_quad *)to + (size_t)(y - first) * (size_t)width;
@@ -451,22 +257,17 @@ TL_CLONES static void shade_rows(const struct scene *scene, int first, int last,
             if (run.is_flat && !run.is_mixed && !run.is_fading) {
                 x = shade_flat(scene, &run, row, x, y, out);
             } else {
-                out[x] = shade_pixel(scene, &run, x, y);
+                shade_pixel(scene, &run, x, y, &lanes, &out[x]);
                 x++;
             }
         }
     }
+    flush(scene, &lanes);
 }
 
 /* ---- All pixels ---- */
 
-static void make_blends(struct blends *blends)
-{
-    for (int i = 0; i <= BLEND_STEPS * BLEND_OCTAVES; i++)
-        blends->items[i] = tl_exponent_blend(exp2f((float)i / BLEND_STEPS));
-}
-
-static void place_rays(const struct tl_pixels_request *request, struct scene *scene)
+static void place_rays(const struct tl_pixels_request *request, struct tl_pixel_scene *scene)
 {
     const struct tl_view *view = request->view;
     scene->across = glms_vec3_scale(view->right, 2 / (float)request->ids->width);
@@ -476,7 +277,7 @@ static void place_rays(const struct tl_pixels_request *request, struct scene *sc
         glms_vec3_add(scene->first, glms_vec3_scale(glms_vec3_add(scene->across, scene->up), 0.5f));
 }
 
-static void shade_all(const struct scene *scene, float *image)
+static void shade_all(const struct tl_pixel_scene *scene, float *image)
 {
     const int width = scene->request->ids->width, height = scene->request->ids->height;
 #pragma omp parallel for schedule(dynamic)
@@ -500,7 +301,7 @@ TL_CLONES static void average_rows(const float *rows, int width, int side, float
 }
 
 /* Row by row, so that samples never leave the cache. */
-static void shade_and_average(const struct scene *scene, int side, float *image)
+static void shade_and_average(const struct tl_pixel_scene *scene, int side, float *image)
 {
     const int width = scene->request->ids->width, height = scene->request->ids->height / side;
 #pragma omp parallel
@@ -517,12 +318,11 @@ static void shade_and_average(const struct scene *scene, int side, float *image)
 
 void tl_pixels_shade(const struct tl_pixels_request *request, int side, float *image)
 {
-    struct blends *blends = TL_NEW(struct blends);
-    struct scene scene = {.request = request,
-                          .blends = blends,
-                          .turn_cosine = cosf(request->environment_yaw),
-                          .turn_sine = sinf(request->environment_yaw)};
-    make_blends(blends);
+    struct tl_pixel_blends *blends = tl_pixel_blends_make();
+    struct tl_pixel_scene scene = {.request = request,
+                                   .blends = blends,
+                                   .turn_cosine = cosf(request->environment_yaw),
+                                   .turn_sine = sinf(request->environment_yaw)};
     place_rays(request, &scene);
     for (int i = 0; i < request->suns->count; i++)
         scene.suns[i] = tl_turn_direction(request->suns->items[i].direction, request->environment_yaw);

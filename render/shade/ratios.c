@@ -41,64 +41,87 @@ static void reserve(struct tl_vertex_ratios *ratios, size_t count)
     tl_samples_reserve(&ratios->samples, ratios->capacity);
 }
 
+/* Corners of one part that are evaluated together. */
+struct corner_lanes {
+    struct tl_look_lanes look;
+    struct {
+        uint32_t seen, vertex;
+        size_t surface_index;
+    } items[TL_LANES];
+};
+
 /* A vertex has no neighbours to filter over: it looks like the mean of its maps, in the middle of bumps of
  * every direction. */
-static struct tl_look mean_look(const struct tl_shade_part *part, const struct tl_detail_params *detail,
-                                struct tl_look_at *at)
+static void add_corner(struct corner_lanes *lanes, const struct tl_ratios_request *request, uint32_t seen,
+                       size_t surface_index, const tl_surface *surface, uint32_t vertex)
 {
     const float whole = 1e3f; /* UV units: all of any map */
-    at->uv[0] = at->uv[1] = 0.5f;
-    at->change[0][0] = at->change[1][1] = whole;
-    at->change[0][1] = at->change[1][0] = 0;
-    struct tl_look look = tl_look_evaluate(part, detail, at);
-    look.normal = glms_vec3_scale(at->smooth, at->side);
-    return look;
+    const vec3s up = {{0, 1, 0}};
+    struct tl_look_lanes *look = &lanes->look;
+    const int lane = look->count++;
+    lanes->items[lane].seen = seen;
+    lanes->items[lane].vertex = vertex;
+    lanes->items[lane].surface_index = surface_index;
+    tl_lane_store(look->normal, lane, surface->normals[vertex]);
+    tl_lane_store(look->viewer, lane,
+                  tl_unit_or(glms_vec3_sub(request->eye, surface->positions[vertex]), up));
+    const vec4s tangent = surface->tangents ? surface->tangents[vertex] : (vec4s){{0, 0, 0, 0}};
+    for (int c = 0; c < 4; c++)
+        look->tangent[c][lane] = tangent.raw[c];
+    look->side[lane] = seen & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+    look->uv[0][lane] = look->uv[1][lane] = 0.5f;
+    look->change[0][0][lane] = look->change[1][1][lane] = whole;
+    look->change[0][1][lane] = look->change[1][0][lane] = 0;
 }
 
 /* A sample at a corner of a seen triangle, to be summed like any other. */
 static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request,
-                         uint32_t seen, size_t surface_index, const tl_surface *surface, uint32_t vertex)
+                         const struct corner_lanes *lanes, int lane)
 {
-    const uint32_t number = seen & ~TL_SAMPLE_BACK;
-    const struct tl_shade_materials *materials = request->materials;
-    size_t part_index =
-        tl_shade_part_at(materials, surface, surface_index, number - request->ranges->first[surface_index]);
-    const struct tl_shade_part *part = &materials->parts[part_index];
-    bool back = seen & TL_SAMPLE_BACK;
-    vec3s point = surface->positions[vertex], up = {{0, 1, 0}};
-    struct tl_look_at at = {.normal = surface->normals[vertex],
-                            .smooth = tl_unit_or(surface->normals[vertex], up),
-                            .viewer = tl_unit_or(glms_vec3_sub(request->eye, point), up),
-                            .side = back ? -1.0f : 1.0f};
-    if (surface->tangents)
-        at.tangent = surface->tangents[vertex];
-    struct tl_look look = mean_look(part, &materials->detail, &at);
-    float cosine = tl_greater(glms_vec3_dot(look.normal, at.viewer), 0);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(look.normal, 2 * cosine), at.viewer);
+    const struct tl_look_lanes *look = &lanes->look;
+    const uint32_t seen = lanes->items[lane].seen, vertex = lanes->items[lane].vertex;
+    const size_t surface_index = lanes->items[lane].surface_index;
+    const bool back = seen & TL_SAMPLE_BACK;
+    const vec3s normal = glms_vec3_scale(tl_lane_vector(look->smooth, lane), look->side[lane]);
+    const vec3s viewer = tl_lane_vector(look->viewer, lane);
+    float cosine = tl_greater(glms_vec3_dot(normal, viewer), 0);
+    vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * cosine), viewer);
     /* Facets need a viewer above the surface: one at the horizon stands for those below it. */
     const float least = 0.02f;
-    vec3s seen_from = at.viewer;
+    vec3s seen_from = viewer;
     if (cosine < least)
         seen_from = tl_unit_or(
-            glms_vec3_add(at.viewer,
-                          glms_vec3_scale(look.normal, least - glms_vec3_dot(look.normal, at.viewer))),
-            look.normal);
+            glms_vec3_add(viewer, glms_vec3_scale(normal, least - glms_vec3_dot(normal, viewer))), normal);
+    const tl_quad diffuse = look->diffuse[lane], f0 = look->f0[lane];
     size_t i = ratios->count++;
     ratios->samples.items[i] =
         (tl_sample){.triangle = seen,
                     .weights = {1, 0, 0},
                     .cover = 1,
                     .point = glms_vec3_sub(request->eye, seen_from), /* compose takes the viewer from it */
-                    .normal = look.normal,
-                    .smooth = look.normal,
-                    .mirror = tl_unit_or(mirror, look.normal),
-                    .glossiness = look.glossiness,
-                    .diffuse = look.diffuse,
-                    .specular = look.f0};
-    ratios->samples.tangents[i] = (vec4s){{at.tangent.x, at.tangent.y, at.tangent.z, at.tangent.w * at.side}};
+                    .normal = normal,
+                    .smooth = normal,
+                    .mirror = tl_unit_or(mirror, normal),
+                    .glossiness = look->glossiness[lane],
+                    .diffuse = {{diffuse[0], diffuse[1], diffuse[2]}},
+                    .specular = {{f0[0], f0[1], f0[2]}}};
+    ratios->samples.tangents[i] =
+        (vec4s){{look->tangent[0][lane], look->tangent[1][lane], look->tangent[2][lane],
+                 look->tangent[3][lane] * look->side[lane]}};
     uint32_t value = tl_points_of_vertex(request->points, surface_index, vertex, back);
     ratios->taps[i] = (struct tl_taps){.point = {value, value, value, value}, .weight = {1}};
     ratios->places[i] = (uint32_t)(2 * (ratios->first_vertex[surface_index] + vertex) + back);
+}
+
+static void place_samples(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request,
+                          struct corner_lanes *lanes)
+{
+    if (lanes->look.count == 0)
+        return;
+    tl_look_evaluate(&request->materials->detail, &lanes->look);
+    for (int lane = 0; lane < lanes->look.count; lane++)
+        place_sample(ratios, request, lanes, lane);
+    lanes->look.count = 0;
 }
 
 /* Corners that triangles share are listed once, for the first of these. */
@@ -108,12 +131,18 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
     ratios->light_revision = request->light_revision;
     ratios->count = 0;
     ratios->update++;
+    struct corner_lanes lanes = {0};
     for (size_t i = 0; i < request->ids->seen_count; i++) {
         uint32_t corners[3], seen = request->ids->seen[i];
         size_t index;
         const tl_surface *surface =
             tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
-        reserve(ratios, ratios->count + 3);
+        const struct tl_shade_part *part = &request->materials->parts[tl_shade_part_at(
+            request->materials, surface, index, (seen & ~TL_SAMPLE_BACK) - request->ranges->first[index])];
+        if (lanes.look.part != part || lanes.look.count + 3 > TL_LANES)
+            place_samples(ratios, request, &lanes);
+        lanes.look.part = part;
+        reserve(ratios, ratios->count + TL_LANES);
         for (int k = 0; k < 3; k++) {
             size_t place = 2 * (ratios->first_vertex[index] + corners[k]) + (seen & TL_SAMPLE_BACK ? 1 : 0);
             uint32_t before = ratios->stamps[place];
@@ -121,9 +150,10 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
             bool is_known = !all && before != 0 && before + 1 == ratios->update;
             if (before == ratios->update || (is_known && (place / 2 + ratios->update) % 2 == 0))
                 continue;
-            place_sample(ratios, request, seen, index, surface, corners[k]);
+            add_corner(&lanes, request, seen, index, surface, corners[k]);
         }
     }
+    place_samples(ratios, request, &lanes);
     ratios->samples.count = ratios->samples.primary_count = ratios->count;
 }
 

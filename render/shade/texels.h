@@ -72,24 +72,25 @@ TL_INLINE tl_quad tl_texels_bilinear(const struct tl_texels *texels, int level, 
     return a + y * (c - a);
 }
 
+/* The mean of the map. */
+TL_INLINE tl_quad tl_texels_mean(const struct tl_texels *texels)
+{
+    return tl_texels_at(texels, texels->level_count - 1, 0);
+}
+
 /* Fetches at (u, v), which must be finite, with `level` >= 0 the base-2 logarithm of the texels that lie
  * under a sample. */
 TL_INLINE tl_quad tl_texels_fetch(const struct tl_texels *texels, float u, float v, float level, bool clamp_u,
                                   bool clamp_v)
 {
-    level = tl_lesser(level, (float)(texels->level_count - 1));
+    if (level >= (float)(texels->level_count - 1))
+        return tl_texels_mean(texels);
     int fine = (int)level;
     tl_quad value = tl_texels_bilinear(texels, fine, u, v, clamp_u, clamp_v);
     float share = level - (float)fine;
     if (share > 0)
         value += share * (tl_texels_bilinear(texels, fine + 1, u, v, clamp_u, clamp_v) - value);
     return value;
-}
-
-/* The mean of the map. */
-TL_INLINE tl_quad tl_texels_mean(const struct tl_texels *texels)
-{
-    return tl_texels_at(texels, texels->level_count - 1, 0);
 }
 
 #endif

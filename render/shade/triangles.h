@@ -23,31 +23,26 @@ struct tl_pixel_triangle *tl_pixel_triangles_make(const struct tl_id_buffer *ids
                                                   const struct tl_triangle_ranges *ranges,
                                                   const struct tl_shade_materials *materials);
 
-/* Of a pixel: weights of the corners, which sum to 1, and their changes to the next pixel across and up. */
+/* Of a pixel: weights of the corners, which sum to 1. With e the edge functions' slopes their changes to the
+ * next pixel are scale (e[i] - at[i] (e[0] + e[1] + e[2])). */
 struct tl_pixel_weights {
-    float at[3], across[3], up[3];
+    float at[3], scale;
 };
 
 /* At (x, y) in pixels from the lower left corner; pixel centres lie at halves. */
 TL_INLINE struct tl_pixel_weights tl_pixel_weigh(const struct tl_pixel_triangle *triangle, float x, float y)
 {
     struct tl_pixel_weights weights;
-    float sum = 0, sum_across = 0, sum_up = 0;
+    float sum = 0;
     for (int i = 0; i < 3; i++) {
         const float *e = triangle->edges[i];
         float value = e[0] * (x - triangle->x0) + e[1] * (y - triangle->y0) + e[2];
         weights.at[i] = value > 0 ? value : 0; /* rounding at the edge */
         sum += weights.at[i];
-        sum_across += e[0];
-        sum_up += e[1];
     }
-    float inverse = sum > 0 ? 1 / sum : 0;
-    for (int i = 0; i < 3; i++) {
-        const float *e = triangle->edges[i];
-        weights.at[i] = sum > 0 ? weights.at[i] * inverse : 1 / 3.0f;
-        weights.across[i] = (e[0] - weights.at[i] * sum_across) * inverse;
-        weights.up[i] = (e[1] - weights.at[i] * sum_up) * inverse;
-    }
+    weights.scale = sum > 0 ? 1 / sum : 0;
+    for (int i = 0; i < 3; i++)
+        weights.at[i] = sum > 0 ? weights.at[i] * weights.scale : 1 / 3.0f;
     return weights;
 }
 

@@ -1,0 +1,261 @@
+#include "render/shade/look.h"
+
+#include "render/detail/bump_statistics.h"
+
+/* ---- Maps ---- */
+
+/* Where a map is read. */
+struct texel_lanes {
+    float u[TL_LANES], v[TL_LANES], level[TL_LANES];
+};
+
+/* Base-2 logarithm of the longer of two steps in texels; 0 where a texel is larger than a sample. */
+TL_INLINE float level_of(float u_across, float v_across, float u_up, float v_up)
+{
+    float across = u_across * u_across + v_across * v_across, up = u_up * u_up + v_up * v_up;
+    return 0.5f * tl_log2(tl_greater(tl_greater(across, up), 1));
+}
+
+/* `r`: rows of the affine map from the mesh's UV; the size is in texels. */
+TL_INLINE void place_texels(const struct tl_look_lanes *lanes, const float r[6], float width, float height,
+                            struct texel_lanes *out)
+{
+    for (int i = 0; i < TL_LANES; i++) {
+        float u = lanes->uv[0][i], v = lanes->uv[1][i];
+        float u_across = lanes->change[0][0][i], u_up = lanes->change[0][1][i];
+        float v_across = lanes->change[1][0][i], v_up = lanes->change[1][1][i];
+        out->u[i] = r[0] * u + r[1] * v + r[2];
+        out->v[i] = r[3] * u + r[4] * v + r[5];
+        out->level[i] = level_of(width * (r[0] * u_across + r[1] * v_across),
+                                 height * (r[3] * u_across + r[4] * v_across),
+                                 width * (r[0] * u_up + r[1] * v_up), height * (r[3] * u_up + r[4] * v_up));
+    }
+}
+
+TL_INLINE void read_map(const struct tl_look_lanes *lanes, const struct tl_shade_map *map,
+                        const struct tl_texels *texels, tl_quad out[TL_LANES])
+{
+    struct texel_lanes at;
+    place_texels(lanes, map->rows, (float)texels->widths[0], (float)texels->heights[0], &at);
+    for (int i = 0; i < lanes->count; i++)
+        out[i] = tl_texels_fetch(texels, at.u[i], at.v[i], at.level[i], map->clamp_u, map->clamp_v);
+}
+
+TL_INLINE void read_weave(const struct tl_look_lanes *lanes, const struct texel_lanes *at,
+                          const struct tl_texels *texels, tl_quad out[TL_LANES])
+{
+    for (int i = 0; i < lanes->count; i++)
+        out[i] = tl_texels_fetch(texels, at->u[i], at->v[i], at->level[i], false, false);
+}
+
+TL_INLINE void multiply(tl_quad values[TL_LANES], const tl_quad factors[TL_LANES], int count)
+{
+    for (int i = 0; i < count; i++)
+        values[i] *= factors[i];
+}
+
+/* Colours and glossiness from the material's own maps and from the weave. */
+TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_look_lanes *lanes,
+                            struct texel_lanes *weave)
+{
+    const struct tl_shade_part *part = lanes->part;
+    const struct tl_shade_map *maps = part->maps;
+    const int count = lanes->count;
+    tl_quad texels[TL_LANES];
+    if (maps[TL_MAP_DIFFUSE].texels) {
+        read_map(lanes, &maps[TL_MAP_DIFFUSE], maps[TL_MAP_DIFFUSE].texels, texels);
+        multiply(lanes->diffuse, texels, count);
+    }
+    if (maps[TL_MAP_SPECULAR].texels) {
+        read_map(lanes, &maps[TL_MAP_SPECULAR], maps[TL_MAP_SPECULAR].texels, texels);
+        multiply(lanes->f0, texels, count);
+    }
+    if (maps[TL_MAP_GLOSS].texels) {
+        read_map(lanes, &maps[TL_MAP_GLOSS], maps[TL_MAP_GLOSS].texels, texels);
+        for (int i = 0; i < count; i++)
+            lanes->glossiness[i] *= texels[i][0];
+    }
+    const struct tl_texels *tint = part->weave_tint;
+    if (tint) {
+        /* Read a level coarser where the spread of normals is kept, as by WEAVE_BIAS of material.glsl. */
+        const float wider = detail->minify != TL_DETAIL_MINIFY_NONE ? 2.0f : 1.0f;
+        const float rows[6] = {part->weave_scale[0], 0, 0, 0, part->weave_scale[1], 0};
+        place_texels(lanes, rows, wider * (float)tint->widths[0], wider * (float)tint->heights[0], weave);
+        read_weave(lanes, weave, tint, texels);
+        multiply(lanes->diffuse, texels, count);
+        for (int i = 0; i < count; i++)
+            lanes->glossiness[i] += texels[i][3];
+    }
+    for (int i = 0; i < TL_LANES; i++)
+        lanes->glossiness[i] = tl_greater(tl_lesser(lanes->glossiness[i], 1), 0);
+    if (maps[TL_MAP_OCCLUSION].texels) {
+        read_map(lanes, &maps[TL_MAP_OCCLUSION], maps[TL_MAP_OCCLUSION].texels, texels);
+        for (int i = 0; i < count; i++)
+            lanes->diffuse[i] *= 1 + (texels[i][0] - 1) * part->material->occlusion_strength;
+    }
+}
+
+/* ---- Bumps ---- */
+
+/* A map of normals, or of the moments of its normals. */
+struct bump_lanes {
+    bool is_given, has_moments;
+    float scale; /* of the slopes */
+    float texel[4][TL_LANES];
+};
+
+TL_INLINE void keep_bumps(const tl_quad texels[TL_LANES], float scale, bool has_moments,
+                          struct bump_lanes *bumps)
+{
+    bumps->is_given = true;
+    bumps->has_moments = has_moments;
+    bumps->scale = scale;
+    for (int i = 0; i < TL_LANES; i++)
+        for (int c = 0; c < 4; c++)
+            bumps->texel[c][i] = texels[i][c];
+}
+
+TL_INLINE struct tl_bump_statistics bumps_at(const struct bump_lanes *bumps, bool has_moments, int lane)
+{
+    float texel[4];
+    for (int c = 0; c < 4; c++)
+        texel[c] = bumps->texel[c][lane];
+    if (has_moments)
+        return tl_bump_statistics_of_moments((vec4s){{texel[0], texel[1], texel[2], texel[3]}}, bumps->scale);
+    return tl_bump_statistics_of_normal(
+        (vec3s){{bumps->scale * (2 * texel[0] - 1), bumps->scale * (2 * texel[1] - 1), 2 * texel[2] - 1}});
+}
+
+/* The statistics of one layer of bumps, or of the sum of two. */
+struct statistic_lanes {
+    float normal[3][TL_LANES], spread[2][TL_LANES], length[TL_LANES];
+};
+
+TL_INLINE void store_statistics(struct statistic_lanes *to, int lane, const struct tl_bump_statistics *from)
+{
+    tl_lane_store(to->normal, lane, from->normal);
+    to->spread[0][lane] = from->spread[0];
+    to->spread[1][lane] = from->spread[1];
+    to->length[lane] = from->length;
+}
+
+TL_INLINE void add_bumps_as(const struct bump_lanes *bumps, bool has_moments, struct statistic_lanes *sum)
+{
+    for (int i = 0; i < TL_LANES; i++) {
+        struct tl_bump_statistics more = bumps_at(bumps, has_moments, i);
+        const struct tl_bump_statistics so_far = {
+            tl_lane_vector(sum->normal, i), {sum->spread[0][i], sum->spread[1][i]}, sum->length[i]};
+        more = tl_bump_statistics_add(&so_far, &more);
+        store_statistics(sum, i, &more);
+    }
+}
+
+TL_INLINE void add_bumps(const struct bump_lanes *bumps, struct statistic_lanes *sum)
+{
+    if (!bumps->is_given)
+        return;
+    if (bumps->has_moments)
+        add_bumps_as(bumps, true, sum);
+    else
+        add_bumps_as(bumps, false, sum);
+}
+
+/* MikkTSpace: the interpolated frame is used as it is, and normalised once at the end. */
+TL_INLINE vec3s bent(vec3s normal, vec3s tangent, float handedness, vec3s mapped, vec3s otherwise)
+{
+    vec3s b = glms_vec3_scale(glms_vec3_cross(normal, tangent), handedness);
+    vec3s n = glms_vec3_add(glms_vec3_scale(normal, mapped.z),
+                            glms_vec3_add(glms_vec3_scale(tangent, mapped.x), glms_vec3_scale(b, mapped.y)));
+    return tl_unit_or(n, otherwise);
+}
+
+/* The viewer in the tangent space of the front. */
+TL_INLINE vec3s local_viewer(vec3s viewer, vec3s n, vec3s t, float handedness)
+{
+    const vec3s none = {{0, 0, 0}};
+    t = tl_unit_or(glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t))), none);
+    vec3s b = glms_vec3_scale(glms_vec3_cross(n, t), handedness < 0 ? -1.0f : 1.0f);
+    return (vec3s){{glms_vec3_dot(viewer, t), glms_vec3_dot(viewer, b), glms_vec3_dot(viewer, n)}};
+}
+
+/* Bends normals and widens gloss; `open` is a factor on the diffuse light. `minify` is known to the compiler.
+ */
+TL_INLINE void bend(struct tl_look_lanes *lanes, const struct statistic_lanes *bumps,
+                    enum tl_detail_minify minify, float open[TL_LANES])
+{
+    const struct tl_detail_params params = {.minify = minify};
+    for (int i = 0; i < TL_LANES; i++) {
+        struct tl_bump_statistics at = {
+            tl_lane_vector(bumps->normal, i), {bumps->spread[0][i], bumps->spread[1][i]}, bumps->length[i]};
+        vec3s normal = tl_lane_vector(lanes->normal, i);
+        vec3s smooth = tl_lane_vector(lanes->smooth, i);
+        vec3s tangent = tl_lane_vector(lanes->tangent, i);
+        float handedness = lanes->tangent[3][i], side = lanes->side[i];
+        bool has_tangent = glms_vec3_dot(tangent, tangent) > 0;
+        vec3s n = bent(normal, tangent, handedness, at.normal, smooth);
+        vec3s viewer = local_viewer(tl_lane_vector(lanes->viewer, i), smooth, tangent, handedness);
+        float rough = tl_bump_statistics_roughness(&params, 1 - lanes->glossiness[i], &at, viewer);
+        for (int c = 0; c < 3; c++)
+            lanes->shown[c][i] = has_tangent ? side * n.raw[c] : lanes->shown[c][i];
+        lanes->glossiness[i] = has_tangent ? 1 - rough : lanes->glossiness[i];
+        open[i] = has_tangent ? detail_open(at.length) : 1;
+    }
+}
+
+TL_INLINE void apply_bumps(const struct tl_detail_params *detail, struct tl_look_lanes *lanes,
+                           const struct texel_lanes *weave_at)
+{
+    const struct tl_shade_part *part = lanes->part;
+    const struct tl_shade_map *own = &part->maps[TL_MAP_NORMAL];
+    tl_quad texels[TL_LANES] = {{0}};
+    struct bump_lanes bumps[2] = {{0}};
+    if (part->own_moments || own->texels) {
+        read_map(lanes, own, part->own_moments ? part->own_moments : own->texels, texels);
+        keep_bumps(texels, part->material->normal_scale, part->own_moments, &bumps[0]);
+    }
+    const struct tl_texels *weave = part->weave_moments ? part->weave_moments : part->weave_normal;
+    if (weave) {
+        read_weave(lanes, weave_at, weave, texels);
+        keep_bumps(texels, detail->height_scale, part->weave_moments, &bumps[1]);
+    }
+    struct statistic_lanes sum;
+    const struct tl_bump_statistics flat = {.normal = {{0, 0, 1}}, .length = 1};
+    for (int i = 0; i < TL_LANES; i++)
+        store_statistics(&sum, i, &flat);
+    add_bumps(&bumps[0], &sum);
+    add_bumps(&bumps[1], &sum);
+    float open[TL_LANES];
+    if (detail->minify == TL_DETAIL_MINIFY_LEAN)
+        bend(lanes, &sum, TL_DETAIL_MINIFY_LEAN, open);
+    else if (detail->minify == TL_DETAIL_MINIFY_TOKSVIG)
+        bend(lanes, &sum, TL_DETAIL_MINIFY_TOKSVIG, open);
+    else
+        bend(lanes, &sum, TL_DETAIL_MINIFY_NONE, open);
+    for (int i = 0; i < lanes->count; i++)
+        lanes->diffuse[i] *= open[i];
+}
+
+TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl_look_lanes *lanes)
+{
+    const struct tl_shade_part *part = lanes->part;
+    const tl_material *material = part->material;
+    const tl_quad diffuse = {material->diffuse.x, material->diffuse.y, material->diffuse.z, 0};
+    const tl_quad f0 = {material->specular.x, material->specular.y, material->specular.z, 0};
+    const vec3s up = {{0, 1, 0}};
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s smooth = tl_unit_or(tl_lane_vector(lanes->normal, i), up);
+        tl_lane_store(lanes->smooth, i, smooth);
+        tl_lane_store(lanes->shown, i, glms_vec3_scale(smooth, lanes->side[i]));
+    }
+    for (int i = 0; i < TL_LANES; i++) {
+        lanes->glossiness[i] = material->glossiness;
+        lanes->diffuse[i] = diffuse;
+        lanes->f0[i] = f0;
+    }
+    if (!part->has_maps)
+        return;
+    struct texel_lanes weave_at;
+    read_colours(detail, lanes, &weave_at);
+    if (part->has_bumps)
+        apply_bumps(detail, lanes, &weave_at);
+}

@@ -1,0 +1,407 @@
+#include "config/memory.h"
+#include "render/env/lobes_fetch.h"
+#include "render/shade/pixels_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Blends of exponents by the base-2 logarithm of the exponent, in steps that a blend is linear over. */
+#define BLEND_STEPS   64 /* an octave */
+#define BLEND_OCTAVES 10
+
+struct tl_pixel_blends {
+    struct tl_exponent_blend items[BLEND_STEPS * BLEND_OCTAVES + 1];
+};
+
+struct tl_pixel_blends *tl_pixel_blends_make(void)
+{
+    struct tl_pixel_blends *blends = TL_NEW(struct tl_pixel_blends);
+    for (int i = 0; i <= BLEND_STEPS * BLEND_OCTAVES; i++)
+        blends->items[i] = tl_exponent_blend(exp2f((float)i / BLEND_STEPS));
+    return blends;
+}
+
+TL_INLINE struct tl_exponent_blend blend_of(const struct tl_pixel_scene *scene, float log_exponent)
+{
+    float at = tl_greater(tl_lesser(log_exponent, BLEND_OCTAVES), 0) * BLEND_STEPS;
+    return scene->blends->items[(int)(at + 0.5f)];
+}
+
+/* ---- Exact light ---- */
+
+/* Texels of one map about a direction of each lane, and their shares. */
+struct fetch_lanes {
+    int first[TL_LANES];
+    float right[TL_LANES], below[TL_LANES];
+};
+
+TL_INLINE void place_fetch(struct fetch_lanes *fetch, int lane, int side, struct tl_octahedral_place place)
+{
+    struct tl_lobe_texels at = tl_lobe_texels_about(side, place);
+    fetch->first[lane] = at.first;
+    fetch->right[lane] = at.right;
+    fetch->below[lane] = at.below;
+}
+
+TL_INLINE tl_quad fetch_lane(const struct tl_lobe_map *map, const struct fetch_lanes *fetch, int lane)
+{
+    return tl_lobe_texels_mean(
+        map, (struct tl_lobe_texels){fetch->first[lane], fetch->right[lane], fetch->below[lane]});
+}
+
+/* The two maps that each lane blends. */
+struct blend_lanes {
+    const struct tl_lobe_map *low[TL_LANES], *high[TL_LANES];
+    int low_side[TL_LANES], high_side[TL_LANES];
+    float weight[TL_LANES]; /* of `high` */
+};
+
+TL_INLINE void choose_maps(const struct tl_pixel_scene *scene, const float log_exponents[TL_LANES], int count,
+                           struct blend_lanes *blends)
+{
+    const struct tl_lobe_map *maps = scene->request->lobes->maps;
+    for (int i = 0; i < TL_LANES; i++) {
+        struct tl_exponent_blend blend = blend_of(scene, log_exponents[i < count ? i : 0]);
+        blends->low[i] = &maps[blend.index];
+        blends->high[i] = &maps[blend.index + (blend.weight > 0)]; /* need not exist otherwise */
+        blends->low_side[i] = blends->low[i]->side;
+        blends->high_side[i] = blends->high[i]->side;
+        blends->weight[i] = blend.weight;
+    }
+}
+
+/* Texels about a direction in both maps. */
+struct pair_lanes {
+    struct fetch_lanes low, high;
+};
+
+TL_INLINE void place_pair(const struct blend_lanes *blends, int lane, vec3s direction, struct pair_lanes *to)
+{
+    struct tl_octahedral_place place = tl_octahedral_place(direction.x, direction.y, direction.z);
+    place_fetch(&to->low, lane, blends->low_side[lane], place);
+    place_fetch(&to->high, lane, blends->high_side[lane], place);
+}
+
+TL_INLINE tl_quad fetch_pair(const struct blend_lanes *blends, int lane, const struct pair_lanes *pair)
+{
+    tl_quad low = fetch_lane(blends->low[lane], &pair->low, lane);
+    return low + blends->weight[lane] * (fetch_lane(blends->high[lane], &pair->high, lane) - low);
+}
+
+TL_INLINE void add_diffuse(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                           tl_quad light[TL_LANES])
+{
+    const struct tl_lobe_map *map = &scene->request->lobes->maps[0];
+    struct fetch_lanes fetch;
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s d = tl_pixel_turned(scene, tl_lane_vector(lanes->look.shown, i));
+        place_fetch(&fetch, i, map->side, tl_octahedral_place(d.x, d.y, d.z));
+    }
+    for (int i = 0; i < lanes->look.count; i++)
+        light[i] = lanes->look.diffuse[i] * fetch_lane(map, &fetch, i) * lanes->diffuse_ratio[i];
+}
+
+/* ---- Gloss ---- */
+
+/* The gloss, which depends on the viewer. */
+struct gloss_lanes {
+    /* Two lobes: */
+    float mirror[3][TL_LANES], exponent[TL_LANES];
+    tl_quad reflectance[TL_LANES];
+    /* Facets: */
+    float tangent[3][TL_LANES], bitangent[3][TL_LANES], normal[3][TL_LANES]; /* the frame of the threads */
+    float cosine[TL_LANES];                                                  /* of the viewer in it */
+};
+
+/* Schlick's factor of what is missing from F0 to its greatest value. */
+TL_INLINE float schlick_share(float cosine)
+{
+    float away = 1 - tl_greater(tl_lesser(cosine, 1), 0);
+    return away * away * away * away * away;
+}
+
+TL_INLINE tl_quad schlick(tl_quad f0, float share)
+{
+    const tl_quad most = {tl_lesser(50 * f0[0], 1), tl_lesser(50 * f0[1], 1), tl_lesser(50 * f0[2], 1), 0};
+    return f0 + (most - f0) * share;
+}
+
+/* As tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
+TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, vec3s n, vec3s t, float handedness,
+                                        float side)
+{
+    t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
+    float square = glms_vec3_dot(t, t);
+    bool is_given = square > 1e-12f, is_x = fabsf(n.x) < 0.6f;
+    vec3s across = is_x ? (vec3s){{0, -n.z, n.y}} : (vec3s){{n.z, 0, -n.x}}; /* an axis x n */
+    for (int c = 0; c < 3; c++)
+        t.raw[c] = is_given ? t.raw[c] : across.raw[c];
+    square = is_given ? square : glms_vec3_dot(across, across);
+    t = glms_vec3_scale(t, 1 / sqrtf(square));
+    vec3s turned = glms_vec3_add(glms_vec3_scale(t, part->turn_cosine),
+                                 glms_vec3_scale(glms_vec3_cross(n, t), side * part->turn_sine));
+    return (struct tl_brdf_frame){
+        n, turned, glms_vec3_scale(glms_vec3_cross(n, turned), handedness * side < 0 ? -1.0f : 1.0f)};
+}
+
+/* Where the table of the fan is read. */
+struct fan_lanes {
+    int row[TL_LANES], column[TL_LANES], gloss[TL_LANES];
+    float row_share[TL_LANES], column_share[TL_LANES], gloss_share[TL_LANES], side[TL_LANES];
+};
+
+TL_INLINE void place_fan(const struct tl_pixel_lanes *lanes, struct gloss_lanes *gloss, struct fan_lanes *fan)
+{
+    const struct tl_look_lanes *look = &lanes->look;
+    for (int i = 0; i < TL_LANES; i++) {
+        struct tl_brdf_frame frame =
+            frame_of(look->part, tl_lane_vector(look->shown, i), tl_lane_vector(look->tangent, i),
+                     look->tangent[3][i], look->side[i]);
+        vec3s viewer = tl_lane_vector(look->viewer, i);
+        gloss->cosine[i] = glms_vec3_dot(viewer, frame.normal);
+        struct tl_fan_place at =
+            tl_fan_place(look->part->fan, glms_vec3_dot(viewer, frame.tangent),
+                         glms_vec3_dot(viewer, frame.bitangent), gloss->cosine[i], look->glossiness[i]);
+        tl_lane_store(gloss->tangent, i, frame.tangent);
+        tl_lane_store(gloss->bitangent, i, frame.bitangent);
+        tl_lane_store(gloss->normal, i, frame.normal);
+        fan->row[i] = at.row.first;
+        fan->row_share[i] = at.row.share;
+        fan->column[i] = at.column.first;
+        fan->column_share[i] = at.column.share;
+        fan->gloss[i] = at.gloss.first;
+        fan->gloss_share[i] = at.gloss.share;
+        fan->side[i] = at.side;
+    }
+}
+
+/* The lobes of a fan. */
+struct lobe_lanes {
+    float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* in the frame of the threads, not normalised */
+    float log_exponent[TL_LANES];              /* all lobes of a fan have the same one */
+    tl_quad weight[TL_LOBE_FIT_MAX][TL_LANES];
+};
+
+TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct fan_lanes *at,
+                         struct lobe_lanes *lobes)
+{
+    const struct tl_fan_table *fan = lanes->look.part->fan;
+    const int middle = fan->lobe_count / 2;
+    for (int i = 0; i < lanes->look.count; i++) {
+        const struct tl_fan_place place = {{at->row[i], at->row_share[i]},
+                                           {at->column[i], at->column_share[i]},
+                                           {at->gloss[i], at->gloss_share[i]},
+                                           at->side[i]};
+        const struct tl_fan_shares shares = tl_fan_shares(lanes->look.f0[i]);
+        tl_quad nodes[2 * TL_LOBE_FIT_MAX];
+        tl_fan_fetch(fan, &place, nodes);
+        for (int k = 0; k < fan->lobe_count; k++) {
+            const tl_quad local = nodes[2 * k], weight = nodes[2 * k + 1];
+            for (int c = 0; c < 3; c++)
+                lobes->local[k][c][i] = local[c];
+            lobes->weight[k][i] = shares.low * weight[0] + shares.high * weight[1];
+        }
+        lobes->log_exponent[i] = nodes[2 * middle][3];
+    }
+}
+
+TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss_lanes *gloss,
+                          const struct fan_lanes *fan, float local[3][TL_LANES],
+                          const struct blend_lanes *blends, struct pair_lanes *to)
+{
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s d = glms_vec3_scale(tl_lane_vector(gloss->tangent, i), fan->side[i] * local[0][i]);
+        d = glms_vec3_add(d,
+                          glms_vec3_scale(tl_lane_vector(gloss->bitangent, i), fan->side[i] * local[1][i]));
+        d = glms_vec3_add(d, glms_vec3_scale(tl_lane_vector(gloss->normal, i), local[2][i]));
+        place_pair(blends, i, tl_pixel_turned(scene, d), to);
+    }
+}
+
+/* The exact light of the lobes of a fan. */
+TL_INLINE void add_facets(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                          struct gloss_lanes *gloss, tl_quad light[TL_LANES])
+{
+    const int count = lanes->look.count, lobe_count = lanes->look.part->fan->lobe_count;
+    struct fan_lanes fan;
+    struct lobe_lanes lobes;
+    struct blend_lanes blends;
+    struct pair_lanes pairs[TL_LOBE_FIT_MAX];
+    place_fan(lanes, gloss, &fan);
+    fetch_fan(lanes, &fan, &lobes);
+    choose_maps(scene, lobes.log_exponent, count, &blends);
+    for (int k = 0; k < lobe_count; k++)
+        place_lobe(scene, gloss, &fan, lobes.local[k], &blends, &pairs[k]);
+    for (int i = 0; i < count; i++) {
+        tl_quad sum = {0, 0, 0, 0};
+        for (int k = 0; k < lobe_count; k++)
+            sum += fetch_pair(&blends, i, &pairs[k]) * lobes.weight[k][i];
+        if (gloss->cosine[i] > 0)
+            light[i] += sum * lanes->glossy_ratio[i];
+    }
+}
+
+/* The exact light of the mirror direction's lobe. */
+TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                        struct gloss_lanes *gloss, tl_quad light[TL_LANES])
+{
+    const struct tl_look_lanes *look = &lanes->look;
+    struct blend_lanes blends;
+    struct pair_lanes pair;
+    float shares[TL_LANES], log_exponents[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s normal = tl_lane_vector(look->shown, i), viewer = tl_lane_vector(look->viewer, i);
+        float cosine = glms_vec3_dot(normal, viewer);
+        vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * tl_greater(cosine, 0)), viewer);
+        tl_lane_store(gloss->mirror, i, tl_unit_or(mirror, normal));
+        shares[i] = schlick_share(cosine);
+        gloss->exponent[i] = 1 / tl_greater(1 - look->glossiness[i], 1e-6f);
+        log_exponents[i] = tl_log2(gloss->exponent[i]);
+    }
+    choose_maps(scene, log_exponents, look->count, &blends);
+    for (int i = 0; i < TL_LANES; i++)
+        place_pair(&blends, i, tl_pixel_turned(scene, tl_lane_vector(gloss->mirror, i)), &pair);
+    for (int i = 0; i < look->count; i++) {
+        gloss->reflectance[i] = schlick(look->f0[i], shares[i]);
+        light[i] += gloss->reflectance[i] * fetch_pair(&blends, i, &pair) * lanes->glossy_ratio[i];
+    }
+}
+
+/* ---- Suns ---- */
+
+static bool is_plain_ward(const struct tl_gloss *model)
+{
+    return model->model == TL_REFLECT_WARD && model->fresnel == TL_FRESNEL_SCHLICK &&
+           model->width_weft >= 1e-3f && model->width_warp >= 1e-3f && model->width_weft <= 1 &&
+           model->width_warp <= 1;
+}
+
+/* tl_brdf_gloss_under_disc of Ward's facets. */
+TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+                        const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
+{
+    const struct tl_gloss *model = &lanes->look.part->material->gloss;
+    const float wider = sun->radius * sun->radius / 8;
+    const float u = model->width_weft * model->width_weft + wider,
+                v = model->width_warp * model->width_warp + wider;
+    float lobe[TL_LANES], share[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s normal = tl_lane_vector(gloss->normal, i);
+        vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
+        float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->cosine[i];
+        float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
+              y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
+        float value = tl_exp2(-1.44269504f * (x * x / u + y * y / v) / (z * z)) *
+                      sqrtf(cos_a / (cos_b * u * v)) * (1 / (4 * (float)M_PI));
+        bool is_seen = (cos_a > 0) & (cos_b > 0);
+        lobe[i] = is_seen ? value : 0;
+        share[i] = schlick_share(0.5f * sqrtf(glms_vec3_dot(sum, sum)));
+    }
+    for (int i = 0; i < lanes->look.count; i++)
+        lit[i] += lobe[i] * schlick(lanes->look.f0[i], share[i]);
+}
+
+/* Of other facets than Ward's: one by one, where the sun is seen. */
+TL_INLINE void add_brdf(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+                        const struct tl_sun *sun, vec3s direction, const float seen[TL_LANES],
+                        tl_quad lit[TL_LANES])
+{
+    const struct tl_look_lanes *look = &lanes->look;
+    for (int i = 0; i < look->count; i++) {
+        if (!(seen[i] > 0))
+            continue;
+        vec3s f0 = {{look->f0[i][0], look->f0[i][1], look->f0[i][2]}};
+        struct tl_brdf brdf = tl_brdf_of(look->part->material, f0, look->glossiness[i]);
+        const struct tl_brdf_frame frame = {tl_lane_vector(gloss->normal, i),
+                                            tl_lane_vector(gloss->tangent, i),
+                                            tl_lane_vector(gloss->bitangent, i)};
+        lit[i] += tl_pixel_quad(
+            tl_brdf_gloss_under_disc(&brdf, &frame, direction, tl_lane_vector(look->viewer, i), sun->radius));
+    }
+}
+
+TL_INLINE void add_mirrored(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+                            const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
+{
+    float lobe[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        float exponent = lobe_broadened_exponent(gloss->exponent[i], sun->radius * GLM_SQRT1_2f);
+        float cosine = tl_greater(glms_vec3_dot(direction, tl_lane_vector(gloss->mirror, i)), 1e-30f);
+        lobe[i] = 0.159154943f * (exponent + 1) * tl_power(cosine, exponent);
+    }
+    for (int i = 0; i < lanes->look.count; i++)
+        lit[i] += lobe[i] * gloss->reflectance[i];
+}
+
+TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes, int sun,
+                       const struct gloss_lanes *gloss, tl_quad light[TL_LANES])
+{
+    const struct tl_pixels_request *request = scene->request;
+    const struct tl_sun *item = &request->suns->items[sun];
+    const struct tl_look_lanes *look = &lanes->look;
+    const struct tl_shade_part *part = look->part;
+    const vec3s direction = scene->suns[sun];
+    float seen[TL_LANES], lobe[TL_LANES], any = 0;
+    for (int i = 0; i < TL_LANES; i++) {
+        float cosine = glms_vec3_dot(direction, tl_lane_vector(look->smooth, i));
+        seen[i] = tl_pixel_sun_above(item, look->side[i] * cosine);
+        lobe[i] = tl_pixel_diffuse_lobe(glms_vec3_dot(direction, tl_lane_vector(look->shown, i)));
+    }
+    for (int i = 0; i < look->count; i++) {
+        seen[i] *= tl_pixel_sun_seen(request, sun, lanes->pixel[i]);
+        any = tl_greater(any, seen[i]);
+    }
+    if (!(any > 0))
+        return;
+    tl_quad lit[TL_LANES];
+    for (int i = 0; i < look->count; i++)
+        lit[i] = look->diffuse[i] * lobe[i];
+    if (part->fan && is_plain_ward(&part->material->gloss))
+        add_ward(lanes, gloss, item, direction, lit);
+    else if (part->fan)
+        add_brdf(lanes, gloss, item, direction, seen, lit);
+    else if (part->is_glossy)
+        add_mirrored(lanes, gloss, item, direction, lit);
+    for (int i = 0; i < look->count; i++)
+        if (seen[i] > 0)
+            light[i] += seen[i] * tl_pixel_quad(item->power) * lit[i];
+}
+
+/* ---- All of it ---- */
+
+TL_INLINE void find_viewers(const struct tl_pixel_scene *scene, struct tl_pixel_lanes *lanes)
+{
+    const vec3s up = {{0, 1, 0}};
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s ray = glms_vec3_add(scene->first, glms_vec3_add(glms_vec3_scale(scene->across, lanes->x[i]),
+                                                              glms_vec3_scale(scene->up, lanes->y[i])));
+        tl_lane_store(lanes->look.viewer, i, glms_vec3_negate(tl_unit_or(ray, up)));
+    }
+}
+
+TL_CLONES static void light_lanes(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                                  tl_quad light[TL_LANES])
+{
+    const struct tl_shade_part *part = lanes->look.part;
+    struct gloss_lanes gloss;
+    add_diffuse(scene, lanes, light);
+    if (part->fan)
+        add_facets(scene, lanes, &gloss, light);
+    else if (part->is_glossy)
+        add_lobe(scene, lanes, &gloss, light);
+    for (int i = 0; i < scene->request->suns->count; i++)
+        add_sun(scene, lanes, i, &gloss, light);
+}
+
+TL_CLONES void tl_pixel_lanes_shade(const struct tl_pixel_scene *scene, struct tl_pixel_lanes *lanes)
+{
+    tl_quad light[TL_LANES];
+    find_viewers(scene, lanes);
+    tl_look_evaluate(&scene->request->materials->detail, &lanes->look);
+    light_lanes(scene, lanes, light);
+    for (int i = 0; i < lanes->look.count; i++) {
+        tl_quad colour = light[i] * lanes->cover[i];
+        colour[3] = lanes->cover[i];
+        *lanes->to[i] = colour;
+    }
+}

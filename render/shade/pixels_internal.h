@@ -1,0 +1,68 @@
+/* What pixels.c, which walks over runs of pixels, and pixel_lanes.c, which evaluates those that have a gloss,
+ * maps or more than one normal, share. */
+#ifndef TOILE_RENDER_SHADE_PIXELS_INTERNAL_H
+#define TOILE_RENDER_SHADE_PIXELS_INTERNAL_H
+
+#include "render/light/terms.h"
+#include "render/shade/look.h"
+#include "render/shade/pixels.h"
+
+struct tl_pixel_blends;
+
+/* What all pixels share. */
+struct tl_pixel_scene {
+    const struct tl_pixels_request *request;
+    const struct tl_pixel_blends *blends;
+    float turn_cosine, turn_sine; /* of the environment's yaw */
+    vec3s first, across, up;      /* the ray through pixel (0, 0), and its changes */
+    vec3s suns[TL_SUNS_MAX];      /* directions, world */
+};
+
+/* Pixels of one part, wherever they lie, evaluated together. */
+struct tl_pixel_lanes {
+    struct tl_look_lanes look; /* its viewers are found from the places: */
+    float x[TL_LANES], y[TL_LANES];
+    size_t pixel[TL_LANES];
+    tl_quad diffuse_ratio[TL_LANES], glossy_ratio[TL_LANES];
+    float cover[TL_LANES];
+    tl_quad *to[TL_LANES]; /* where the colour is written */
+};
+
+/* Evaluates the pixels and writes their colours, premultiplied by cover. */
+void tl_pixel_lanes_shade(const struct tl_pixel_scene *scene, struct tl_pixel_lanes *lanes);
+
+/* Blends of exponents as a table. The caller frees it. */
+struct tl_pixel_blends *tl_pixel_blends_make(void);
+
+/* K_1 without a power. */
+TL_INLINE float tl_pixel_diffuse_lobe(float cosine)
+{
+    return 0.318309886f * tl_greater(cosine, 0);
+}
+
+/* Share of a sun's disc above the plane of the smooth normal. */
+TL_INLINE float tl_pixel_sun_above(const struct tl_sun *sun, float cosine)
+{
+    return disc_share(cosine / tl_greater(sun->radius, 1e-3f));
+}
+
+/* What of a sun is seen at a pixel. */
+TL_INLINE float tl_pixel_sun_seen(const struct tl_pixels_request *request, int sun, size_t pixel)
+{
+    const float *visible = request->sun_visibility[sun];
+    return visible ? visible[pixel] : 1;
+}
+
+TL_INLINE tl_quad tl_pixel_quad(vec3s v)
+{
+    return (tl_quad){v.x, v.y, v.z, 0};
+}
+
+/* A direction of the world in the environment. */
+TL_INLINE vec3s tl_pixel_turned(const struct tl_pixel_scene *scene, vec3s d)
+{
+    float c = scene->turn_cosine, s = scene->turn_sine;
+    return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
+}
+
+#endif
