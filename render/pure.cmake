@@ -30,7 +30,9 @@ add_library(toile_light STATIC
   inspect/pick.c
   inspect/seen.c
   light/compose.c
+  gbuffer/clip.c
   gbuffer/cull.c
+  gbuffer/raster.c
   light/mirrors.c
   env/resample.c
   env/sun.c

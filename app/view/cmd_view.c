@@ -105,7 +105,7 @@ static bool run(struct tl_review *review, int max_frames, tl_error *error)
 static bool needs_draft(const struct tl_review *review)
 {
     const struct tl_arguments *arguments = review->arguments;
-    if (arguments->positional_count > 0 || !strstr(tl_gpu_name(review->gpu), "llvmpipe"))
+    if (arguments->positional_count > 0 || !tl_gpu_is_software(review->gpu))
         return false; /* the scene decides its quality */
     for (size_t i = 0; i < arguments->assignment_count; i++)
         if (strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||

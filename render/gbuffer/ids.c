@@ -1,4 +1,4 @@
-#include "render/gbuffer/ids.h"
+#include "render/gbuffer/ids_internal.h"
 
 #include "config/memory.h"
 
@@ -28,36 +28,43 @@ static void reserve(struct tl_id_buffer *buffer, const struct tl_gbuffer_request
     }
 }
 
-/* Replaces places among the triangles that were drawn by the triangles' numbers, row by row, and marks these.
- * Threads may mark one triangle at once: they write the same. */
-static size_t number_row(struct tl_id_buffer *buffer, const uint32_t *numbers, int y)
+/* Replaces places among the triangles that were drawn by the triangles' numbers. */
+static void number_row(uint32_t *row, int width, const uint32_t *numbers)
 {
-    uint32_t *row = buffer->ids + (size_t)y * (size_t)buffer->width, before = 0, id = 0;
-    size_t covered = 0;
-    for (int x = 0; x < buffer->width; x++) {
+    uint32_t before = 0, id = 0;
+    for (int x = 0; x < width; x++) {
         if (row[x] != before) { /* runs are the rule */
             before = row[x];
-            id = 0;
-            if (before != 0) {
-                uint32_t triangle = numbers[(before & ~TL_SAMPLE_BACK) - 1], back = before & TL_SAMPLE_BACK;
-                id = (triangle + 1) | back;
-                __atomic_store_n(&buffer->marks[2 * (size_t)triangle + (back ? 1 : 0)], 1, __ATOMIC_RELAXED);
-            }
+            id = before != 0 ? (numbers[(before & ~TL_SAMPLE_BACK) - 1] + 1) | (before & TL_SAMPLE_BACK) : 0;
         }
         row[x] = id;
-        covered += id != 0;
+    }
+}
+
+/* Marks the triangles of a row and counts its covered pixels. Threads may mark one triangle at once: they
+ * write the same. */
+static size_t mark_row(struct tl_id_buffer *buffer, const uint32_t *row)
+{
+    uint32_t before = 0;
+    size_t covered = 0;
+    for (int x = 0; x < buffer->width; x++) {
+        if (row[x] != before) {
+            before = row[x];
+            if (before != 0)
+                __atomic_store_n(&buffer->marks[tl_ids_mark(before)], 1, __ATOMIC_RELAXED);
+        }
+        covered += row[x] != 0;
     }
     return covered;
 }
 
-static void number_pixels(struct tl_id_buffer *buffer)
+static void mark_pixels(struct tl_id_buffer *buffer)
 {
-    const uint32_t *numbers = buffer->drawn.cull.numbers;
     size_t covered = 0;
     memset(buffer->marks, 0, 2 * buffer->triangle_count);
 #pragma omp parallel for schedule(static) reduction(+ : covered)
     for (int y = 0; y < buffer->height; y++)
-        covered += number_row(buffer, numbers, y);
+        covered += mark_row(buffer, buffer->ids + (size_t)y * (size_t)buffer->width);
     buffer->covered = covered;
 }
 
@@ -71,8 +78,14 @@ static void list_seen(struct tl_id_buffer *buffer)
         }
 }
 
-bool tl_ids_draw(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
-                 const struct tl_triangle_ranges *ranges, tl_error *error)
+static void finish(struct tl_id_buffer *buffer)
+{
+    mark_pixels(buffer);
+    list_seen(buffer);
+}
+
+bool tl_ids_draw_by_gl(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
+                       const struct tl_triangle_ranges *ranges, tl_error *error)
 {
     if (!tl_gbuffer_draw(&buffer->drawn, gpu, request, error))
         return false;
@@ -80,14 +93,50 @@ bool tl_ids_draw(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuff
     glGetTextureImage(buffer->drawn.target.colours[0].id, 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
                       (GLsizei)((size_t)buffer->width * (size_t)buffer->height * sizeof *buffer->ids),
                       buffer->ids);
-    number_pixels(buffer);
-    list_seen(buffer);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < buffer->height; y++)
+        number_row(buffer->ids + (size_t)y * (size_t)buffer->width, buffer->width,
+                   buffer->drawn.cull.numbers);
+    finish(buffer);
+    return true;
+}
+
+void tl_ids_draw_on_cpu(struct tl_id_buffer *buffer, const struct tl_gbuffer_request *request,
+                        const struct tl_triangle_ranges *ranges)
+{
+    const struct tl_raster_request what = {.surfaces = request->drawn,
+                                           .surface_count = request->surface_count,
+                                           .view_projection = request->view->view_projection,
+                                           .width = request->width,
+                                           .height = request->height};
+    reserve(buffer, request, ranges->first[ranges->surface_count]);
+    tl_raster_draw(&buffer->raster, &what, buffer->ids);
+    finish(buffer);
+}
+
+/* Holes need the maps, which only GL's program reads here. */
+static bool fits_cpu(const struct tl_gbuffer_request *request)
+{
+    for (size_t i = 0; i < request->surface_count; i++)
+        if (tl_surfaces_is_hidden(request->surfaces, i))
+            return false;
+    return !tl_surfaces_have(request->surfaces, TL_PARTS_MASKED) && request->width <= TL_RASTER_SIDE_MAX &&
+           request->height <= TL_RASTER_SIDE_MAX;
+}
+
+bool tl_ids_draw(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
+                 const struct tl_triangle_ranges *ranges, tl_error *error)
+{
+    if (!tl_gpu_is_software(gpu) || !fits_cpu(request))
+        return tl_ids_draw_by_gl(buffer, gpu, request, ranges, error);
+    tl_ids_draw_on_cpu(buffer, request, ranges);
     return true;
 }
 
 void tl_ids_release(struct tl_id_buffer *buffer)
 {
     tl_gbuffer_release(&buffer->drawn);
+    tl_raster_release(&buffer->raster);
     free(buffer->ids);
     free(buffer->seen);
     free(buffer->places);
@@ -97,6 +146,6 @@ void tl_ids_release(struct tl_id_buffer *buffer)
 
 size_t tl_ids_bytes(const struct tl_id_buffer *buffer)
 {
-    return tl_gbuffer_bytes(&buffer->drawn) + buffer->capacity * sizeof(uint32_t) +
-           buffer->triangle_count * (4 * sizeof(uint32_t) + 2);
+    return tl_gbuffer_bytes(&buffer->drawn) + tl_raster_bytes(&buffer->raster) +
+           buffer->capacity * sizeof(uint32_t) + buffer->triangle_count * (4 * sizeof(uint32_t) + 2);
 }

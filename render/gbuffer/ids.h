@@ -1,15 +1,19 @@
 /* The ID buffer on the CPU: the number of the nearest triangle at every pixel, and a list of the triangles
- * that are seen. GL rasterises one integer target and depth, which is read back once.
+ * that are seen. On hardware, and where alpha maps cut holes, GL rasterises one integer target and depth,
+ * which is read back once. Where GL runs on the CPU itself, raster.h takes its place, with the same result:
+ * GL's vertex stage on one thread took ten times as long.
  *
  * Lifetime: owns its arrays and GL objects; needs the context of its tl_gpu. Threads: that of the context. */
 #ifndef TOILE_RENDER_GBUFFER_IDS_H
 #define TOILE_RENDER_GBUFFER_IDS_H
 
 #include "render/gbuffer/gbuffer.h"
+#include "render/gbuffer/raster.h"
 #include "render/gbuffer/samples.h"
 
 struct tl_id_buffer {
-    struct tl_gbuffer drawn; /* its one layer */
+    struct tl_gbuffer drawn; /* by GL: its one layer */
+    struct tl_raster raster; /* on the CPU */
     int width, height;
     uint32_t *ids; /* [height][width], rows upwards: 0 nothing; else 1 + triangle, and TL_SAMPLE_BACK */
     size_t capacity;
@@ -27,11 +31,16 @@ bool tl_ids_draw(struct tl_id_buffer *buffer, tl_gpu *gpu, const struct tl_gbuff
 void tl_ids_release(struct tl_id_buffer *buffer);
 size_t tl_ids_bytes(const struct tl_id_buffer *buffer);
 
+/* An ID that is not 0 as an index: 2 triangle + back. */
+static inline size_t tl_ids_mark(uint32_t id)
+{
+    return 2 * ((size_t)(id & ~TL_SAMPLE_BACK) - 1) + (id & TL_SAMPLE_BACK ? 1 : 0);
+}
+
 /* The place in `seen` of what an ID that is not 0 stands for. */
 static inline uint32_t tl_ids_place(const struct tl_id_buffer *buffer, uint32_t id)
 {
-    size_t triangle = (id & ~TL_SAMPLE_BACK) - 1;
-    return buffer->places[2 * triangle + (id & TL_SAMPLE_BACK ? 1 : 0)];
+    return buffer->places[tl_ids_mark(id)];
 }
 
 #endif

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define GL_VERSION_NEEDED 45
 
@@ -103,6 +104,11 @@ void tl_gpu_destroy(tl_gpu **gpu)
 const char *tl_gpu_name(const tl_gpu *gpu)
 {
     return gpu->name;
+}
+
+bool tl_gpu_is_software(const tl_gpu *gpu)
+{
+    return strstr(gpu->name, "llvmpipe") != NULL;
 }
 
 size_t tl_gpu_message_count(const tl_gpu *gpu)

@@ -22,6 +22,7 @@ tl_gpu *tl_gpu_create_current(tl_error *error);
 void tl_gpu_destroy(tl_gpu **gpu);
 
 const char *tl_gpu_name(const tl_gpu *gpu);     /* GL_RENDERER and version, for reports */
+bool tl_gpu_is_software(const tl_gpu *gpu);     /* Mesa's llvmpipe: it runs on the cores of the CPU */
 size_t tl_gpu_message_count(const tl_gpu *gpu); /* GL debug messages so far */
 size_t tl_gpu_texture_bytes(const tl_gpu *gpu); /* memory of all live textures, computed from their formats */
 int tl_gpu_texture_side_max(const tl_gpu *gpu); /* texels */

@@ -1,0 +1,432 @@
+#include "render/gbuffer/raster.h"
+
+#include "config/memory.h"
+#include "config/simd.h"
+#include "render/gbuffer/clip.h"
+#include "render/gbuffer/samples.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Corners are rounded to 1/256 of a pixel. */
+#define SUBPIXEL_BITS 8
+#define SUBPIXELS     (1 << SUBPIXEL_BITS)
+
+/* Rows of a band: its ids and depths stay in a core's cache. */
+#define BAND_ROWS 16
+/* Rows whose spans are computed together. */
+#define SPAN_LANES 4
+/* Triangles of the surfaces that one thread prepares at a time, and vertices. */
+#define CHUNK_TRIANGLES 1024
+#define CHUNK_VERTICES  2048
+
+/* A vertex in the window. */
+struct raster_vertex {
+    float x, y, z;       /* pixels from the lower left corner, and depth in 0 .. 1 */
+    int32_t column, row; /* from the centre of the first pixel, in subpixels */
+    uint32_t outside;    /* planes of the frustum, as tl_clip_outside has them */
+};
+
+/* A triangle on the grid of subpixels, its inside to the same side of all edges. */
+struct raster_triangle {
+    int32_t columns[3], rows[3];
+    float depth, depth_x, depth_y; /* at the first pixel's centre, and its change to the next across and up */
+    uint32_t id;
+    int16_t left, right, bottom, top; /* pixels that its box touches, the last ones included */
+};
+
+/* Triangles of one part that are prepared by one thread, and lists of them by band. */
+struct raster_chunk {
+    const tl_surface *surface;
+    const struct raster_vertex *vertices; /* the surface's */
+    uint32_t begin, end;                  /* triangles of the surface */
+    uint32_t first;                       /* number of the surface's first triangle */
+    struct raster_triangle *triangles;
+    size_t count, capacity;
+    uint32_t *bands; /* [band_count + 1]: where the list of a band begins, and where the last one ends */
+    uint32_t *lists; /* triangles of the first band, of the second, ... */
+    size_t band_capacity, list_capacity;
+};
+
+/* Of a frame. */
+struct raster_frame {
+    const struct tl_raster_request *request;
+    float half_width, half_height;
+    int band_count;
+};
+
+static struct raster_vertex snapped(float x, float y, float z, uint32_t outside)
+{
+    /* Clipped corners lie within the window; others are clipped before their places count. */
+    bool is_inside = fabsf(x) <= TL_RASTER_SIDE_MAX + 1 && fabsf(y) <= TL_RASTER_SIDE_MAX + 1;
+    return (struct raster_vertex){.x = x,
+                                  .y = y,
+                                  .z = z,
+                                  .column = is_inside ? (int32_t)lrintf((x - 0.5f) * SUBPIXELS) : 0,
+                                  .row = is_inside ? (int32_t)lrintf((y - 0.5f) * SUBPIXELS) : 0,
+                                  .outside = outside};
+}
+
+TL_INLINE vec4s into_clip_space(const float (*m)[4], vec3s p)
+{
+    vec4s clip;
+    for (int i = 0; i < 4; i++)
+        clip.raw[i] = m[0][i] * p.x + m[1][i] * p.y + m[2][i] * p.z + m[3][i];
+    return clip;
+}
+
+TL_CLONES static void transform(const struct raster_frame *frame, const vec3s *positions, size_t count,
+                                struct raster_vertex *vertices)
+{
+    const float(*m)[4] = (const float(*)[4])frame->request->view_projection.raw;
+    for (size_t i = 0; i < count; i++) {
+        vec4s p = into_clip_space(m, positions[i]);
+        float inverse = 1 / p.w;
+        vertices[i] = snapped(fmaf(p.x * inverse, frame->half_width, frame->half_width),
+                              fmaf(p.y * inverse, frame->half_height, frame->half_height),
+                              fmaf(p.z * inverse, 0.5f, 0.5f), tl_clip_outside(p.x, p.y, p.z, p.w));
+    }
+}
+
+static void transform_surfaces(const struct tl_raster *raster, const struct raster_frame *frame)
+{
+    struct raster_vertex *vertices = raster->vertices;
+    for (size_t s = 0; s < frame->request->surface_count; s++) {
+        const tl_surface *surface = frame->request->surfaces[s];
+#pragma omp parallel for schedule(static)
+        for (size_t begin = 0; begin < surface->vertex_count; begin += CHUNK_VERTICES) {
+            size_t left = surface->vertex_count - begin;
+            transform(frame, surface->positions + begin, left < CHUNK_VERTICES ? left : CHUNK_VERTICES,
+                      vertices + begin);
+        }
+        vertices += surface->vertex_count;
+    }
+}
+
+/* Depth as a plane over the window, from the corners before they were rounded. */
+TL_INLINE void set_depths(const struct raster_vertex *a, const struct raster_vertex *b,
+                          const struct raster_vertex *c, struct raster_triangle *out)
+{
+    float x_ab = a->x - b->x, y_ab = a->y - b->y, z_ab = a->z - b->z;
+    float x_ca = c->x - a->x, y_ca = c->y - a->y, z_ca = c->z - a->z;
+    float inverse = 1 / (x_ab * y_ca - y_ab * x_ca);
+    out->depth_x = z_ab * (y_ca * inverse) - z_ca * (y_ab * inverse);
+    out->depth_y = z_ca * (x_ab * inverse) - z_ab * (x_ca * inverse);
+    out->depth = a->z - (out->depth_x * (a->x - 0.5f) + out->depth_y * (a->y - 0.5f));
+}
+
+TL_INLINE int32_t least(const int32_t v[3])
+{
+    int32_t ab = v[0] < v[1] ? v[0] : v[1];
+    return ab < v[2] ? ab : v[2];
+}
+
+TL_INLINE int32_t greatest(const int32_t v[3])
+{
+    int32_t ab = v[0] > v[1] ? v[0] : v[1];
+    return ab > v[2] ? ab : v[2];
+}
+
+/* Pixels whose centres lie between two places. False when there is none. */
+TL_INLINE bool pixels_between(int32_t low, int32_t high, int size, int16_t *first, int16_t *last)
+{
+    int32_t from = (low + SUBPIXELS - 1) >> SUBPIXEL_BITS, to = high >> SUBPIXEL_BITS;
+    *first = (int16_t)(from > 0 ? from : 0);
+    *last = (int16_t)(to < size - 1 ? to : size - 1);
+    return *first <= *last;
+}
+
+/* Adds a triangle unless it covers no pixel's centre. A front is turned over, so that every triangle's inside
+ * lies to the same side of its edges. */
+TL_INLINE void add_triangle(const struct raster_frame *frame, struct raster_chunk *chunk,
+                            const struct raster_vertex *a, const struct raster_vertex *b,
+                            const struct raster_vertex *c, uint32_t number)
+{
+    int64_t area = (int64_t)(b->column - a->column) * (c->row - a->row) -
+                   (int64_t)(c->column - a->column) * (b->row - a->row);
+    if (area == 0)
+        return;
+    bool is_front = area > 0;
+    if (is_front) {
+        const struct raster_vertex *other = a;
+        a = b;
+        b = other;
+    }
+    struct raster_triangle *out = &chunk->triangles[chunk->count];
+    *out = (struct raster_triangle){.columns = {a->column, b->column, c->column},
+                                    .rows = {a->row, b->row, c->row},
+                                    .id = (number + 1) | (is_front ? 0 : TL_SAMPLE_BACK)};
+    if (!pixels_between(least(out->columns), greatest(out->columns), frame->request->width, &out->left,
+                        &out->right) ||
+        !pixels_between(least(out->rows), greatest(out->rows), frame->request->height, &out->bottom,
+                        &out->top))
+        return;
+    set_depths(a, b, c, out);
+    chunk->count++;
+}
+
+static struct raster_vertex project(const struct raster_frame *frame, vec4s p)
+{
+    float inverse = 1 / p.w;
+    return snapped(p.x * inverse * frame->half_width + frame->half_width,
+                   p.y * inverse * frame->half_height + frame->half_height, p.z * inverse * 0.5f + 0.5f, 0);
+}
+
+/* Adds what a triangle leaves within the frustum, as a fan about the polygon's first corner. */
+static void add_clipped(const struct raster_frame *frame, struct raster_chunk *chunk,
+                        const uint32_t indices[3], unsigned planes, uint32_t number)
+{
+    const float(*m)[4] = (const float(*)[4])frame->request->view_projection.raw;
+    struct tl_clip_corner corners[TL_CLIP_CORNERS_MAX];
+    struct raster_vertex placed[TL_CLIP_CORNERS_MAX];
+    for (int i = 0; i < 3; i++)
+        corners[i] = (struct tl_clip_corner){.at = into_clip_space(m, chunk->surface->positions[indices[i]]),
+                                             .source = i};
+    int count = tl_clip_triangle(corners, planes);
+    for (int i = 0; i < count; i++)
+        placed[i] = corners[i].source >= 0 ? chunk->vertices[indices[corners[i].source]]
+                                           : project(frame, corners[i].at);
+    for (int i = 2; i < count; i++)
+        add_triangle(frame, chunk, &placed[i - 1], &placed[i], &placed[0], number);
+}
+
+static void reserve_triangles(struct raster_chunk *chunk, size_t more)
+{
+    if (chunk->count + more <= chunk->capacity)
+        return;
+    chunk->capacity = 2 * (chunk->count + more);
+    chunk->triangles = tl_resize(chunk->triangles, chunk->capacity, sizeof *chunk->triangles);
+}
+
+TL_CLONES static void prepare_triangles(const struct raster_frame *frame, struct raster_chunk *chunk)
+{
+    chunk->count = 0;
+    for (uint32_t t = chunk->begin; t < chunk->end; t++) {
+        const uint32_t *indices = chunk->surface->indices + 3 * (size_t)t;
+        const struct raster_vertex *a = &chunk->vertices[indices[0]], *b = &chunk->vertices[indices[1]],
+                                   *c = &chunk->vertices[indices[2]];
+        if (a->outside & b->outside & c->outside)
+            continue;
+        reserve_triangles(chunk, TL_CLIP_CORNERS_MAX);
+        unsigned planes = a->outside | b->outside | c->outside;
+        if (planes)
+            add_clipped(frame, chunk, indices, planes, chunk->first + t);
+        else
+            add_triangle(frame, chunk, a, b, c, chunk->first + t);
+    }
+}
+
+static int first_band(const struct raster_triangle *triangle)
+{
+    return triangle->bottom / BAND_ROWS;
+}
+
+static int last_band(const struct raster_triangle *triangle)
+{
+    return triangle->top / BAND_ROWS;
+}
+
+/* Lists the triangles by band, in order: a sort by counting. */
+static void sort_into_bands(const struct raster_frame *frame, struct raster_chunk *chunk)
+{
+    size_t bands = (size_t)frame->band_count;
+    if (bands + 1 > chunk->band_capacity) {
+        chunk->band_capacity = bands + 1;
+        chunk->bands = tl_resize(chunk->bands, chunk->band_capacity, sizeof *chunk->bands);
+    }
+    memset(chunk->bands, 0, (bands + 1) * sizeof *chunk->bands);
+    for (size_t i = 0; i < chunk->count; i++)
+        for (int b = first_band(&chunk->triangles[i]); b <= last_band(&chunk->triangles[i]); b++)
+            chunk->bands[b]++;
+    for (size_t b = 0; b < bands; b++)
+        chunk->bands[b + 1] += chunk->bands[b]; /* each list's end */
+    if (chunk->bands[bands] > chunk->list_capacity) {
+        chunk->list_capacity = chunk->bands[bands];
+        chunk->lists = tl_resize(chunk->lists, chunk->list_capacity, sizeof *chunk->lists);
+    }
+    for (size_t i = chunk->count; i-- > 0;) /* from the ends back to the beginnings */
+        for (int b = first_band(&chunk->triangles[i]); b <= last_band(&chunk->triangles[i]); b++)
+            chunk->lists[--chunk->bands[b]] = (uint32_t)i;
+}
+
+static void prepare_chunks(const struct tl_raster *raster, const struct raster_frame *frame)
+{
+#pragma omp parallel for schedule(dynamic, 1)
+    for (size_t i = 0; i < raster->chunk_count; i++) {
+        prepare_triangles(frame, &raster->chunks[i]);
+        sort_into_bands(frame, &raster->chunks[i]);
+    }
+}
+
+/* The part of each row that a triangle covers: first pixel and the one after the last. */
+struct raster_spans {
+    int32_t begin[BAND_ROWS + SPAN_LANES], end[BAND_ROWS + SPAN_LANES];
+};
+
+/* An edge's function is positive inside: value + across * column + up * row. All numbers are whole and below
+ * 2^53, and the division rounds no quotient to a whole number that it is not: its distance from one is at
+ * least 1 / across, 2^-30. A centre on an edge belongs to the triangle on its right, or above it. */
+TL_INLINE void cut_spans(const struct raster_triangle *triangle, int edge, int first_row, int count,
+                         struct raster_spans *spans)
+{
+    int next = edge == 2 ? 0 : edge + 1;
+    int64_t x = triangle->columns[edge], y = triangle->rows[edge];
+    int64_t across = y - triangle->rows[next], up = x - triangle->columns[next];
+    bool is_owner = across < 0 || (across == 0 && up > 0);
+    double value = (double)(across * x - up * y + (is_owner ? 1 : 0));
+    double step = (double)(across * SUBPIXELS), rise = (double)(up * SUBPIXELS);
+    const double left = triangle->left, right = triangle->right + 1;
+    for (int from = 0; from < count; from += SPAN_LANES)
+        for (int k = from; k < from + SPAN_LANES; k++) {
+            double here = value + rise * (double)(first_row + k);
+            double place = across == 0 ? (here > 0 ? left : right) : here / step;
+            if (across > 0) {
+                double end = ceil(place);
+                end = end < left ? left : end > right ? right : end;
+                spans->end[k] = (int32_t)end < spans->end[k] ? (int32_t)end : spans->end[k];
+            } else {
+                double begin = across == 0 ? place : floor(place) + 1;
+                begin = begin < left ? left : begin > right ? right : begin;
+                spans->begin[k] = (int32_t)begin > spans->begin[k] ? (int32_t)begin : spans->begin[k];
+            }
+        }
+}
+
+TL_INLINE void fill_span(const struct raster_triangle *triangle, int row, int begin, int end, float *depths,
+                         uint32_t *ids)
+{
+    const float y = (float)row;
+    for (int x = begin; x < end; x++) {
+        float depth = fmaf(triangle->depth_y, y, fmaf(triangle->depth_x, (float)x, triangle->depth));
+        bool is_nearer = depth < depths[x];
+        depths[x] = is_nearer ? depth : depths[x];
+        ids[x] = is_nearer ? triangle->id : ids[x];
+    }
+}
+
+/* Fills the rows first .. last. */
+TL_INLINE void fill_triangle(const struct raster_triangle *triangle, int first, int last, int width,
+                             float *depths, uint32_t *ids)
+{
+    int from = triangle->bottom > first ? triangle->bottom : first;
+    int count = (triangle->top < last ? triangle->top : last) - from + 1;
+    struct raster_spans spans;
+    for (int k = 0; k < BAND_ROWS + SPAN_LANES; k++) {
+        spans.begin[k] = triangle->left;
+        spans.end[k] = triangle->right + 1;
+    }
+    for (int edge = 0; edge < 3; edge++)
+        cut_spans(triangle, edge, from, count, &spans);
+    for (int k = 0; k < count; k++) {
+        size_t row = (size_t)(from + k) * (size_t)width;
+        fill_span(triangle, from + k, spans.begin[k], spans.end[k], depths + row, ids + row);
+    }
+}
+
+TL_CLONES static void fill_band(const struct tl_raster *raster, const struct raster_frame *frame, int band,
+                                uint32_t *ids)
+{
+    const int width = frame->request->width, first = band * BAND_ROWS,
+              after = first + BAND_ROWS < frame->request->height ? first + BAND_ROWS : frame->request->height;
+    const size_t begin = (size_t)first * (size_t)width, end = (size_t)after * (size_t)width;
+    float *depths = raster->depths;
+    for (size_t i = begin; i < end; i++) {
+        depths[i] = 1;
+        ids[i] = 0;
+    }
+    for (size_t c = 0; c < raster->chunk_count; c++) {
+        const struct raster_chunk *chunk = &raster->chunks[c];
+        for (uint32_t i = chunk->bands[band]; i < chunk->bands[band + 1]; i++)
+            fill_triangle(&chunk->triangles[chunk->lists[i]], first, after - 1, width, depths, ids);
+    }
+}
+
+static void reserve(struct tl_raster *raster, const struct tl_raster_request *request)
+{
+    size_t vertices = 0, chunks = 0, pixels = (size_t)request->width * (size_t)request->height;
+    for (size_t s = 0; s < request->surface_count; s++) {
+        vertices += request->surfaces[s]->vertex_count;
+        for (size_t p = 0; p < request->surfaces[s]->part_count; p++)
+            chunks += 1 + request->surfaces[s]->parts[p].index_count / (3 * CHUNK_TRIANGLES);
+    }
+    if (vertices > raster->vertex_capacity) {
+        raster->vertex_capacity = vertices;
+        raster->vertices = tl_resize(raster->vertices, vertices, sizeof *raster->vertices);
+    }
+    if (chunks > raster->chunk_capacity) {
+        raster->chunks = tl_resize(raster->chunks, chunks, sizeof *raster->chunks);
+        memset(raster->chunks + raster->chunk_capacity, 0,
+               (chunks - raster->chunk_capacity) * sizeof *raster->chunks);
+        raster->chunk_capacity = chunks;
+    }
+    if (pixels > raster->depth_capacity) {
+        raster->depth_capacity = pixels;
+        raster->depths = tl_resize(raster->depths, pixels, sizeof *raster->depths);
+    }
+}
+
+/* Cuts the parts into chunks, in the order in which they are drawn. */
+static void cut_into_chunks(struct tl_raster *raster, const struct tl_raster_request *request)
+{
+    const struct raster_vertex *vertices = raster->vertices;
+    uint32_t number = 0;
+    raster->chunk_count = 0;
+    for (size_t s = 0; s < request->surface_count; s++) {
+        const tl_surface *surface = request->surfaces[s];
+        for (size_t p = 0; p < surface->part_count; p++) {
+            uint32_t end = (surface->parts[p].first_index + surface->parts[p].index_count) / 3;
+            for (uint32_t t = surface->parts[p].first_index / 3; t < end; t += CHUNK_TRIANGLES) {
+                struct raster_chunk *chunk = &raster->chunks[raster->chunk_count++];
+                chunk->surface = surface;
+                chunk->vertices = vertices;
+                chunk->begin = t;
+                chunk->end = end - t < CHUNK_TRIANGLES ? end : t + CHUNK_TRIANGLES;
+                chunk->first = number;
+            }
+        }
+        vertices += surface->vertex_count;
+        number += (uint32_t)(surface->index_count / 3);
+    }
+}
+
+void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *request, uint32_t *ids)
+{
+    const struct raster_frame frame = {.request = request,
+                                       .half_width = 0.5f * (float)request->width,
+                                       .half_height = 0.5f * (float)request->height,
+                                       .band_count = (request->height + BAND_ROWS - 1) / BAND_ROWS};
+    reserve(raster, request);
+    cut_into_chunks(raster, request);
+    transform_surfaces(raster, &frame);
+    prepare_chunks(raster, &frame);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int band = 0; band < frame.band_count; band++)
+        fill_band(raster, &frame, band, ids);
+}
+
+void tl_raster_release(struct tl_raster *raster)
+{
+    for (size_t i = 0; i < raster->chunk_capacity; i++) {
+        free(raster->chunks[i].triangles);
+        free(raster->chunks[i].bands);
+        free(raster->chunks[i].lists);
+    }
+    free(raster->chunks);
+    free(raster->vertices);
+    free(raster->depths);
+    *raster = (struct tl_raster){0};
+}
+
+size_t tl_raster_bytes(const struct tl_raster *raster)
+{
+    size_t bytes = raster->vertex_capacity * sizeof *raster->vertices +
+                   raster->chunk_capacity * sizeof *raster->chunks +
+                   raster->depth_capacity * sizeof *raster->depths;
+    for (size_t i = 0; i < raster->chunk_capacity; i++) {
+        const struct raster_chunk *chunk = &raster->chunks[i];
+        bytes += chunk->capacity * sizeof *chunk->triangles + chunk->band_capacity * sizeof *chunk->bands +
+                 chunk->list_capacity * sizeof *chunk->lists;
+    }
+    return bytes;
+}
