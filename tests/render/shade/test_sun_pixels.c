@@ -4,11 +4,11 @@
 #include "render/shade/sun_pixels.h"
 
 #include "tests/render/scenes.h"
+#include "tests/render/shade/traced_ids.h"
 
 #include "tests/testing.h"
 
 #include "config/memory.h"
-#include "render/reference/shading_point.h"
 
 #include <math.h>
 
@@ -49,51 +49,6 @@ static void place_sun(struct tl_sun *sun, vec3s direction)
     }
 }
 
-static void set_pixel(struct sunny *scene, int x, int y)
-{
-    /* The camera's rays count rows from the top. */
-    struct tl_ray_differential ray = tl_camera_ray(&scene->view, WIDTH, HEIGHT, x, HEIGHT - 1 - y);
-    struct tl_trace_hit hit = tl_trace_nearest(scene->trace, ray.origin, ray.direction, ray.from_m, ray.to_m);
-    vec3s point;
-    float weights[3];
-    uint32_t triangle;
-    if (tl_ground_meet(&scene->ground, ray.origin, ray.direction, &point, &triangle, weights) &&
-        (hit.surface == TL_TRACE_NONE || glms_vec3_distance(point, ray.origin) < hit.distance_m))
-        hit = (struct tl_trace_hit){
-            .surface = TEST_SHAPES_MAX, .triangle = triangle, .u = weights[1], .v = weights[2]};
-    size_t pixel = (size_t)y * WIDTH + (size_t)x;
-    scene->hits[pixel] = hit;
-    if (hit.surface == TL_TRACE_NONE)
-        return;
-    uint32_t id = scene->ranges.first[hit.surface] + hit.triangle + 1;
-    scene->ids.ids[pixel] = id | (hit.back ? TL_SAMPLE_BACK : 0);
-    scene->ids.marks[2 * (id - 1) + (hit.back ? 1 : 0)] = 1;
-    scene->ids.covered++;
-}
-
-/* As tl_ids_draw leaves the buffer. */
-static void make_ids(struct sunny *scene)
-{
-    struct tl_id_buffer *ids = &scene->ids;
-    size_t triangles = scene->ranges.first[scene->ranges.surface_count];
-    *ids = (struct tl_id_buffer){.width = WIDTH,
-                                 .height = HEIGHT,
-                                 .ids = TL_NEW_ARRAY(uint32_t, PIXELS),
-                                 .triangle_count = triangles,
-                                 .seen = TL_NEW_ARRAY(uint32_t, 2 * triangles),
-                                 .places = TL_NEW_ARRAY(uint32_t, 2 * triangles),
-                                 .marks = TL_NEW_ARRAY(uint8_t, 2 * triangles)};
-    scene->hits = TL_NEW_ARRAY(struct tl_trace_hit, PIXELS);
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++)
-            set_pixel(scene, x, y);
-    for (uint32_t i = 0; i < 2 * triangles; i++)
-        if (ids->marks[i]) {
-            ids->places[i] = (uint32_t)ids->seen_count;
-            ids->seen[ids->seen_count++] = i / 2 | (i & 1 ? TL_SAMPLE_BACK : 0);
-        }
-}
-
 static void open_sunny(struct sunny *scene)
 {
     tl_error error = {0};
@@ -118,7 +73,10 @@ static void open_sunny(struct sunny *scene)
     tl_frame frame =
         test_frame((vec3s){{1.1f, 1.3f, 1.9f}}, (vec3s){{0, 0.5f, 0}}, 40, scene->surfaces, 3, NULL);
     scene->view = tl_view_make(&frame.camera, WIDTH, HEIGHT);
-    make_ids(scene);
+    const struct traced_scene traced = {&scene->ranges, &scene->view, scene->trace,
+                                        &scene->ground, WIDTH,        HEIGHT};
+    scene->hits = TL_NEW_ARRAY(struct tl_trace_hit, PIXELS);
+    traced_ids_make(&traced, &scene->ids, scene->hits);
     scene->suns.count = 2;
     place_sun(&scene->suns.items[0], (vec3s){{0.6f, 1, 0.7f}});
     place_sun(&scene->suns.items[1], (vec3s){{-0.9f, 0.5f, 0.1f}});
