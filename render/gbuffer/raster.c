@@ -15,8 +15,9 @@
 
 /* Rows of a band: its ids and depths stay in a core's cache. */
 #define BAND_ROWS 16
-/* Rows whose spans are computed together. */
+/* Rows whose spans are computed together, and pixels that are filled together. */
 #define SPAN_LANES 4
+#define FILL_LANES 8
 /* Triangles of the surfaces that one thread prepares at a time, and vertices. */
 #define CHUNK_TRIANGLES 1024
 #define CHUNK_VERTICES  2048
@@ -259,9 +260,17 @@ static void prepare_chunks(const struct tl_raster *raster, const struct raster_f
     }
 }
 
+/* A band while it is filled. Rows are longer than the picture's, so that spans are filled by whole lanes. */
+struct raster_band {
+    int first, last; /* rows of the picture */
+    size_t stride;
+    float *depths; /* [BAND_ROWS][stride] */
+    uint32_t *ids; /* the same */
+};
+
 /* The part of each row that a triangle covers: first pixel and the one after the last. */
 struct raster_spans {
-    int32_t begin[BAND_ROWS + SPAN_LANES], end[BAND_ROWS + SPAN_LANES];
+    double begin[BAND_ROWS], end[BAND_ROWS];
 };
 
 /* An edge's function is positive inside: value + across * column + up * row. All numbers are whole and below
@@ -274,77 +283,101 @@ TL_INLINE void cut_spans(const struct raster_triangle *triangle, int edge, int f
     int64_t x = triangle->columns[edge], y = triangle->rows[edge];
     int64_t across = y - triangle->rows[next], up = x - triangle->columns[next];
     bool is_owner = across < 0 || (across == 0 && up > 0);
-    double value = (double)(across * x - up * y + (is_owner ? 1 : 0));
-    double step = (double)(across * SUBPIXELS), rise = (double)(up * SUBPIXELS);
-    const double left = triangle->left, right = triangle->right + 1;
-    for (int from = 0; from < count; from += SPAN_LANES)
-        for (int k = from; k < from + SPAN_LANES; k++) {
-            double here = value + rise * (double)(first_row + k);
-            double place = across == 0 ? (here > 0 ? left : right) : here / step;
-            if (across > 0) {
-                double end = ceil(place);
-                end = end < left ? left : end > right ? right : end;
-                spans->end[k] = (int32_t)end < spans->end[k] ? (int32_t)end : spans->end[k];
-            } else {
-                double begin = across == 0 ? place : floor(place) + 1;
-                begin = begin < left ? left : begin > right ? right : begin;
-                spans->begin[k] = (int32_t)begin > spans->begin[k] ? (int32_t)begin : spans->begin[k];
+    double rise = (double)(up * SUBPIXELS), step = (double)(across * SUBPIXELS);
+    double value = (double)(across * x - up * y + (is_owner ? 1 : 0)) + rise * (double)first_row;
+    if (across > 0)
+        for (int from = 0; from < count; from += SPAN_LANES)
+#pragma omp simd
+            for (int k = 0; k < SPAN_LANES; k++) {
+                double end = ceil((value + rise * (double)(from + k)) / step);
+                spans->end[from + k] = end < spans->end[from + k] ? end : spans->end[from + k];
             }
+    else if (across < 0)
+        for (int from = 0; from < count; from += SPAN_LANES)
+#pragma omp simd
+            for (int k = 0; k < SPAN_LANES; k++) {
+                double begin = floor((value + rise * (double)(from + k)) / step) + 1;
+                spans->begin[from + k] = begin > spans->begin[from + k] ? begin : spans->begin[from + k];
+            }
+    else
+        for (int k = 0; k < count; k++)
+            if (!(value + rise * (double)k > 0))
+                spans->end[k] = spans->begin[k];
+}
+
+TL_INLINE void fill_span(const struct raster_triangle *triangle, int row, int begin, int end,
+                         float *restrict depths, uint32_t *restrict ids)
+{
+    const float y = (float)row, start = triangle->depth, across = triangle->depth_x, up = triangle->depth_y;
+    const uint32_t id = triangle->id;
+    for (int from = begin; from < end; from += FILL_LANES)
+#pragma omp simd
+        for (int k = 0; k < FILL_LANES; k++) {
+            int x = from + k;
+            float depth = fmaf(up, y, fmaf(across, (float)x, start));
+            bool is_nearer = (x < end) & (depth < depths[x]);
+            depths[x] = is_nearer ? depth : depths[x];
+            ids[x] = is_nearer ? id : ids[x];
         }
 }
 
-TL_INLINE void fill_span(const struct raster_triangle *triangle, int row, int begin, int end, float *depths,
-                         uint32_t *ids)
+TL_INLINE void fill_triangle(const struct raster_triangle *triangle, const struct raster_band *band)
 {
-    const float y = (float)row;
-    for (int x = begin; x < end; x++) {
-        float depth = fmaf(triangle->depth_y, y, fmaf(triangle->depth_x, (float)x, triangle->depth));
-        bool is_nearer = depth < depths[x];
-        depths[x] = is_nearer ? depth : depths[x];
-        ids[x] = is_nearer ? triangle->id : ids[x];
-    }
-}
-
-/* Fills the rows first .. last. */
-TL_INLINE void fill_triangle(const struct raster_triangle *triangle, int first, int last, int width,
-                             float *depths, uint32_t *ids)
-{
-    int from = triangle->bottom > first ? triangle->bottom : first;
-    int count = (triangle->top < last ? triangle->top : last) - from + 1;
+    int from = triangle->bottom > band->first ? triangle->bottom : band->first;
+    int count = (triangle->top < band->last ? triangle->top : band->last) - from + 1;
     struct raster_spans spans;
-    for (int k = 0; k < BAND_ROWS + SPAN_LANES; k++) {
+    for (int k = 0; k < BAND_ROWS; k++) {
         spans.begin[k] = triangle->left;
         spans.end[k] = triangle->right + 1;
     }
     for (int edge = 0; edge < 3; edge++)
         cut_spans(triangle, edge, from, count, &spans);
     for (int k = 0; k < count; k++) {
-        size_t row = (size_t)(from + k) * (size_t)width;
-        fill_span(triangle, from + k, spans.begin[k], spans.end[k], depths + row, ids + row);
+        size_t row = (size_t)(from + k - band->first) * band->stride;
+        if (spans.begin[k] < spans.end[k])
+            fill_span(triangle, from + k, (int)spans.begin[k], (int)spans.end[k], band->depths + row,
+                      band->ids + row);
     }
 }
 
-TL_CLONES static void fill_band(const struct tl_raster *raster, const struct raster_frame *frame, int band,
-                                uint32_t *ids)
+TL_CLONES static void fill_band(const struct tl_raster *raster, int number, const struct raster_band *band)
 {
-    const int width = frame->request->width, first = band * BAND_ROWS,
-              after = first + BAND_ROWS < frame->request->height ? first + BAND_ROWS : frame->request->height;
-    const size_t begin = (size_t)first * (size_t)width, end = (size_t)after * (size_t)width;
-    float *depths = raster->depths;
-    for (size_t i = begin; i < end; i++) {
-        depths[i] = 1;
-        ids[i] = 0;
+    for (size_t i = 0; i < BAND_ROWS * band->stride; i++) {
+        band->depths[i] = 1;
+        band->ids[i] = 0;
     }
     for (size_t c = 0; c < raster->chunk_count; c++) {
         const struct raster_chunk *chunk = &raster->chunks[c];
-        for (uint32_t i = chunk->bands[band]; i < chunk->bands[band + 1]; i++)
-            fill_triangle(&chunk->triangles[chunk->lists[i]], first, after - 1, width, depths, ids);
+        for (uint32_t i = chunk->bands[number]; i < chunk->bands[number + 1]; i++)
+            fill_triangle(&chunk->triangles[chunk->lists[i]], band);
+    }
+}
+
+static void fill_bands(const struct tl_raster *raster, const struct raster_frame *frame, uint32_t *ids)
+{
+    const int width = frame->request->width, height = frame->request->height;
+#pragma omp parallel
+    {
+        struct raster_band band = {.stride = (size_t)(width + FILL_LANES)};
+        band.depths = tl_alloc_lines(BAND_ROWS * band.stride, sizeof *band.depths);
+        band.ids = tl_alloc_lines(BAND_ROWS * band.stride, sizeof *band.ids);
+#pragma omp for schedule(dynamic, 1)
+        for (int i = 0; i < frame->band_count; i++) {
+            band.first = i * BAND_ROWS;
+            band.last = band.first + BAND_ROWS < height ? band.first + BAND_ROWS - 1 : height - 1;
+            fill_band(raster, i, &band);
+            for (int y = band.first; y <= band.last; y++)
+                memcpy(ids + (size_t)y * (size_t)width, band.ids + (size_t)(y - band.first) * band.stride,
+                       (size_t)width * sizeof *ids);
+        }
+        free(band.depths);
+        free(band.ids);
     }
 }
 
 static void reserve(struct tl_raster *raster, const struct tl_raster_request *request)
 {
-    size_t vertices = 0, chunks = 0, pixels = (size_t)request->width * (size_t)request->height;
+    size_t vertices = 0, chunks = 0;
     for (size_t s = 0; s < request->surface_count; s++) {
         vertices += request->surfaces[s]->vertex_count;
         for (size_t p = 0; p < request->surfaces[s]->part_count; p++)
@@ -359,10 +392,6 @@ static void reserve(struct tl_raster *raster, const struct tl_raster_request *re
         memset(raster->chunks + raster->chunk_capacity, 0,
                (chunks - raster->chunk_capacity) * sizeof *raster->chunks);
         raster->chunk_capacity = chunks;
-    }
-    if (pixels > raster->depth_capacity) {
-        raster->depth_capacity = pixels;
-        raster->depths = tl_resize(raster->depths, pixels, sizeof *raster->depths);
     }
 }
 
@@ -400,9 +429,7 @@ void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *re
     cut_into_chunks(raster, request);
     transform_surfaces(raster, &frame);
     prepare_chunks(raster, &frame);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int band = 0; band < frame.band_count; band++)
-        fill_band(raster, &frame, band, ids);
+    fill_bands(raster, &frame, ids);
 }
 
 void tl_raster_release(struct tl_raster *raster)
@@ -414,15 +441,13 @@ void tl_raster_release(struct tl_raster *raster)
     }
     free(raster->chunks);
     free(raster->vertices);
-    free(raster->depths);
     *raster = (struct tl_raster){0};
 }
 
 size_t tl_raster_bytes(const struct tl_raster *raster)
 {
-    size_t bytes = raster->vertex_capacity * sizeof *raster->vertices +
-                   raster->chunk_capacity * sizeof *raster->chunks +
-                   raster->depth_capacity * sizeof *raster->depths;
+    size_t bytes =
+        raster->vertex_capacity * sizeof *raster->vertices + raster->chunk_capacity * sizeof *raster->chunks;
     for (size_t i = 0; i < raster->chunk_capacity; i++) {
         const struct raster_chunk *chunk = &raster->chunks[i];
         bytes += chunk->capacity * sizeof *chunk->triangles + chunk->band_capacity * sizeof *chunk->bands +

@@ -22,8 +22,7 @@ struct tl_raster_request {
 struct tl_raster {
     struct raster_vertex *vertices; /* of all surfaces */
     struct raster_chunk *chunks;
-    float *depths; /* [height][width] */
-    size_t vertex_capacity, chunk_count, chunk_capacity, depth_capacity;
+    size_t vertex_capacity, chunk_count, chunk_capacity;
 };
 
 /* Writes `ids` [height][width], rows upwards: 0 where nothing is seen; else 1 + the number of the nearest
