@@ -133,7 +133,7 @@ struct tl_work tl_samples_work(const void *context)
 struct tl_work tl_ids_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    return (struct tl_work){{0.5, 1e-4 * seen->triangles, 5e-6 * seen->texels, 1e-5 * seen->covered}};
+    return (struct tl_work){{0.3, 5e-5 * seen->triangles, 1.5e-6 * seen->texels, 1.5e-6 * seen->covered}};
 }
 
 struct tl_work tl_ratios_work(const void *context)

@@ -59,7 +59,8 @@ struct raster_frame {
 
 static struct raster_vertex snapped(float x, float y, float z, uint32_t outside)
 {
-    /* Clipped corners lie within the window; others are clipped before their places count. */
+    /* A corner outside the frustum is clipped before its place counts. One that is not a number makes the
+     * triangle's depth NaN, which is nearer than nothing: it is not drawn. */
     bool is_inside = fabsf(x) <= TL_RASTER_SIDE_MAX + 1 && fabsf(y) <= TL_RASTER_SIDE_MAX + 1;
     return (struct raster_vertex){.x = x,
                                   .y = y,

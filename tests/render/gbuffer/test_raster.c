@@ -184,7 +184,8 @@ static void make_tiles(struct soup *soup, size_t cells, float first, float step,
     vec3s *corners = TL_NEW_ARRAY(vec3s, across * across);
     uint64_t random = seed;
     for (size_t i = 0; i < across * across; i++) {
-        float x = first + step * (float)(i % across), y = first + step * (float)(i / across);
+        size_t column = i % across, row = i / across;
+        float x = first + step * (float)column, y = first + step * (float)row;
         float move_x = 0.3f * step * (2 * soup_random(&random) - 1),
               move_y = 0.3f * step * (2 * soup_random(&random) - 1);
         bool on_centre = soup_random(&random) < 1 / 3.0f;
@@ -277,7 +278,7 @@ static void test_equal_depths(void **state)
     struct soup soup;
     soup_create(&soup, 400, 9);
     for (size_t i = 0; i < 1200; i++) {
-        soup.positions[i] = glms_vec3_adds(glms_vec3_scale(soup.positions[i], SIDE / 2), SIDE / 2);
+        soup.positions[i] = glms_vec3_scale(glms_vec3_adds(soup.positions[i], 1), 0.5f * SIDE);
         soup.positions[i].z = i / 3 % 5 == 0 ? -0.25f : 0.25f;
     }
     struct picture picture = in_pixels(&soup);
