@@ -49,14 +49,17 @@ static bool is_minimised(const struct tl_review *review)
     return width < 1 || height < 1;
 }
 
-/* While the pointer moves camera or light, the panel gets no input, and its figures need not be new in every
- * frame. */
+/* In motion the panel's figures need not be new in every frame, unless the pointer or the keyboard is at it.
+ */
 static bool panel_is_due(const struct tl_review *review)
 {
-    const double every_s = 0.1;
-    enum tl_review_drag drag = review->drag;
-    bool is_idle = drag == TL_DRAG_ORBIT || drag == TL_DRAG_PAN || drag == TL_DRAG_LIGHT;
-    return !is_idle || !review->is_paced || tl_clock_s() >= review->times.panel_s + every_s;
+    const double every_s = 0.25;
+    int width, height;
+    tl_review_size(review, &width, &height);
+    bool is_used = review->drag == TL_DRAG_WIPE || review->editing || tl_panel_wants_pointer(review->panel) ||
+                   tl_panel_wants_keys(review->panel) ||
+                   (review->drag == TL_DRAG_NONE && review->pointer_x >= (float)width);
+    return is_used || !review->is_paced || tl_clock_s() >= review->times.panel_s + every_s;
 }
 
 /* The work between two checks for events. */
@@ -120,7 +123,7 @@ static bool open_window(struct tl_review *review, tl_error *error)
     if (!review->window)
         return false;
     review->gpu = tl_gpu_create_current(error);
-    review->panel = review->gpu ? tl_panel_create(tl_window_handle(review->window),
+    review->panel = review->gpu ? tl_panel_create(tl_window_handle(review->window), review->gpu,
                                                   tl_window_scale(review->window), error)
                                 : NULL;
     review->renderer = review->panel ? tl_renderer_create(review->gpu, error) : NULL;

@@ -2,6 +2,7 @@ extern "C" {
 #include "app/view/panel/panel_shim.h"
 #include "app/view/panel/panel_rows_shim.h"
 }
+#include "app/view/panel/panel_column_shim.h"
 #include "app/view/panel/panel_font_shim.h"
 #include "app/view/panel/panel_overlay_shim.h"
 #include "app/view/panel/panel_text_shim.h"
@@ -17,6 +18,8 @@ extern "C" {
 
 struct tl_panel {
     tl_panel_fonts *fonts;
+    tl_panel_column *column;
+    tl_panel_column_place place;    /* of the last frame that was built */
     bool has_platform, has_drawing; /* whether ImGui's backends are initialised */
     bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
     int pressed[8];                 /* keys for the next frame */
@@ -166,6 +169,8 @@ void draw_panel(tl_panel &panel, const tl_panel_input &input, tl_panel_result &r
     ImGui::Begin("panel", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    panel.place = {ImGui::GetWindowDrawList(), corner.x, corner.y, size.x, size.y};
     ImGui::PushAllowKeyboardFocus(
         false); /* Tab hides the panel and must not move the keyboard focus into it */
     ImGui::TextWrapped("%s", input.title);
@@ -241,12 +246,13 @@ void hold_keys(const tl_panel &panel, bool held)
 
 } // namespace
 
-struct tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error)
+struct tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float scale, tl_error *error)
 {
     tl_panel *panel = new tl_panel{};
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; /* ImGui must not write a file of its own */
     panel->fonts = tl_panel_fonts_create(font_size * scale, scale);
+    panel->column = tl_panel_column_create(gpu);
     choose_style(scale);
     panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, true);
     panel->has_drawing = panel->has_platform && ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -265,6 +271,7 @@ void tl_panel_destroy(tl_panel **panel)
         ImGui_ImplOpenGL3_Shutdown();
     if ((*panel)->has_platform)
         ImGui_ImplGlfw_Shutdown();
+    tl_panel_column_destroy(&(*panel)->column);
     tl_panel_fonts_destroy(&(*panel)->fonts);
     ImGui::DestroyContext();
     delete *panel;
@@ -307,11 +314,13 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
     if (tl_panel_fonts_update(panel->fonts)) {
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
+        tl_panel_column_forget(panel->column);
     }
     ImGui_ImplGlfw_NewFrame();
     hold_keys(*panel, true);
     ImGui::NewFrame();
     tl_panel_forget_text();
+    panel->place = {};
     if (input->width > 0)
         draw_panel(*panel, *input, result);
     tl_panel_overlay_draw(*input);
@@ -326,6 +335,5 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
 
 void tl_panel_draw(tl_panel *panel)
 {
-    (void)panel;
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    tl_panel_column_draw(panel->column, *ImGui::GetDrawData(), panel->place);
 }

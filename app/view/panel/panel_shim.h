@@ -9,6 +9,7 @@
 #define TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 
 #include "config/options.h"
+#include "render/gpu/gpu.h"
 
 typedef struct tl_panel tl_panel;
 struct GLFWwindow;
@@ -97,9 +98,9 @@ struct tl_panel_result {
     int answer;   /* index of the one that was chosen, -1 for none */
 };
 
-/* Installs its input callbacks, which call the window's own first. `scale`: of the window's content, 1 on a
- * plain screen. TL_DEVICE when the GL context cannot draw it. */
-tl_panel *tl_panel_create(struct GLFWwindow *window, float scale, tl_error *error);
+/* Installs its input callbacks, which call the window's own first. `gpu`: of the window's context. `scale`:
+ * of the window's content, 1 on a plain screen. TL_DEVICE when the GL context cannot draw it. */
+tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float scale, tl_error *error);
 void tl_panel_destroy(tl_panel **panel);
 
 bool tl_panel_wants_pointer(const tl_panel *panel);

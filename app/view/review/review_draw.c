@@ -8,6 +8,8 @@
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <epoxy/gl.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,6 +99,7 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
         return false;
     review->times.lap_s = tl_clock_s();
     tl_panel_draw(review->panel);
+    glFinish(); /* GL has only taken the commands: what it draws is part of the frame */
     tl_review_lap(review, "drawing the panel");
     record_time(review);
     tl_window_show(review->window);
