@@ -1,5 +1,6 @@
-/* Rasterises surfaces on the CPU with the arithmetic of software GL (Mesa's llvmpipe on a CPU with fused
- * multiplication and addition): the same pixels are covered, at the same depths.
+/* Rasterises surfaces on the CPU with the arithmetic of software GL: the same pixels are covered, at the same
+ * depths, as by llvmpipe of Mesa 22.3 on a CPU with fused multiplication and addition. Later versions cut
+ * edges at the frustum and interpolate depths with other roundings; fill rule and grid are theirs, too.
  *
  * Vertices are transformed once, triangles are clipped, rounded to a grid of 1/256 pixel and sorted into
  * bands of rows, and each band is filled by one thread in the order in which the triangles are drawn. Results
