@@ -101,6 +101,7 @@ bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
         tl_pixel_triangles_make(job->ids, &job->camera->view, &job->shapes->ranges, job->shade_materials);
     const struct tl_sun_pixels_request request = {.ids = job->ids,
                                                   .triangles = triangles,
+                                                  .ranges = &job->shapes->ranges,
                                                   .suns = job->suns,
                                                   .trace = job->trace,
                                                   .ground = *job->has_ground ? job->ground : NULL,

@@ -2,338 +2,338 @@
 
 #include "config/memory.h"
 #include "render/env/cube.h"
-#include "render/visibility/sun_rays.h"
+#include "render/shade/sun_bundle_internal.h"
+#include "render/shade/sun_penumbra_internal.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define CELL            4  /* pixels a side */
-#define BUNDLE          16 /* rays */
-#define ROWS            16 /* that a thread takes at a time */
-#define MORE            8  /* rays for a pixel in it */
-#define SEEN_SUN(state) ((state) == DARK || (state) == LIT)
+#define CELL         4  /* pixels a side */
+#define GROUND_CELL  8  /* ... of those on the ground, whose corners are looked at first */
+#define CELLS_A_TIME 16 /* of those that are traced late, by a thread */
 
-/* What a pixel sees of the sun. DARK and LIT are bits. */
-enum state { UNKNOWN = 0, DARK = 1, LIT = 2, AWAY = 4, EMPTY = 8 };
-
-static void reserve(struct tl_sun_pixels *pixels, size_t count, int suns)
+static int cells_along(int size)
 {
-    if (count > pixels->capacity) {
+    return (size + CELL - 1) / CELL;
+}
+
+static void reserve(struct tl_sun_pixels *pixels, int width, int height, int suns)
+{
+    const size_t count = (size_t)width * (size_t)height;
+    const size_t cells = (size_t)cells_along(width) * (size_t)cells_along(height);
+    if (count > pixels->capacity || cells > pixels->cell_capacity) {
         tl_sun_pixels_release(pixels);
         pixels->capacity = count;
+        pixels->cell_capacity = cells;
         pixels->states = TL_NEW_ARRAY(uint8_t, count);
-        pixels->spread = TL_NEW_ARRAY(uint8_t, count);
+        pixels->marks = TL_NEW_ARRAY(uint8_t, count);
         pixels->pixels = TL_NEW_ARRAY(uint32_t, count);
-        pixels->starts = TL_NEW_ARRAY(vec3s, count);
-        pixels->is_settled = TL_NEW_ARRAY(uint8_t, count);
+        pixels->is_partial = TL_NEW_ARRAY(uint8_t, count);
+        pixels->cells = TL_NEW_ARRAY(uint8_t, cells);
+        pixels->late = TL_NEW_ARRAY(uint32_t, cells);
+    }
+    if (height > pixels->row_capacity) {
+        free(pixels->block_counts);
+        free(pixels->joined);
+        pixels->row_capacity = height;
+        pixels->joined = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
+        pixels->block_counts = TL_NEW_ARRAY(size_t, (size_t)height);
     }
     for (int i = 0; i < suns; i++)
         if (!pixels->visible[i])
             pixels->visible[i] = TL_NEW_ARRAY(float, pixels->capacity);
 }
 
-/* Rays that are gathered until they are a bundle. */
-struct bundle {
-    const struct tl_sun_pixels_request *request;
-    vec3s direction;
-    float offset_m;
-    struct tl_ray_packet rays;
-    uint32_t pixels[BUNDLE];
-    float ground[BUNDLE]; /* what the ground leaves */
-    size_t count;         /* rays traced so far */
-};
+/* ---- Single pixels ---- */
 
-static struct bundle begin_bundle(const struct tl_sun_pixels_request *request, vec3s direction)
+static void mark_bundle(struct tl_sun_bundle *bundle, uint8_t *states)
 {
-    return (struct bundle){.request = request,
-                           .direction = direction,
-                           .offset_m = tl_trace_offset(request->trace),
-                           .rays = {.to_m = INFINITY, .coherent = true}};
-}
-
-static const struct tl_pixel_triangle *triangle_at(const struct tl_sun_pixels_request *request, size_t pixel)
-{
-    return &request->triangles[tl_ids_place(request->ids, request->ids->ids[pixel])];
-}
-
-static vec3s weighted(const vec3s v[3], const float w[3])
-{
-    return glms_vec3_add(glms_vec3_scale(v[0], w[0]),
-                         glms_vec3_add(glms_vec3_scale(v[1], w[1]), glms_vec3_scale(v[2], w[2])));
-}
-
-/* The origin of a covered pixel's rays, as tl_sample_start has it. False where the surface faces away. */
-static bool start_of(const struct bundle *bundle, uint32_t pixel, vec3s *start)
-{
-    const struct tl_id_buffer *ids = bundle->request->ids;
-    const struct tl_pixel_triangle *triangle = triangle_at(bundle->request, pixel);
-    const uint32_t x = pixel % (uint32_t)ids->width, y = pixel / (uint32_t)ids->width;
-    const struct tl_pixel_weights weights = tl_pixel_weigh(triangle, (float)x + 0.5f, (float)y + 0.5f);
-    vec3s corners[3], normals[3];
-    for (int i = 0; i < 3; i++) {
-        corners[i] = triangle->surface->positions[triangle->corners[i]];
-        normals[i] =
-            glms_vec3_scale(triangle->surface->normals[triangle->corners[i]], triangle->back ? -1.0f : 1.0f);
-    }
-    vec3s smooth = glms_vec3_normalize(weighted(normals, weights.at));
-    if (!(glms_vec3_dot(smooth, bundle->direction) > 0))
-        return false;
-    vec3s point = tl_smooth_point(weighted(corners, weights.at), corners, normals, weights.at);
-    *start = glms_vec3_add(point, glms_vec3_scale(smooth, bundle->offset_m));
-    return true;
-}
-
-/* Traces what was gathered: seen[i] of pixels[i]. Returns how many there were. */
-static int trace_bundle(struct bundle *bundle, float seen[BUNDLE])
-{
-    int count = bundle->rays.count;
-    if (count > 0)
-        tl_trace_transmittance_packet(bundle->request->trace, &bundle->rays, seen);
+    float seen[TL_SUN_BUNDLE];
+    int count = tl_sun_bundle_trace(bundle, seen);
     for (int i = 0; i < count; i++)
-        seen[i] *= bundle->ground[i];
-    bundle->count += (size_t)count;
-    bundle->rays.count = 0;
-    return count;
-}
-
-static void add_ray(struct bundle *bundle, uint32_t pixel, vec3s start)
-{
-    int k = bundle->rays.count++;
-    bundle->pixels[k] = pixel;
-    bundle->ground[k] = tl_ground_visibility(bundle->request->ground, start, bundle->direction);
-    bundle->rays.origin_x[k] = start.x;
-    bundle->rays.origin_y[k] = start.y;
-    bundle->rays.origin_z[k] = start.z;
-    bundle->rays.direction_x[k] = bundle->direction.x;
-    bundle->rays.direction_y[k] = bundle->direction.y;
-    bundle->rays.direction_z[k] = bundle->direction.z;
-}
-
-static void mark_bundle(struct bundle *bundle, uint8_t *states)
-{
-    float seen[BUNDLE];
-    int count = trace_bundle(bundle, seen);
-    for (int i = 0; i < count; i++)
-        states[bundle->pixels[i]] = seen[i] > 0.5f ? LIT : DARK;
+        states[bundle->pixels[i]] = seen[i] > 0.5f ? TL_SUN_LIT : TL_SUN_DARK;
 }
 
 /* Decides one pixel that nothing is known of, now or with its bundle. */
-static void decide(struct bundle *bundle, uint32_t pixel, uint8_t *states)
+static void decide(struct tl_sun_bundle *bundle, uint32_t pixel, uint8_t *states)
 {
     vec3s start;
     if (bundle->request->ids->ids[pixel] == 0) {
-        states[pixel] = EMPTY;
+        states[pixel] = TL_SUN_EMPTY;
         return;
     }
-    if (!start_of(bundle, pixel, &start)) {
-        states[pixel] = AWAY;
+    if (!tl_sun_start(bundle, pixel, &start)) {
+        states[pixel] = TL_SUN_AWAY;
         return;
     }
-    add_ray(bundle, pixel, start);
-    if (bundle->rays.count == BUNDLE)
+    tl_sun_bundle_add(bundle, pixel, start);
+    if (bundle->rays.count == TL_SUN_BUNDLE)
         mark_bundle(bundle, states);
 }
 
-/* The last cell of a row ends at the last pixel. */
-static int next_line(int at, int size)
+/* ---- The grid ---- */
+
+/* The IDs of a surface's triangles, of both sides. */
+struct id_range {
+    uint32_t first, count;
+};
+
+static bool is_of(struct id_range range, uint32_t id)
 {
-    return at + CELL < size - 1 ? at + CELL : size - 1;
+    return (id & ~TL_SAMPLE_BACK) - range.first < range.count; /* 0, which is nothing, wraps */
 }
 
-/* First every fourth pixel each way, and the last ones. */
-static size_t look_at_grid(const struct tl_sun_pixels_request *request, vec3s direction, uint8_t *states)
+static struct id_range surface_of(const struct tl_triangle_ranges *ranges, uint32_t id)
 {
-    const int width = request->ids->width, height = request->ids->height;
-    const int lines = (height - 1 + CELL - 1) / CELL + 1;
-    size_t rays = 0;
-#pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
-    for (int line = 0; line < lines; line++) {
-        struct bundle bundle = begin_bundle(request, direction);
-        int y = line * CELL < height ? line * CELL : height - 1;
-        for (int x = 0;; x = next_line(x, width)) {
-            decide(&bundle, (uint32_t)y * (uint32_t)width + (uint32_t)x, states);
-            if (x == width - 1)
-                break;
-        }
-        mark_bundle(&bundle, states);
-        rays += bundle.count;
-    }
-    return rays;
+    const uint32_t triangle = (id & ~TL_SAMPLE_BACK) - 1;
+    size_t surface = 0;
+    while (surface + 1 < ranges->surface_count && triangle >= ranges->first[surface + 1])
+        surface++;
+    return (struct id_range){(uint32_t)ranges->first[surface] + 1,
+                             (uint32_t)(ranges->first[surface + 1] - ranges->first[surface])};
 }
 
-/* A cell of the grid: its corners' state where they agree, and their surface. */
+static bool is_ground(const struct tl_sun_pixels_request *request, struct id_range surface)
+{
+    const struct tl_triangle_ranges *ranges = request->ranges;
+    return request->ground && surface.first == ranges->first[ranges->surface_count - 1] + 1;
+}
+
+/* How a cell's pixels got their answers; TRACED: by rays of their own, those of its surface at least. */
+enum cell_state { FILLED, TRACED, BARE };
+
+/* A cell of a grid: its corners' state where they agree, and their surface. */
 struct cell {
     int x, y, end_x, end_y;
     bool is_one;
     uint8_t state;
-    size_t surface;
+    struct id_range surface;
 };
 
-static void look_at_cell(const struct tl_sun_pixels_request *request, const uint8_t *states,
-                         struct cell *cell)
+/* The last cell of a row ends at the last pixel. */
+static int next_line(int at, int size, int step)
 {
-    const uint32_t width = (uint32_t)request->ids->width;
-    const uint32_t corners[4] = {(uint32_t)cell->y * width + (uint32_t)cell->x,
-                                 (uint32_t)cell->y * width + (uint32_t)cell->end_x,
-                                 (uint32_t)cell->end_y * width + (uint32_t)cell->x,
-                                 (uint32_t)cell->end_y * width + (uint32_t)cell->end_x};
-    cell->state = states[corners[0]];
-    cell->is_one = SEEN_SUN(cell->state);
-    if (!cell->is_one)
-        return;
-    cell->surface = triangle_at(request, corners[0])->surface_index;
-    for (int i = 1; i < 4 && cell->is_one; i++)
-        cell->is_one = states[corners[i]] == cell->state &&
-                       triangle_at(request, corners[i])->surface_index == cell->surface;
+    return at + step < size - 1 ? at + step : size - 1;
 }
 
-/* Fills a cell whose corners agree, and decides its other pixels. Pixels on the lines at its ends are left to
- * the next cell, but at the picture's ends. */
-static void fill_cell(struct bundle *bundle, const struct cell *cell, uint8_t *states)
+static struct cell cell_at(const struct tl_sun_pixels_request *request, const uint8_t *states, int x, int y,
+                           int step)
+{
+    const uint32_t *ids = request->ids->ids;
+    const int width = request->ids->width, height = request->ids->height;
+    struct cell cell = {x, y, next_line(x, width, step), next_line(y, height, step), false, 0, {0, 0}};
+    const size_t top = (size_t)y * (size_t)width, bottom = (size_t)cell.end_y * (size_t)width;
+    const size_t corners[4] = {top + (size_t)x, top + (size_t)cell.end_x, bottom + (size_t)x,
+                               bottom + (size_t)cell.end_x};
+    cell.state = states[corners[0]];
+    cell.is_one = tl_sun_is_faced(cell.state);
+    if (!cell.is_one)
+        return cell;
+    cell.surface = surface_of(request->ranges, ids[corners[0]]);
+    for (int i = 1; i < 4; i++)
+        cell.is_one &= states[corners[i]] == cell.state && is_of(cell.surface, ids[corners[i]]);
+    return cell;
+}
+
+/* Decides every pixel of a row at multiples of `step`, and the last one. */
+static size_t look_along(const struct tl_sun_pixels_request *request, vec3s direction, int y, int step,
+                         uint8_t *states)
+{
+    struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
+    const int width = request->ids->width, cell_y = y - y % GROUND_CELL;
+    const uint32_t row = (uint32_t)y * (uint32_t)width;
+    struct cell cell = {.x = -1};
+    for (int x = 0;; x = next_line(x, width, step)) {
+        const uint32_t pixel = row + (uint32_t)x;
+        const int cell_x = x - x % GROUND_CELL;
+        if (step < GROUND_CELL && cell.x != cell_x)
+            cell = cell_at(request, states, cell_x, cell_y, GROUND_CELL);
+        if (states[pixel] == TL_SUN_UNKNOWN) {
+            if (cell.is_one && is_ground(request, cell.surface) &&
+                is_of(cell.surface, request->ids->ids[pixel]))
+                states[pixel] = cell.state;
+            else
+                decide(&bundle, pixel, states);
+        }
+        if (x == width - 1)
+            break;
+    }
+    mark_bundle(&bundle, states);
+    return bundle.count;
+}
+
+/* First every eighth pixel each way, then every fourth where that is not clear; and the last ones. */
+static size_t look_at_grid(const struct tl_sun_pixels_request *request, vec3s direction, uint8_t *states)
+{
+    size_t rays = 0;
+    for (int step = GROUND_CELL; step >= CELL; step -= GROUND_CELL - CELL) {
+        const int height = request->ids->height, lines = (height - 1 + step - 1) / step + 1;
+#pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
+        for (int line = 0; line < lines; line++)
+            rays +=
+                look_along(request, direction, line * step < height ? line * step : height - 1, step, states);
+    }
+    return rays;
+}
+
+/* What is left of a cell: pixels on the lines at its ends belong to the next cell, but at the picture's ends.
+ */
+static int last_of(int end, int size)
+{
+    return end < size - 1 ? end - 1 : end;
+}
+
+/* Whether all pixels that are left of a cell are of its surface; or, without one, whether none is covered. */
+static bool is_whole(const struct tl_id_buffer *ids, const struct cell *cell)
+{
+    const struct id_range nothing = {0, 1}, range = cell->is_one ? cell->surface : nothing;
+    const int last_x = last_of(cell->end_x, ids->width), last_y = last_of(cell->end_y, ids->height);
+    bool all = true;
+    for (int y = cell->y; y <= last_y; y++)
+        for (int x = cell->x; x <= last_x; x++)
+            all &= is_of(range, ids->ids[(size_t)y * (size_t)ids->width + (size_t)x]);
+    return all;
+}
+
+/* Gives the pixels of a cell whose corners agree their answer where they are of the same surface, and decides
+ * the others. */
+static enum cell_state fill_cell(struct tl_sun_bundle *bundle, const struct cell *cell, uint8_t *states)
 {
     const struct tl_id_buffer *ids = bundle->request->ids;
-    int last_x = cell->end_x < ids->width - 1 ? cell->end_x - 1 : cell->end_x;
-    int last_y = cell->end_y < ids->height - 1 ? cell->end_y - 1 : cell->end_y;
+    const int last_x = last_of(cell->end_x, ids->width), last_y = last_of(cell->end_y, ids->height);
+    if (is_whole(ids, cell)) {
+        for (int y = cell->y; y <= last_y; y++)
+            memset(states + (size_t)y * (size_t)ids->width + (size_t)cell->x,
+                   cell->is_one ? cell->state : TL_SUN_EMPTY, (size_t)(last_x - cell->x + 1));
+        return cell->is_one ? FILLED : BARE;
+    }
     for (int y = cell->y; y <= last_y; y++)
         for (int x = cell->x; x <= last_x; x++) {
-            uint32_t pixel = (uint32_t)y * (uint32_t)ids->width + (uint32_t)x;
-            if (states[pixel] != UNKNOWN)
+            const size_t pixel = (size_t)y * (size_t)ids->width + (size_t)x;
+            if (states[pixel] != TL_SUN_UNKNOWN)
                 continue;
-            if (ids->ids[pixel] == 0)
-                states[pixel] = EMPTY;
-            else if (cell->is_one && triangle_at(bundle->request, pixel)->surface_index == cell->surface)
+            if (cell->is_one && is_of(cell->surface, ids->ids[pixel]))
                 states[pixel] = cell->state;
             else
-                decide(bundle, pixel, states);
+                decide(bundle, (uint32_t)pixel, states);
         }
+    return cell->is_one ? FILLED : TRACED;
 }
 
-static size_t fill_cells(const struct tl_sun_pixels_request *request, vec3s direction, uint8_t *states)
+static size_t fill_cells(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
+                         vec3s direction)
 {
-    const int width = request->ids->width, height = request->ids->height;
+    const int width = request->ids->width, height = request->ids->height, columns = cells_along(width);
     size_t rays = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
     for (int y = 0; y < height; y += CELL) {
-        struct bundle bundle = begin_bundle(request, direction);
-        struct cell cell = {.y = y, .end_y = next_line(y, height)};
-        for (cell.x = 0; cell.x < width; cell.x += CELL) {
-            cell.end_x = next_line(cell.x, width);
-            look_at_cell(request, states, &cell);
-            fill_cell(&bundle, &cell, states);
+        struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
+        uint8_t *cells = pixels->cells + (size_t)(y / CELL) * (size_t)columns;
+        for (int x = 0; x < width; x += CELL) {
+            struct cell cell = cell_at(request, pixels->states, x, y, CELL);
+            cells[x / CELL] = (uint8_t)fill_cell(&bundle, &cell, pixels->states);
         }
-        mark_bundle(&bundle, states);
+        mark_bundle(&bundle, pixels->states);
         rays += bundle.count;
     }
     return rays;
 }
 
-/* Pixels near the edge of a shadow, with the origins of their rays. */
-struct penumbra {
-    size_t count;
-    uint32_t *pixels;
-    vec3s *starts;
-    uint8_t *is_settled; /* its first rays all agree: it lies beyond the penumbra */
-};
+/* ---- Cells beside what their corners missed ---- */
 
-/* Lists the pixels of some rows that see the edge of a shadow near by. */
-static void list_penumbra(const struct tl_sun_pixels *pixels, const struct bundle *bundle, float *visible,
-                          int first_row, int end_row, struct penumbra *out)
+/* Whether a filled cell has a neighbour of its surface in another state. */
+static bool is_doubtful(const struct tl_sun_pixels_request *request, const uint8_t *states,
+                        const struct cell *cell)
 {
-    const int width = bundle->request->ids->width, height = bundle->request->ids->height;
-    for (int y = first_row; y < end_row; y++) {
-        int first = y > TL_SUN_REACH ? y - TL_SUN_REACH : 0,
-            last = y + TL_SUN_REACH < height ? y + TL_SUN_REACH : height - 1;
-        const size_t row = (size_t)y * (size_t)width;
-        for (size_t x = 0; x < (size_t)width; x++) {
-            uint8_t state = pixels->states[row + x], about = 0;
-            visible[row + x] = state == LIT ? 1 : 0;
-            if (!SEEN_SUN(state))
+    const struct tl_id_buffer *ids = request->ids;
+    for (int y = cell->y - 1; y <= cell->end_y; y++)
+        for (int x = cell->x - 1; x <= cell->end_x; x++) {
+            if (x < 0 || x >= ids->width || y < 0 || y >= ids->height)
                 continue;
-            for (int k = first; k <= last; k++)
-                about |= pixels->spread[(size_t)k * (size_t)width + x];
-            if ((about & (DARK | LIT)) != (DARK | LIT) ||
-                !start_of(bundle, (uint32_t)(row + x), &out->starts[out->count]))
+            const size_t pixel = (size_t)y * (size_t)ids->width + (size_t)x;
+            if (tl_sun_is_faced(states[pixel]) && states[pixel] != cell->state &&
+                is_of(cell->surface, ids->ids[pixel]))
+                return true;
+        }
+    return false;
+}
+
+/* Lists the filled cells about a traced one that are doubtful, and counts them as traced from now on. */
+static size_t list_doubtful(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
+                            size_t traced, size_t count)
+{
+    const int width = request->ids->width, columns = cells_along(width),
+              rows = cells_along(request->ids->height);
+    const int column = (int)(traced % (size_t)columns), row = (int)(traced / (size_t)columns);
+    for (int j = row > 0 ? row - 1 : 0; j <= row + 1 && j < rows; j++)
+        for (int i = column > 0 ? column - 1 : 0; i <= column + 1 && i < columns; i++) {
+            const size_t index = (size_t)j * (size_t)columns + (size_t)i;
+            if (pixels->cells[index] != FILLED)
                 continue;
-            out->is_settled[out->count] = false;
-            out->pixels[out->count++] = (uint32_t)(row + x);
+            const struct cell cell = cell_at(request, pixels->states, i * CELL, j * CELL, CELL);
+            if (!is_doubtful(request, pixels->states, &cell))
+                continue;
+            pixels->cells[index] = TRACED;
+            pixels->late[count++] = (uint32_t)index;
         }
-    }
+    return count;
 }
 
-/* Adds what the pixels see of places [first, last] of the sun to `visible`. */
-static size_t look_at_places(const struct penumbra *penumbra, const struct tl_sun_pixels_request *request,
-                             const struct tl_sun *sun, int first, int last, float *visible)
+/* Traces a cell that was filled. */
+static void trace_cell(struct tl_sun_bundle *bundle, int x, int y, uint8_t *states)
 {
-    size_t rays = 0;
-    for (int k = first; k <= last; k++) {
-        struct bundle bundle =
-            begin_bundle(request, tl_turn_direction(sun->samples[k], request->environment_yaw));
-        for (size_t i = 0; i < penumbra->count; i++) {
-            float seen[BUNDLE];
-            if (!penumbra->is_settled[i])
-                add_ray(&bundle, penumbra->pixels[i], penumbra->starts[i]);
-            if (bundle.rays.count == BUNDLE || i + 1 == penumbra->count)
-                for (int n = trace_bundle(&bundle, seen), j = 0; j < n; j++)
-                    visible[bundle.pixels[j]] += seen[j];
-        }
-        rays += bundle.count;
-    }
-    return rays;
+    const struct tl_id_buffer *ids = bundle->request->ids;
+    const int last_x = last_of(next_line(x, ids->width, CELL), ids->width),
+              last_y = last_of(next_line(y, ids->height, CELL), ids->height);
+    for (int j = y; j <= last_y; j++)
+        for (int i = x; i <= last_x; i++)
+            if (tl_sun_is_faced(states[(size_t)j * (size_t)ids->width + (size_t)i]))
+                decide(bundle, (uint32_t)j * (uint32_t)ids->width + (uint32_t)i, states);
 }
 
-/* Means over all rays of a pixel; where the first ones agree there are no others. */
-static size_t soften_rows(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
-                          int sun, int first_row, int end_row)
+/* A narrow shadow that some cells found is followed through those that its pixels lie within. */
+static size_t follow_shadows(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
+                             vec3s direction)
 {
-    const struct tl_sun *item = &request->suns->items[sun];
-    float *visible = pixels->visible[sun];
-    const size_t begin = (size_t)first_row * (size_t)request->ids->width;
-    struct penumbra penumbra = {.pixels = pixels->pixels + begin,
-                                .starts = pixels->starts + begin,
-                                .is_settled = pixels->is_settled + begin};
-    const struct bundle bundle =
-        begin_bundle(request, tl_turn_direction(item->direction, request->environment_yaw));
-    list_penumbra(pixels, &bundle, visible, first_row, end_row, &penumbra);
-    int more = item->sample_count - 1 < MORE ? item->sample_count - 1 : MORE, half = more / 2;
-    size_t rays = look_at_places(&penumbra, request, item, 1, half, visible);
-    for (size_t i = 0; i < penumbra.count; i++) {
-        float sum = visible[penumbra.pixels[i]];
-        penumbra.is_settled[i] = sum <= 0 || sum >= (float)(1 + half);
-    }
-    rays += look_at_places(&penumbra, request, item, half + 1, more, visible);
-    for (size_t i = 0; i < penumbra.count && more > 0; i++)
-        visible[penumbra.pixels[i]] /= (float)(1 + (penumbra.is_settled[i] ? half : more));
-    return rays;
-}
-
-static size_t soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun)
-{
-    const int width = request->ids->width, height = request->ids->height;
-    size_t rays = 0;
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < height; y++)
-        tl_sun_spread_along(pixels->states + (size_t)y * (size_t)width,
-                            pixels->spread + (size_t)y * (size_t)width, width);
+    const size_t columns = (size_t)cells_along(request->ids->width),
+                 cells = columns * (size_t)cells_along(request->ids->height);
+    size_t rays = 0, first = 0, count = 0;
+    for (size_t i = 0; i < cells; i++)
+        if (pixels->cells[i] == TRACED)
+            count = list_doubtful(pixels, request, i, count);
+    while (first < count) {
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)
-    for (int y = 0; y < height; y += ROWS)
-        rays += soften_rows(pixels, request, sun, y, y + ROWS < height ? y + ROWS : height);
+        for (size_t i = first; i < count; i += CELLS_A_TIME) {
+            struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
+            for (size_t k = i; k < i + CELLS_A_TIME && k < count; k++)
+                trace_cell(&bundle, (int)(pixels->late[k] % columns) * CELL,
+                           (int)(pixels->late[k] / columns) * CELL, pixels->states);
+            mark_bundle(&bundle, pixels->states);
+            rays += bundle.count;
+        }
+        size_t end = count;
+        for (size_t i = first; i < count; i++)
+            end = list_doubtful(pixels, request, pixels->late[i], end);
+        first = count;
+        count = end;
+    }
     return rays;
 }
 
 void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request)
 {
-    size_t count = (size_t)request->ids->width * (size_t)request->ids->height;
-    reserve(pixels, count, request->suns->count);
+    const int width = request->ids->width, height = request->ids->height;
+    reserve(pixels, width, height, request->suns->count);
     pixels->rays = 0;
     for (int sun = 0; sun < request->suns->count; sun++) {
         const struct tl_sun *item = &request->suns->items[sun];
         vec3s direction = tl_turn_direction(item->sample_count > 0 ? item->samples[0] : item->direction,
                                             request->environment_yaw);
-        memset(pixels->states, UNKNOWN, count);
+        memset(pixels->states, TL_SUN_UNKNOWN, (size_t)width * (size_t)height);
         pixels->rays += look_at_grid(request, direction, pixels->states);
-        pixels->rays += fill_cells(request, direction, pixels->states);
-        pixels->rays += soften(pixels, request, sun);
+        pixels->rays += fill_cells(pixels, request, direction);
+        pixels->rays += follow_shadows(pixels, request, direction);
+        pixels->rays += tl_sun_soften(pixels, request, sun);
     }
 }
 
@@ -342,17 +342,21 @@ void tl_sun_pixels_release(struct tl_sun_pixels *pixels)
     for (int i = 0; i < TL_SUNS_MAX; i++)
         free(pixels->visible[i]);
     free(pixels->states);
-    free(pixels->spread);
+    free(pixels->joined);
+    free(pixels->marks);
     free(pixels->pixels);
-    free(pixels->starts);
-    free(pixels->is_settled);
+    free(pixels->is_partial);
+    free(pixels->cells);
+    free(pixels->late);
+    free(pixels->block_counts);
     *pixels = (struct tl_sun_pixels){0};
 }
 
 size_t tl_sun_pixels_bytes(const struct tl_sun_pixels *pixels)
 {
-    size_t each = 3 + sizeof(uint32_t) + sizeof(vec3s);
+    size_t each = 4 + sizeof(uint32_t);
     for (int i = 0; i < TL_SUNS_MAX; i++)
         each += pixels->visible[i] ? sizeof(float) : 0;
-    return each * pixels->capacity;
+    return each * pixels->capacity + (1 + sizeof(uint32_t)) * pixels->cell_capacity +
+           sizeof(size_t) * (size_t)pixels->row_capacity;
 }

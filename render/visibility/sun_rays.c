@@ -10,6 +10,8 @@
 #define BUNDLE 16 /* rays */
 #define BLOCK  64 /* bundles that a thread takes at a time */
 #define MORE   8  /* rays for a doubtful sample */
+/* Samples beside the edge of a shadow get more rays: their neighbours are a square of 2 REACH + 1 a side. */
+#define REACH 2
 
 enum { DARK = 1, LIT = 2 };
 
@@ -102,10 +104,11 @@ static size_t look_once(struct tl_sun_rays *rays, const struct tl_points_request
     return ray_count;
 }
 
-void tl_sun_spread_along(const uint8_t *marks, uint8_t *out, int width)
+/* Spreads the bits of a row of `width` marks over REACH texels to both sides. */
+static void spread_along(const uint8_t *marks, uint8_t *out, int width)
 {
     memcpy(out, marks, (size_t)width);
-    for (int shift = 1; shift <= TL_SUN_REACH; shift++)
+    for (int shift = 1; shift <= REACH; shift++)
         for (int x = shift; x < width; x++) {
             out[x] |= marks[x - shift];
             out[x - shift] |= marks[x];
@@ -115,8 +118,7 @@ void tl_sun_spread_along(const uint8_t *marks, uint8_t *out, int width)
 /* ... and over as many rows above and below. */
 static void spread_across(const uint8_t *marks, uint8_t *out, int width, int height, int y)
 {
-    int first = y > TL_SUN_REACH ? y - TL_SUN_REACH : 0,
-        last = y + TL_SUN_REACH < height ? y + TL_SUN_REACH : height - 1;
+    int first = y > REACH ? y - REACH : 0, last = y + REACH < height ? y + REACH : height - 1;
     memset(out, 0, (size_t)width);
     for (int row = first; row <= last; row++)
         for (int x = 0; x < width; x++)
@@ -130,8 +132,8 @@ static size_t find_doubtful(struct tl_sun_rays *rays, const struct tl_samples *s
     int width = samples->width, height = samples->height;
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < height; y++)
-        tl_sun_spread_along(rays->marks + (size_t)y * (size_t)width, rays->spread + (size_t)y * (size_t)width,
-                            width);
+        spread_along(rays->marks + (size_t)y * (size_t)width, rays->spread + (size_t)y * (size_t)width,
+                     width);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < height; y++)
         spread_across(rays->spread, rays->marks + (size_t)y * (size_t)width, width, height, y);

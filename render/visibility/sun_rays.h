@@ -22,11 +22,6 @@ struct tl_sun_rays {
  * Returns the number of rays. */
 size_t tl_sun_rays_update(struct tl_sun_rays *rays, const struct tl_points_request *request,
                           const struct tl_ray_origins *origins, bool again);
-/* Pixels beside the edge of a shadow get more rays: neighbours are a square of 2 TL_SUN_REACH + 1 a side. */
-#define TL_SUN_REACH 2
-
-/* Spreads the bits of a row of `width` marks over TL_SUN_REACH texels to both sides. */
-void tl_sun_spread_along(const uint8_t *marks, uint8_t *out, int width);
 
 void tl_sun_rays_release(struct tl_sun_rays *rays);
 size_t tl_sun_rays_bytes(const struct tl_sun_rays *rays);

@@ -1,0 +1,44 @@
+/* Rays of pixels towards one place of a sun, gathered until they are a packet. */
+#ifndef TOILE_RENDER_SHADE_SUN_BUNDLE_INTERNAL_H
+#define TOILE_RENDER_SHADE_SUN_BUNDLE_INTERNAL_H
+
+#include "render/shade/sun_pixels.h"
+
+#define TL_SUN_BUNDLE 16 /* rays */
+
+/* What a pixel sees of the sun. DARK and LIT are bits. LISTED: it has been asked for more. */
+enum tl_sun_state {
+    TL_SUN_UNKNOWN = 0,
+    TL_SUN_DARK = 1,
+    TL_SUN_LIT = 2,
+    TL_SUN_AWAY = 4,
+    TL_SUN_EMPTY = 8,
+    TL_SUN_LISTED = 16
+};
+
+static inline bool tl_sun_is_faced(uint8_t state)
+{
+    return state == TL_SUN_DARK || state == TL_SUN_LIT;
+}
+
+struct tl_sun_bundle {
+    const struct tl_sun_pixels_request *request;
+    vec3s direction;
+    float offset_m;
+    struct tl_ray_packet rays;
+    uint32_t pixels[TL_SUN_BUNDLE];
+    float ground[TL_SUN_BUNDLE]; /* what the ground leaves */
+    size_t count;                /* rays traced so far */
+};
+
+struct tl_sun_bundle tl_sun_bundle_begin(const struct tl_sun_pixels_request *request, vec3s direction);
+
+/* The origin of a covered pixel's rays, as tl_sample_start has it. False where the surface faces away. */
+bool tl_sun_start(const struct tl_sun_bundle *bundle, uint32_t pixel, vec3s *start);
+
+void tl_sun_bundle_add(struct tl_sun_bundle *bundle, uint32_t pixel, vec3s start);
+
+/* Traces what was gathered: seen[i] of pixels[i]. Returns how many there were. */
+int tl_sun_bundle_trace(struct tl_sun_bundle *bundle, float seen[TL_SUN_BUNDLE]);
+
+#endif
