@@ -24,8 +24,7 @@ struct tl_quality_governor {
     int level_counts[TL_CONTROL_COUNT]; /* as the settings have them */
     struct tl_quality_choice choice;
     struct tl_cost_job cloth, other; /* all of a frame but drawing */
-    struct tl_work cloth_work;
-    double load;       /* of the machine when the levels were chosen */
+    double load;                     /* of the machine when the levels were chosen */
     bool is_preparing; /* the frame prepared regions, which others do not: its time is not learnt */
     int rested;        /* frames without a change */
     uint64_t environment_revision;
@@ -53,27 +52,20 @@ void tl_quality_governor_set_budget(tl_quality_governor *governor, double budget
 
 /* ---- The cost of levels ---- */
 
-/* A constant part and a part in proportion to the substeps. Only their ratio counts, which is that of the
- * built-in dress, in ms. */
-static struct tl_work cloth_work(const struct tl_quality_scope *scope)
-{
-    return (struct tl_work){{1, 0.1 * tl_quality_value(TL_CONTROL_CLOTH, scope)}};
-}
-
 static const struct tl_work any_work = {{1}};
 
 struct coming {
     const tl_quality_governor *governor;
     const tl_renderer *renderer;
-    struct tl_quality_scope full;
+    struct tl_render_settings full;
     tl_bits running[2];                  /* jobs, at the levels of the last frame, by the level of RATIO */
     tl_bits started[TL_CONTROL_COUNT];   /* ... and with those that another level of a control starts */
     bool is_ready[TL_BUDGET_LEVELS_MAX]; /* levels of regions */
 };
 
-static double known_ms(const struct tl_cost_job *job, const struct tl_work *work, double load)
+static double known_ms(const struct tl_cost_job *job, double load)
 {
-    return job->runs > 0 ? tl_cost_predict(job, work, load) : 0;
+    return job->runs > 0 ? tl_cost_predict(job, &any_work, load) : 0;
 }
 
 static struct tl_quality levels_of(const uint8_t *of)
@@ -91,20 +83,16 @@ static double cost_of(const void *context, const uint8_t *of)
     const struct tl_quality levels = levels_of(of);
     if (!coming->is_ready[levels.of[TL_CONTROL_REGIONS]])
         return INFINITY;
-    const struct tl_quality_scope applied = tl_quality_scope_at(&levels, &coming->full);
+    const struct tl_render_settings applied = tl_quality_at(&levels, &coming->full);
     double load = tl_renderer_load(coming->renderer);
-    struct tl_work cloth = cloth_work(&applied);
-    return tl_renderer_predict_ms(coming->renderer, &applied.drawn,
-                                  coming->running[levels.of[TL_CONTROL_RATIO]]) +
-           known_ms(&governor->cloth, &cloth, load) + known_ms(&governor->other, &any_work, load);
+    return tl_renderer_predict_ms(coming->renderer, &applied, coming->running[levels.of[TL_CONTROL_RATIO]]) +
+           known_ms(&governor->cloth, load) + known_ms(&governor->other, load);
 }
 
 /* Cost of changing to these levels, in ms, paid once: the jobs that run because a level differs from the last
- * frame's, and the cloth if its step becomes shorter. Then its contacts are found again and it takes three
- * times as long for a few frames (built-in dress: 31, 31, 24, 15 ms, then 11). */
+ * frame's. */
 static double change_of(const void *context, const uint8_t *of)
 {
-    const double extra = 2;
     const struct coming *coming = context;
     const tl_quality_governor *governor = coming->governor;
     const struct tl_quality levels = levels_of(of);
@@ -113,13 +101,10 @@ static double change_of(const void *context, const uint8_t *of)
         jobs |= of[k] != governor->choice.levels.of[k]
                     ? coming->started[k] & ~coming->running[of[TL_CONTROL_RATIO]]
                     : 0;
-    bool is_shorter = of[TL_CONTROL_CLOTH] < governor->choice.levels.of[TL_CONTROL_CLOTH];
-    if (!jobs && !is_shorter)
+    if (!jobs)
         return 0;
-    const struct tl_quality_scope applied = tl_quality_scope_at(&levels, &coming->full);
-    struct tl_work cloth = cloth_work(&applied);
-    return tl_renderer_predict_ms(coming->renderer, &applied.drawn, jobs) +
-           (is_shorter ? extra * known_ms(&governor->cloth, &cloth, tl_renderer_load(coming->renderer)) : 0);
+    const struct tl_render_settings applied = tl_quality_at(&levels, &coming->full);
+    return tl_renderer_predict_ms(coming->renderer, &applied, jobs);
 }
 
 static double error_of(const void *context, const uint8_t *of)
@@ -129,33 +114,33 @@ static double error_of(const void *context, const uint8_t *of)
     return tl_quality_error(&levels, &coming->full);
 }
 
-static struct tl_quality_scope at_level(const struct coming *coming, int control, int level)
+static struct tl_render_settings at_level(const struct coming *coming, int control, int level)
 {
     struct tl_quality levels = coming->governor->choice.levels;
     levels.of[control] = (uint8_t)level;
-    return tl_quality_scope_at(&levels, &coming->full);
+    return tl_quality_at(&levels, &coming->full);
 }
 
 /* Which jobs would run in the coming frame: at the levels of the last one, and when a control changes its
  * level, which runs jobs whose results would have been reused. */
 static struct coming look_ahead(const tl_quality_governor *governor, const tl_renderer *renderer,
-                                const tl_frame *frame, const struct tl_quality_scope *full)
+                                const tl_frame *frame, const struct tl_render_settings *full)
 {
     struct coming coming = {.governor = governor, .renderer = renderer, .full = *full};
     for (int level = 0; level < governor->level_counts[TL_CONTROL_RATIO]; level++) {
-        struct tl_quality_scope at = at_level(&coming, TL_CONTROL_RATIO, level);
-        coming.running[level] = tl_renderer_predict_jobs(renderer, frame, &at.drawn);
+        struct tl_render_settings at = at_level(&coming, TL_CONTROL_RATIO, level);
+        coming.running[level] = tl_renderer_predict_jobs(renderer, frame, &at);
     }
     for (int control = TL_CONTROL_RATIO + 1; control < TL_CONTROL_COUNT; control++) {
         int level = governor->choice.levels.of[control], other = level > 0 ? level - 1 : level + 1;
-        struct tl_quality_scope then = at_level(&coming, control, other);
-        if (other < governor->level_counts[control] && control != TL_CONTROL_CLOTH)
-            coming.started[control] = tl_renderer_predict_jobs(renderer, frame, &then.drawn);
+        struct tl_render_settings then = at_level(&coming, control, other);
+        if (other < governor->level_counts[control])
+            coming.started[control] = tl_renderer_predict_jobs(renderer, frame, &then);
     }
     for (int level = 0; level < governor->level_counts[TL_CONTROL_REGIONS]; level++) {
-        struct tl_quality_scope then = at_level(&coming, TL_CONTROL_REGIONS, level);
+        struct tl_render_settings then = at_level(&coming, TL_CONTROL_REGIONS, level);
         coming.is_ready[level] = level == governor->choice.levels.of[TL_CONTROL_REGIONS] ||
-                                 tl_renderer_has_regions(renderer, &then.drawn);
+                                 tl_renderer_has_regions(renderer, &then);
     }
     return coming;
 }
@@ -170,8 +155,8 @@ static int count_scales(const struct tl_quality_governor *governor, const struct
     int count = 1;
     for (; count < governor->level_counts[TL_CONTROL_SCALE]; count++) {
         struct tl_quality levels = {.of[TL_CONTROL_SCALE] = (uint8_t)count};
-        const struct tl_quality_scope at = tl_quality_scope_at(&levels, &coming->full);
-        if (at.drawn.image.scale * (float)at.drawn.image.supersample < SAMPLES_MIN - 1e-3f)
+        const struct tl_render_settings at = tl_quality_at(&levels, &coming->full);
+        if (at.image.scale * (float)at.image.supersample < SAMPLES_MIN - 1e-3f)
             break;
     }
     return count;
@@ -193,7 +178,7 @@ static struct tl_budget budget_of(const tl_quality_governor *governor, const str
 /* Prepares the regions of one level in each frame, the cheapest level first, until the environment changes.
  */
 static void prepare_regions(tl_quality_governor *governor, tl_renderer *renderer, const tl_frame *frame,
-                            const struct tl_quality_scope *full)
+                            const struct tl_render_settings *full)
 {
     governor->is_preparing = false;
     bool stays = governor->environment_revision == frame->environment_revision;
@@ -201,10 +186,10 @@ static void prepare_regions(tl_quality_governor *governor, tl_renderer *renderer
     for (int level = governor->level_counts[TL_CONTROL_REGIONS] - 1; stays && level >= 0; level--) {
         struct tl_quality levels = {{0}};
         levels.of[TL_CONTROL_REGIONS] = (uint8_t)level;
-        struct tl_quality_scope then = tl_quality_scope_at(&levels, full);
-        if (tl_renderer_has_regions(renderer, &then.drawn))
+        struct tl_render_settings then = tl_quality_at(&levels, full);
+        if (tl_renderer_has_regions(renderer, &then))
             continue;
-        tl_renderer_prepare_regions(renderer, &then.drawn);
+        tl_renderer_prepare_regions(renderer, &then);
         governor->is_preparing = true;
         return;
     }
@@ -266,7 +251,7 @@ static void choose_whole(tl_quality_governor *governor, const struct tl_budget *
 struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governor, tl_renderer *renderer,
                                                     const tl_frame *frame, const struct tl_settings *settings)
 {
-    const struct tl_quality_scope full = tl_quality_scope_of(settings);
+    const struct tl_render_settings full = tl_settings_render(settings);
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
         governor->level_counts[k] = tl_quality_count((enum tl_control)k, &full);
         if (governor->choice.levels.of[k] >= governor->level_counts[k])
@@ -284,8 +269,6 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
     else
         choose_whole(governor, &budget);
     governor->choice.error = tl_quality_error(&governor->choice.levels, &full);
-    struct tl_quality_scope applied = tl_quality_scope_at(&governor->choice.levels, &full);
-    governor->cloth_work = cloth_work(&applied);
     governor->load = tl_renderer_load(renderer);
     if (governor->cloth.runs == 0)
         governor->choice.predicted_ms = (double)NAN;
@@ -295,13 +278,13 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
 struct tl_quality_rest tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
                                                 const struct tl_settings *settings)
 {
-    const struct tl_quality_scope full = tl_quality_scope_of(settings);
+    const struct tl_render_settings full = tl_settings_render(settings);
     struct tl_quality_rest rest = {.is_slow = true};
     for (int level = 0; level < tl_quality_count(TL_CONTROL_RATIO, &full) && rest.is_slow; level++) {
         rest.levels.of[TL_CONTROL_RATIO] = (uint8_t)level;
-        const struct tl_quality_scope at = tl_quality_scope_at(&rest.levels, &full);
-        tl_bits jobs = tl_renderer_predict_jobs(renderer, frame, &at.drawn);
-        rest.is_slow = tl_renderer_predict_ms(renderer, &at.drawn, jobs) > TL_REST_MS;
+        const struct tl_render_settings at = tl_quality_at(&rest.levels, &full);
+        tl_bits jobs = tl_renderer_predict_jobs(renderer, frame, &at);
+        rest.is_slow = tl_renderer_predict_ms(renderer, &at, jobs) > TL_REST_MS;
     }
     return rest;
 }
@@ -310,13 +293,13 @@ void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_ren
                                const tl_frame *frame, const struct tl_settings *settings,
                                struct tl_quality_step out[TL_CONTROL_COUNT])
 {
-    const struct tl_quality_scope full = tl_quality_scope_of(settings);
+    const struct tl_render_settings full = tl_settings_render(settings);
     const struct coming coming = look_ahead(governor, renderer, frame, &full);
     uint8_t now[TL_BUDGET_CONTROLS_MAX] = {0};
     memcpy(now, governor->choice.levels.of, sizeof governor->choice.levels.of);
     double ms = cost_of(&coming, now), error = error_of(&coming, now);
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
-        const struct tl_quality_scope at = at_level(&coming, k, now[k]);
+        const struct tl_render_settings at = at_level(&coming, k, now[k]);
         out[k] = (struct tl_quality_step){.level = now[k],
                                           .level_count = governor->level_counts[k],
                                           .value = tl_quality_value((enum tl_control)k, &at),
@@ -340,7 +323,7 @@ void tl_quality_governor_learn(tl_quality_governor *governor, const tl_plan *pla
     for (int i = 0; i < plan->count; i++)
         drawn_ms += plan->rows[i].took_ms;
     double predicted_ms = governor->choice.predicted_ms;
-    tl_cost_learn(&governor->cloth, &governor->cloth_work, governor->load, cloth_ms);
+    tl_cost_learn(&governor->cloth, &any_work, governor->load, cloth_ms);
     if (governor->is_preparing)
         return;
     tl_cost_learn(&governor->other, &any_work, governor->load, fmax(total_ms - cloth_ms - drawn_ms, 0));

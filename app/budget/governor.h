@@ -21,7 +21,7 @@ struct tl_quality_choice {
     double predicted_ms; /* cloth and drawing; NaN before the first frame */
     double change_ms;    /* the part of it that the change to these levels costs once */
     double min_ms;    /* of the cheapest levels, where predicted_ms exceeds the budget; else predicted_ms */
-    double error;     /* estimated mean FLIP that the levels add to that of the settings */
+    double error;     /* estimated; what the levels add to that of the settings (quality.h) */
     char reason[120]; /* for people: what was reduced or restored, and why; "" when nothing changed */
 };
 
@@ -59,7 +59,7 @@ void tl_quality_governor_learn(tl_quality_governor *governor, const tl_plan *pla
 /* For each control, what its next better level would change from the levels chosen last. */
 struct tl_quality_step {
     int level, level_count;
-    double value;     /* of the setting at this level: regions, steps, substeps a frame, scale */
+    double value;     /* of the setting at this level: regions, steps, scale */
     double ms, error; /* additional time, and error removed; NaN at level 0 */
 };
 void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_renderer *renderer,

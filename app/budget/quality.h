@@ -1,9 +1,9 @@
 /* Quality controls: what is reduced so that a frame fits its budget, level by level; what a level makes of
  * the settings, and how much it adds to their error.
  *
- * Errors are mean FLIP against the ray-traced image over covered pixels, in motion (that of fewer samples
- * counts twice: missing detail is seen without a comparison), and independent: their squares add. They are
- * measured by `toile trade --axis levels`. Threads: all functions are pure. */
+ * Errors are FLIP against the ray-traced image over the garment's pixels, in motion, the mean of its worst 5
+ * %: what a viewer notices first. They are taken as independent: their squares add. They are measured by
+ * `toile trade --axis levels`. Threads: all functions are pure. */
 #ifndef TOILE_APP_BUDGET_QUALITY_H
 #define TOILE_APP_BUDGET_QUALITY_H
 
@@ -17,7 +17,6 @@ enum tl_control {
     TL_CONTROL_REFRESH, /* light.refresh: visibility renewed a frame, of rays or of shadow maps */
     TL_CONTROL_REGIONS, /* light.regions: how much of the tree of regions is used */
     TL_CONTROL_RELIEF,  /* detail.steps, where relief is marched */
-    TL_CONTROL_CLOTH,   /* cloth.dt: substeps of the solver */
     TL_CONTROL_SCALE,   /* image.scale: samples of the image, last of all */
     TL_CONTROL_COUNT
 };
@@ -34,24 +33,18 @@ bool tl_quality_is_valid(const struct tl_quality *levels);
 /* The settings of a frame at these levels, which must exist. */
 struct tl_settings tl_quality_apply(const struct tl_quality *levels, const struct tl_settings *settings);
 
-/* The part of the settings that levels change: cheap to copy. */
-struct tl_quality_scope {
-    struct tl_render_settings drawn;
-    struct tl_cloth_params cloth;
-};
-
-/* Returns that part of the settings; the second function also applies levels to it. */
-struct tl_quality_scope tl_quality_scope_of(const struct tl_settings *settings);
-struct tl_quality_scope tl_quality_scope_at(const struct tl_quality *levels,
-                                            const struct tl_quality_scope *full);
+/* The same for what is drawn: cheap to copy. Levels change nothing else: how a garment falls does not depend
+ * on how fast a machine is. */
+struct tl_render_settings tl_quality_at(const struct tl_quality *levels,
+                                        const struct tl_render_settings *full);
 
 /* The number of levels of a control that differ in these settings: at least 1. */
-int tl_quality_count(enum tl_control control, const struct tl_quality_scope *full);
+int tl_quality_count(enum tl_control control, const struct tl_render_settings *full);
 
 /* The error that these levels add to that of the settings. */
-double tl_quality_error(const struct tl_quality *levels, const struct tl_quality_scope *full);
+double tl_quality_error(const struct tl_quality *levels, const struct tl_render_settings *full);
 
-/* The value that a control sets: regions, regions renewed, steps, substeps a frame, scale. */
-double tl_quality_value(enum tl_control control, const struct tl_quality_scope *scope);
+/* The value that a control sets: regions, regions renewed, steps, scale. */
+double tl_quality_value(enum tl_control control, const struct tl_render_settings *settings);
 
 #endif

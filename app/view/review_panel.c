@@ -170,6 +170,9 @@ static void describe_status(const struct tl_review *review, char *status, size_t
     const char *stop = status + size;
     char *end = status;
     *end = '\0';
+    if (review->playing && review->play_speed < 0.95)
+        end =
+            append(end, stop, "plays at %.1f x: this machine is slower than the cloth  ", review->play_speed);
     if (path->records)
         end = append(end, stop, "recording: %.1f s (Shift+K ends)  ", tl_clock_s() - path->began_s);
     if (path->plays)

@@ -154,15 +154,12 @@ static void record_jobs(struct tl_flight *flight, const tl_plan *plan, struct tl
     }
 }
 
-/* The camera goes first, so that the choice is made for where it will be. The cloth stays as it is: whenever
- * its step changes it forgets its contacts. */
+/* The camera goes first, so that the choice is made for where it will be. */
 static bool choose(struct recorder *recorder, const struct tl_settings *wanted, int number,
                    struct tl_quality_choice *out, tl_error *error)
 {
     struct tl_headless *headless = recorder->headless;
-    struct tl_settings looked_from = *wanted;
-    looked_from.cloth = tl_session_settings(headless->session)->cloth;
-    if (!tl_session_apply(headless->session, &looked_from, error))
+    if (!tl_session_apply(headless->session, wanted, error))
         return false;
     const tl_frame coming = tl_session_frame(headless->session);
     if (recorder->options->replay) {
@@ -294,7 +291,6 @@ bool tl_fly_judge(struct tl_headless *headless, struct tl_flight *flight, tl_err
 {
     struct tl_motion motion;
     struct tl_variant_run reference = {0};
-    /* A reset would not do: a cloth whose step has changed goes on otherwise than a fresh one. */
     bool done =
         tl_session_restart(headless->session, &headless->settings, error) &&
         begin_motion(headless, flight, &motion, error) &&

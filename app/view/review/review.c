@@ -82,5 +82,6 @@ void tl_review_set_playing(struct tl_review *review, bool plays)
 {
     review->playing = plays;
     review->next_step_s = tl_clock_s();
+    review->play_speed = 1;
     tl_info("view: %s at frame %d", plays ? "plays" : "paused", tl_session_frame_number(review->session));
 }

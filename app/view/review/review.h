@@ -97,6 +97,7 @@ struct tl_review {
 
     bool playing, closing, help_shown, reads_out;
     double next_step_s; /* while playing: time of the next simulated frame */
+    double play_speed;  /* of the last frames, as a share of real time; 1 when playing begins */
     struct tl_review_motion motion;
     struct tl_review_path path;
     struct tl_review_wipe wipe;

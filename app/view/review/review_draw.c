@@ -135,7 +135,9 @@ static void step(struct tl_review *review)
     tl_review_hand_step(review);
     if (!tl_session_advance(review->session, &error))
         tl_review_report_error(review, &error);
-    double frame_s = 1 / review->good.cloth.frame_rate;
+    const double newest = 0.1; /* weight in a running mean */
+    double frame_s = 1 / review->good.cloth.frame_rate, late_s = fmax(now_s - review->next_step_s, 0);
+    review->play_speed += newest * (frame_s / (frame_s + late_s) - review->play_speed);
     review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
     review->times.cloth = 1e3 * (tl_clock_s() - now_s);
 }

@@ -29,7 +29,7 @@ static void level_0_is_what_was_asked_for(void **state)
     assert_true(tl_settings_equal(&full, &same));
 }
 
-/* Each level changes its own setting, downwards, and no other. */
+/* Each level changes its own setting, downwards, and no other; none changes the cloth. */
 static void levels_change_their_own_setting(void **state)
 {
     (void)state;
@@ -56,21 +56,16 @@ static void levels_change_their_own_setting(void **state)
     s.detail.steps = full.detail.steps;
     assert_true(tl_settings_equal(&full, &s));
 
+    for (int control = 0; control < TL_CONTROL_COUNT; control++) {
+        s = at((enum tl_control)control, 2, &full);
+        assert_memory_equal(&s.cloth, &full.cloth, sizeof s.cloth);
+    }
+
     full.image.scale = 0.8f;
     s = at(TL_CONTROL_SCALE, 4, &full);
     assert_near(s.image.scale, 0.4, 1e-6);
     s.image.scale = full.image.scale;
     assert_true(tl_settings_equal(&full, &s));
-
-    full.cloth.frame_rate = 30;
-    full.cloth.dt = 1.0 / 60;
-    full.cloth.substeps = 30;
-    s = at(TL_CONTROL_CLOTH, 1, &full); /* one step a frame instead of two */
-    assert_near(s.cloth.dt, 1.0 / 30, 1e-12);
-    assert_int_equal(s.cloth.substeps, 30);
-    s = at(TL_CONTROL_CLOTH, 2, &full); /* and half its substeps */
-    assert_near(s.cloth.dt, 1.0 / 30, 1e-12);
-    assert_int_equal(s.cloth.substeps, 15);
 }
 
 /* Small settings are not made larger, nor smaller than what still works. */
@@ -104,12 +99,12 @@ static void what_is_asked_for_errs_least(void **state)
         for (int control = 0; control < TL_CONTROL_COUNT; control++) {
             full.light.regions = regions[i];
             full.light.refresh = 0;
-            const struct tl_quality_scope scope = tl_quality_scope_of(&full);
+            const struct tl_render_settings drawn = tl_settings_render(&full);
             struct tl_quality levels = {{0}};
-            assert_near(tl_quality_error(&levels, &scope), 0, 0);
-            for (int level = 1; level < tl_quality_count((enum tl_control)control, &scope); level++) {
+            assert_near(tl_quality_error(&levels, &drawn), 0, 0);
+            for (int level = 1; level < tl_quality_count((enum tl_control)control, &drawn); level++) {
                 levels.of[control] = (uint8_t)level;
-                assert_true(tl_quality_error(&levels, &scope) > 0);
+                assert_true(tl_quality_error(&levels, &drawn) > 0);
             }
         }
 }

@@ -49,7 +49,7 @@ check "budgets" python3 - <<'END'
 import json
 tight, loose = (json.load(open(f))["budget"] for f in ("tight.json", "loose.json"))
 assert loose["error"] == 0 and all(k["level"] == 0 and k["next_ms"] is None for k in loose["knobs"])
-assert tight["error"] > 0 and [k["name"] for k in tight["knobs"]] == ["ratio", "refresh", "regions", "relief", "cloth", "scale"]
+assert tight["error"] > 0 and [k["name"] for k in tight["knobs"]] == ["ratio", "refresh", "regions", "relief", "scale"]
 for knob in tight["knobs"][1:]: # which place of the ratio is cheaper at 64x48, the machine decides
     assert knob["level"] == knob["levels"] - 1 and (knob["level"] == 0 or knob["next_error"] < 0), knob
 END

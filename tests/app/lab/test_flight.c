@@ -40,12 +40,12 @@ static struct tl_path make_path(const struct tl_settings *settings)
     return path;
 }
 
-/* Levels of every kind, among them the cloth's, which change what the frames after them show. */
+/* Levels of several kinds, among them refresh, which changes what the frames after it show. */
 static struct tl_flight make_record(void)
 {
     struct tl_flight record = {.frames = TL_NEW_ARRAY(struct tl_flight_frame, FRAMES), .count = FRAMES};
     for (int i = 0; i < FRAMES; i++) {
-        record.frames[i].levels.of[TL_CONTROL_CLOTH] = i >= 2 && i < 4;
+        record.frames[i].levels.of[TL_CONTROL_REFRESH] = i >= 2 && i < 4;
         record.frames[i].levels.of[TL_CONTROL_REGIONS] = (uint8_t)(i % 2);
         record.frames[i].levels.of[TL_CONTROL_SCALE] = i == 5;
     }

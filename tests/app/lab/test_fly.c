@@ -246,7 +246,7 @@ static void records_come_back(void **unused)
 }
 
 #define HEADS                                                                                                \
-    "frame,warm_up,total_ms,level_ratio,level_refresh,level_regions,level_relief,level_cloth,level_scale,"   \
+    "frame,warm_up,total_ms,level_ratio,level_refresh,level_regions,level_relief,level_scale,"               \
     "job_light_ms,new\n"
 
 static void broken_records_are_refused(void **unused)
@@ -259,14 +259,14 @@ static void broken_records_are_refused(void **unused)
         {"frame,total_ms\n0,1\n", ":1: lacks a column of levels"},
         {"a,b\n", ":1: has no columns"},
         {HEADS, "holds no frame"},
-        {HEADS "0,1,2.5,0,0,0,0,0,0,1\n", ":2: has fewer cells"},
-        {HEADS "0,1,2.5,0,0,0,0,0,0,1,x,y\n", ":2: has more cells"},
-        {HEADS "0,1,nan,0,0,0,0,0,0,1,x\n", ":2: a cell is no number"},
-        {HEADS "0,1,2.5,0,-1,0,0,0,0,1,x\n", ":2: a cell is no number"},
-        {HEADS "0,1,2.5,0,0,0,0,0,255,1,x\n", ":2: there is no such level"},
-        {HEADS "0,1,2.5,0,0,0,0,0,300,1,x\n", ":2: a cell is too large"},
-        {HEADS "0,1,2.5,0,0,0,0,0,0,1,x\n5,1,2.5,0,0,0,0,0,1,x\n", ":3: frames do not follow"},
-        {HEADS "0,1,2.5ms,0,0,0,0,0,0,1,x\n", ":2: a cell is no number"},
+        {HEADS "0,1,2.5,0,0,0,0,0,1\n", ":2: has fewer cells"},
+        {HEADS "0,1,2.5,0,0,0,0,0,1,x,y\n", ":2: has more cells"},
+        {HEADS "0,1,nan,0,0,0,0,0,1,x\n", ":2: a cell is no number"},
+        {HEADS "0,1,2.5,0,-1,0,0,0,1,x\n", ":2: a cell is no number"},
+        {HEADS "0,1,2.5,0,0,0,0,255,1,x\n", ":2: there is no such level"},
+        {HEADS "0,1,2.5,0,0,0,0,300,1,x\n", ":2: a cell is too large"},
+        {HEADS "0,1,2.5,0,0,0,0,0,1,x\n5,1,2.5,0,0,0,0,1,x\n", ":3: frames do not follow"},
+        {HEADS "0,1,2.5ms,0,0,0,0,0,1,x\n", ":2: a cell is no number"},
     };
     for (size_t i = 0; i < TL_COUNT(rows); i++) {
         char file[] = "/tmp/toile_fly_XXXXXX";
