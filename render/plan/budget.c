@@ -54,10 +54,11 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
     return a->error < b->error || (a->error == b->error && a->cost < b->cost);
 }
 
-bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double first_ms, uint8_t *levels)
+static struct candidate find_best(const struct tl_budget *budget, double limit_ms, double first_ms,
+                                  double *cheapest_ms)
 {
-    assert(budget->control_count > 0 && budget->control_count <= TL_BUDGET_CONTROLS_MAX);
     struct candidate best = {.cost = INFINITY, .error = INFINITY}, each = {0};
+    *cheapest_ms = INFINITY;
     do {
         each.cost = budget->cost(budget->context, each.levels);
         each.error = budget->error(budget->context, each.levels);
@@ -65,9 +66,22 @@ bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double firs
             each.cost <= limit_ms && each.cost + budget->change(budget->context, each.levels) <= first_ms;
         if (is_better(&each, &best))
             best = each;
+        *cheapest_ms = fmin(*cheapest_ms, each.cost);
     } while (next_levels(budget, each.levels));
+    return best;
+}
+
+bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double first_ms, uint8_t *levels)
+{
+    assert(budget->control_count > 0 && budget->control_count <= TL_BUDGET_CONTROLS_MAX);
+    double cheapest_ms, unused;
+    struct candidate best = find_best(budget, limit_ms, first_ms, &cheapest_ms);
+    bool fits = best.fits;
+    if (!fits || TL_BUDGET_SLACK * cheapest_ms > limit_ms)
+        best = find_best(budget, fmax(limit_ms, TL_BUDGET_SLACK * cheapest_ms), fits ? first_ms : INFINITY,
+                         &unused);
     memcpy(levels, best.levels, sizeof best.levels);
-    return best.fits;
+    return fits;
 }
 
 static void begin(struct tl_governor *governor, const struct tl_budget *budget)

@@ -30,8 +30,10 @@ struct tl_budget {
 };
 
 /* Finds the smallest error at a cost of at most `limit_ms`, and of at most `first_ms` in the first frame;
- * among equal errors the smallest cost. If no combination is that cheap, finds the cheapest and returns
- * false. */
+ * among equal errors the smallest cost. Where the cheapest combination nearly takes the limit or more, up to
+ * TL_BUDGET_SLACK times its cost is allowed instead: much error is not accepted for little time. False when
+ * even the cheapest exceeds the limits. */
+#define TL_BUDGET_SLACK 1.2
 bool tl_budget_best(const struct tl_budget *budget, double limit_ms, double first_ms, uint8_t *levels);
 
 struct tl_governor {

@@ -176,7 +176,7 @@ static int close_device(void **state)
 static struct tl_settings small_settings(void)
 {
     struct tl_settings settings = full_settings();
-    settings.image.width = settings.image.height = 48;
+    settings.image.width = settings.image.height = 320;
     settings.image.supersample = 1;
     settings.light.regions = 48;
     settings.light.pem_size = 16;
@@ -272,12 +272,12 @@ static void steps_tell_what_a_level_is_worth(void **state)
     struct tl_quality_step steps[TL_CONTROL_COUNT];
     tl_quality_governor_steps(governor, device->renderer, &frame, &settings, steps);
     for (size_t k = 0; k < 2; k++)
-        assert_int_equal(steps[dear[k]].level, steps[dear[k]].level_count - 1);
+        assert_in_range(steps[dear[k]].level, 1, steps[dear[k]].level_count - 1);
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
         assert_true(steps[k].level == 0 ? isnan(steps[k].error) : steps[k].error > 0);
     }
     assert_true(steps[TL_CONTROL_SCALE].ms > 0);
-    assert_near(steps[TL_CONTROL_REFRESH].value, 6, 0);
+    assert_near(steps[TL_CONTROL_REFRESH].value, 24 >> steps[TL_CONTROL_REFRESH].level, 0);
     tl_quality_governor_destroy(&governor);
 }
 

@@ -43,14 +43,16 @@ else
 fi
 
 fast=${fast/--frame 1/--frame 4} # what costs are learned from
-$TOILE plan $fast --budget 1 >tight.json
-$TOILE plan $fast --budget 100000 >loose.json
+large=${fast/64x48/400x300} # with fewer samples there is little to save
+$TOILE plan $large --budget 1 >tight.json
+$TOILE plan $large --budget 100000 >loose.json
 check "budgets" python3 - <<'END'
 import json
 tight, loose = (json.load(open(f))["budget"] for f in ("tight.json", "loose.json"))
 assert loose["error"] == 0 and all(k["level"] == 0 and k["next_ms"] is None for k in loose["knobs"])
 assert tight["error"] > 0 and [k["name"] for k in tight["knobs"]] == ["ratio", "refresh", "regions", "relief", "scale"]
-for knob in tight["knobs"][1:]: # which place of the ratio is cheaper at 64x48, the machine decides
-    assert knob["level"] == knob["levels"] - 1 and (knob["level"] == 0 or knob["next_error"] < 0), knob
+for knob in tight["knobs"]: # much error is not accepted for little time, so that not each must be at its last level
+    assert knob["level"] == 0 or knob["next_error"] < 0, knob
+assert any(k["level"] > 0 for k in tight["knobs"][1:])
 END
 check "text" grep -q "levels for 50 ms" <($TOILE plan ${fast%--json} --budget 50)

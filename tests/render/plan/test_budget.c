@@ -72,7 +72,7 @@ static struct tl_budget make_budget(struct table *table, int controls, uint32_t 
     return budget;
 }
 
-/* The definition, level by level: the least error of all that fit, and the least cost of all. */
+/* The definition, level by level: the least error of all within the limit, and the least cost of all. */
 static void search(const struct tl_budget *budget, int control, double limit, uint8_t *levels, double *error,
                    double *cost)
 {
@@ -99,16 +99,13 @@ static void the_best_of_all_is_found(void **state)
             double limit = 2 * pow(1.3, step); /* up to 173 */
             uint8_t found[TL_BUDGET_CONTROLS_MAX], tried[TL_BUDGET_CONTROLS_MAX] = {0};
             double error = INFINITY, cost = INFINITY;
-            search(&budget, 0, limit, tried, &error, &cost);
+            search(&budget, 0, 0, tried, &error, &cost);
+            double allowed = fmax(limit, TL_BUDGET_SLACK * cost);
+            search(&budget, 0, allowed, tried, &error, &cost);
             bool fits = tl_budget_best(&budget, limit, INFINITY, found);
-            double found_ms = table_cost(&table, found);
             assert_int_equal(fits, cost <= limit);
-            if (fits) {
-                assert_true(found_ms <= limit);
-                assert_near(table_error(&table, found), error, 1e-15);
-            } else {
-                assert_near(found_ms, cost, 0);
-            }
+            assert_true(table_cost(&table, found) <= allowed);
+            assert_near(table_error(&table, found), error, 1e-15);
         }
     }
 }
@@ -288,7 +285,7 @@ static void what_is_not_foreseen_has_room(void **state)
                                .error = table_error,
                                .context = &table};
     for (int level = 0; level < TL_BUDGET_LEVELS_MAX; level++) {
-        table.left[0][level] = pow(0.9, level);
+        table.left[0][level] = pow(0.88, level);
         table.error[0][level] = 0.01 * level;
     }
     struct tl_governor governor = {0};
