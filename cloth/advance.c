@@ -85,15 +85,65 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
                                       .h = substep->h};
 }
 
-/* Self-repulsion, then contact with the avatar: the last projection is satisfied exactly, and to be inside
- * the body is the worse error. */
+/* Between middle surfaces of two plies, as a share of the distance to the avatar. */
+#define PLY_SHARE 0.5
+
+static struct tl_apart_params apart_params(const tl_cloth *cloth, double friction, double h)
+{
+    return (struct tl_apart_params){.topology = &cloth->topology,
+                                    .rest = (const vec2s(*)[3])cloth->rest,
+                                    .made_at = cloth->made_at,
+                                    .thickness_m = PLY_SHARE * cloth->fabric.thickness_m,
+                                    .friction = friction,
+                                    .h = h};
+}
+
+/* Whether the garment came crossed and has not come apart yet: its layers, which know what is inside and what
+ * outside, then help. */
+static bool is_tangled(const tl_cloth *cloth)
+{
+    return cloth->params.self_contact && !cloth->apart.was_clean;
+}
+
+/* Contact of the cloth with itself, then with the avatar; last, what would pass through the cloth is moved
+ * back. */
 static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
 {
-    if (cloth->params.self_repulsion) {
-        tl_repulsion_solve(&cloth->repulsion, contact->friction, contact->h, &cloth->particles);
-        tl_layers_solve(&cloth->layers, contact, &cloth->particles);
+    const struct tl_apart_params apart = apart_params(cloth, contact->friction, contact->h);
+    if (cloth->params.self_contact) {
+        tl_apart_solve(&cloth->apart, &apart, &cloth->particles);
+        if (is_tangled(cloth))
+            tl_layers_solve(&cloth->layers, contact, &cloth->particles);
     }
     tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
+    if (cloth->params.self_contact)
+        tl_apart_truncate(&cloth->apart, &apart, NULL, &cloth->particles);
+}
+
+/* Vertices that open seams join count as one. */
+static void prepare_apart(tl_cloth *cloth)
+{
+    if (cloth->apart.made)
+        return;
+    uint32_t *classes = TL_NEW_ARRAY(uint32_t, cloth->particles.count);
+    for (uint32_t i = 0; i < cloth->particles.count; i++)
+        classes[i] = i;
+    for (size_t i = 0; i < cloth->seams.pair_count; i++)
+        tl_sets_join(classes, cloth->seams.links[i].a, cloth->seams.links[i].b);
+    for (uint32_t i = 0; i < cloth->particles.count; i++)
+        classes[i] = tl_sets_find(classes, i);
+    const struct tl_apart_params params = apart_params(cloth, 0, 1);
+    tl_apart_prepare(&cloth->apart, &params, classes, cloth->particles.x);
+    free(classes);
+}
+
+/* Looks for what the cloth might touch, if what is known is outdated. */
+static void look_around(tl_cloth *cloth, const struct tl_substep *substep)
+{
+    if (!cloth->params.self_contact || !tl_apart_is_due(&cloth->apart, substep->h))
+        return;
+    const struct tl_apart_params params = apart_params(cloth, 0, substep->h);
+    tl_apart_renew(&cloth->apart, &params, &cloth->particles, substep->continues_previous);
 }
 
 /* Projects positions onto the constraints that are not in the elastic energy: seams, the pull, contact. */
@@ -260,6 +310,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
                                            .collider = collider,
                                            .continues_previous = sub > 0 && !blown,
                                            .continues_next = (double)(sub + 1) < substeps && !blown};
+        look_around(cloth, &substep);
         if (blown)
             apply_wind(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
@@ -279,14 +330,6 @@ static void release_caught(tl_cloth *cloth, const tl_collider *collider)
                           &cloth->particles, cloth->contacts.slipped);
 }
 
-static void find_own_contacts(tl_cloth *cloth)
-{
-    const struct tl_particles *particles = &cloth->particles;
-    tl_layers_update(&cloth->layers, &cloth->topology, particles->x);
-    tl_repulsion_update(&cloth->repulsion, particles->count, particles->x, cloth->made_at,
-                        cloth->fabric.thickness_m);
-}
-
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance)
 {
     int steps = tl_cloth_steps_per_frame(&cloth->params);
@@ -298,13 +341,16 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct
                                                   .phase_before = (double)step / steps,
                                                   .phase = (step + 1.0) / steps,
                                                   .h = tl_cloth_step_seconds(cloth)};
+        const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth));
         tl_contacts_update(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                            (double)step / steps);
-        if (cloth->params.self_repulsion)
-            find_own_contacts(cloth);
+        if (is_tangled(cloth))
+            tl_layers_update(&cloth->layers, &cloth->topology, cloth->particles.x);
         run_step(cloth, collider, advance, step);
         release_caught(cloth, collider);
         tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
+        if (cloth->params.self_contact)
+            tl_apart_truncate(&cloth->apart, &apart, cloth->contacts.caught, &cloth->particles);
         tl_particles_damp(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
                           cloth->topology.edge_count, damping);
     }
@@ -356,7 +402,7 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
     bool ground = collider && tl_collider_has_ground(collider);
     for (size_t i = 0; i < cloth->particles.count && collider && !pushed; i++)
         pushed = cloth->contacts.allowed_depth[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
-    return pushed || cloth->grabbed || cloth->seams.pair_count > 0 || cloth->params.self_repulsion ||
+    return pushed || cloth->grabbed || cloth->seams.pair_count > 0 || cloth->params.self_contact ||
            wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
 }
 
@@ -414,12 +460,15 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
         particles->v[i] = tl_rigid_turn(&jump, particles->v[i]);
     }
     tl_contacts_forget(&cloth->contacts);
+    tl_apart_end_window(&cloth->apart);
 }
 
 /* Orders the layers once the panels have met: until then each panel is a piece of its own. */
 static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    if (!cloth->params.self_repulsion || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
+    if (!is_tangled(cloth))
+        tl_layers_release(&cloth->layers);
+    if (!is_tangled(cloth) || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
         return true;
     return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
                             cloth->particles.x, error);
@@ -428,6 +477,8 @@ static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error)
 {
+    if (cloth->params.self_contact)
+        prepare_apart(cloth);
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
         return false;
     uint64_t jump_followed = cloth->jump_followed;
@@ -457,6 +508,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
         memcpy(particles->v, cloth->good_v, bytes);
         cloth->jump_followed = jump_followed;
         tl_layers_forget(&cloth->layers);
+        tl_apart_forget(&cloth->apart);
     }
     return good;
 }

@@ -55,6 +55,7 @@ void tl_cloth_set_constants(tl_cloth *cloth)
         tl_strain_limits_create(&cloth->topology, &cloth->energy, (const vec2s(*)[3])cloth->rest,
                                 cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
     tl_layers_forget(&cloth->layers);
+    tl_apart_forget(&cloth->apart);
     cloth->undriven = false;
 }
 
@@ -109,6 +110,7 @@ void tl_cloth_build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_co
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
     tl_layers_release(&cloth->layers);
+    tl_apart_forget(&cloth->apart);
 }
 
 void tl_cloth_add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand)
@@ -158,7 +160,7 @@ void tl_cloth_release_state(tl_cloth *cloth)
     tl_particles_release(&cloth->particles);
     tl_contacts_release(&cloth->contacts);
     tl_layers_release(&cloth->layers);
-    tl_repulsion_release(&cloth->repulsion);
+    tl_apart_release(&cloth->apart);
     tl_strain_limits_release(&cloth->limits);
     tl_seams_release(&cloth->seams);
     tl_implicit_destroy(&cloth->implicit);

@@ -125,6 +125,7 @@ static void reset_history(tl_cloth *cloth)
     for (size_t i = 0; i < cloth->topology.render_count; i++)
         cloth->contacts.pinched[cloth->topology.weld[i]] |= cloth->start_pinched[i];
     tl_layers_forget(&cloth->layers);
+    tl_apart_forget(&cloth->apart);
 }
 
 /* Stored by render vertex: seams that close later renumber the physics vertices, but not these. */

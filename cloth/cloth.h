@@ -3,8 +3,8 @@
  *
  * Render vertices are welded into physics vertices where their start positions are equal to the bit (and
  * along seams, once these are closed), so that UV seams do not tear. Results do not depend on the number of
- * threads. Positions are in metres, in world axes. Cloth collides with itself only if params->self_repulsion
- * is set.
+ * threads. Positions are in metres, in world axes. With params->self_contact
+ * the cloth does not pass through itself: no two of its triangles cross.
  *
  * Lifetime: a tl_cloth borrows its garment, which must outlive it; it copies everything else that it is
  * given. Threads: calls for one cloth must not overlap; different cloths are independent. Errors: functions
@@ -42,29 +42,29 @@ struct tl_cloth_params {
     double strain_limit;    /* preview: largest strain of an edge; 0: only the energy resists */
     double pin_above_m;     /* vertices that start higher are pinned to the avatar's nearest point; 0: none */
     int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
-    bool
-        self_repulsion; /* garment layers and folds repel each other: contact/layers.h, contact/repulsion.h */
-    double gravity;     /* m/s^2, along -Y */
-    float wind[3];      /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
-    double gust;        /* 0 to 1: amplitude of the wind's speed, relative to it */
-    double settle_s;    /* longest simulated time of settling before the first frame */
-    double settle_speed;  /* m/s: the cloth is settled when no vertex moves faster over a frame */
-    float edge_m;         /* target edge length of built-in garments */
-    float longest_edge_m; /* longer edges of garments from files are halved; 0: never */
+    bool self_contact;      /* the cloth does not pass through itself: cloth/contact/keep_apart.h */
+    double gravity;         /* m/s^2, along -Y */
+    float wind[3];          /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
+    double gust;            /* 0 to 1: amplitude of the wind's speed, relative to it */
+    double settle_s;        /* longest simulated time of settling before the first frame */
+    double settle_speed;    /* m/s: the cloth is settled when no vertex moves faster over a frame */
+    float edge_m;           /* target edge length of built-in garments */
+    float longest_edge_m;   /* longer edges of garments from files are halved; 0: never */
 };
 extern const struct tl_option_table tl_cloth_options;
 
 /* Measurements of the state, for tests, `toile plan` and the panel. */
 struct tl_cloth_report {
     size_t vertex_count, edge_count, triangle_count; /* physics mesh */
-    size_t piece_count; /* connected components; without self_repulsion they pass through one another */
-    size_t layer_count; /* found by self_repulsion; 0: not found yet, or off */
-    size_t open_seams;  /* seam pairs that are not welded yet */
-    double time_s;      /* simulated since creation or reset, without settling */
-    double max_speed;   /* m/s */
-    double max_strain;  /* largest |length - rest length| / rest length over the triangles' sides. The divisor
-                           is at least a quarter of the usual edge length: see cloth/measure.c */
-    double rms_strain;  /* root mean square of the same */
+    size_t piece_count;    /* connected components; without self_contact they pass through one another */
+    size_t crossing_count; /* pairs of triangles that cross, as drawn: cloth/contact/crossings.h */
+    size_t layer_count;    /* ordered while self_contact untangles what came crossed; 0: not, or off */
+    size_t open_seams;     /* seam pairs that are not welded yet */
+    double time_s;         /* simulated since creation or reset, without settling */
+    double max_speed;      /* m/s */
+    double max_strain; /* largest |length - rest length| / rest length over the triangles' sides. The divisor
+                          is at least a quarter of the usual edge length: see cloth/measure.c */
+    double rms_strain; /* root mean square of the same */
     double kinetic_energy;   /* J */
     double elastic_energy;   /* J */
     double potential_energy; /* J, of free particles in gravity; 0 at y = 0 */

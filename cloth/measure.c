@@ -1,5 +1,6 @@
 #include "cloth/measure.h"
 
+#include "cloth/contact/crossings.h"
 #include "cloth/timestep.h"
 #include "config/memory.h"
 
@@ -106,6 +107,8 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
                                      .edge_count = cloth->topology.edge_count,
                                      .triangle_count = cloth->topology.triangle_count,
+                                     .crossing_count =
+                                         tl_crossings_count(&cloth->topology, cloth->particles.x),
                                      .layer_count = cloth->layers.layer_count,
                                      .open_seams = cloth->seams.pair_count,
                                      .time_s = cloth->time_s,

@@ -36,8 +36,10 @@ static const struct tl_option cloth_rows[] = {
                      "pins the vertices that start higher than this, for example a waistband; 0: none"),
     TL_OPTION_ENUM(struct tl_cloth_params, pin_colour, AFFECTS, tl_pin_colour_names,
                    "pins the vertices that have this vertex colour in the garment's file"),
-    TL_OPTION_BOOL(struct tl_cloth_params, self_repulsion, AFFECTS,
-                   "layers (a shirt over trousers) and folds repel each other: takes up to twice as long"),
+    TL_OPTION_BOOL(
+        struct tl_cloth_params, self_contact, AFFECTS,
+        "the cloth does not pass through itself: folds and layers (a shirt over trousers) lie on each other; "
+        "false: faster"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gravity, AFFECTS, -100, 100, "m/s^2",
                      "acceleration along -Y; larger: hangs more heavily"),
     TL_OPTION_VECTOR(struct tl_cloth_params, wind, AFFECTS, -100, 100, "m/s",

@@ -12,7 +12,7 @@
 #include "cloth/cloth.h"
 
 /* The bytes of a cloth whose start was just marked; free(*data). False when its state cannot be saved,
- * because self_repulsion has sorted it into layers, whose surfaces remember where they were when they were
+ * because self_contact has sorted it into layers, whose surfaces remember where they were when they were
  * made. */
 bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size);
 

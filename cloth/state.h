@@ -4,8 +4,8 @@
 
 #include "cloth/cloth.h"
 #include "cloth/contact/contact.h"
+#include "cloth/contact/keep_apart.h"
 #include "cloth/contact/layers.h"
-#include "cloth/contact/repulsion.h"
 #include "cloth/drive/pins.h"
 #include "cloth/drive/seams.h"
 #include "cloth/solvers/implicit/implicit.h"
@@ -31,8 +31,8 @@ struct tl_cloth {
     struct tl_implicit_tally tally;
     struct tl_strain_limits limits; /* preview */
     struct tl_contacts contacts;
-    struct tl_layers layers;       /* with params.self_repulsion */
-    struct tl_repulsion repulsion; /* the same */
+    struct tl_layers layers; /* with params.self_contact */
+    struct tl_apart apart;   /* the same */
     struct tl_seams seams;
     size_t pin_count;
     struct tl_pin *pins;

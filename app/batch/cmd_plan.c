@@ -95,33 +95,24 @@ static int substeps_per_frame(const struct tl_settings *settings, const struct t
     return (int)lround(1 / (settings->cloth.frame_rate * report->substep_s));
 }
 
-/* Describes whether the cloth may pass through itself, and what it costs to prevent that. */
-static void describe_self_repulsion(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
-                                    char *out, size_t size)
+/* Describes whether the cloth may pass through itself, and whether it does. */
+static void describe_self_contact(const struct tl_settings *settings, const struct tl_cloth_report *cloth,
+                                  char *out, size_t size)
 {
-    const char *price = "up to twice the time for the cloth";
-    if (settings->cloth.self_repulsion)
-        snprintf(out, size, "on: %zu piece%s in %zu layer%s, and folds, keep their distance: %s",
-                 cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->layer_count,
-                 cloth->layer_count == 1 ? "" : "s", price);
-    else if (cloth->piece_count > 1)
-        snprintf(out, size,
-                 "off: the garment's %zu pieces, and folds, pass through one another; "
-                 "cloth.self_repulsion true keeps them apart for %s",
-                 cloth->piece_count, price);
-    else
-        snprintf(out, size, "off: folds pass through one another");
+    snprintf(out, size, "%s, %zu piece%s, %zu pairs of triangles cross",
+             settings->cloth.self_contact ? "cannot pass through itself" : "passes through itself",
+             cloth->piece_count, cloth->piece_count == 1 ? "" : "s", cloth->crossing_count);
 }
 
 static void print_cloth(const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
-    char self_repulsion[256];
-    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    char self_contact[256];
+    describe_self_contact(settings, report, self_contact, sizeof self_contact);
     printf("cloth: %zu vertices, critical step %.3g ms, %s %d substeps of %.3g ms a frame\n"
            "cloth against itself: %s\n",
            report->vertex_count, 1000 * report->critical_step_s,
            tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
-           1000 * report->substep_s, self_repulsion);
+           1000 * report->substep_s, self_contact);
     if (report->caught_count + report->unconverged_steps + report->shortened_steps > 0)
         printf("cloth: %zu vertices caught between parts of the avatar, %zu steps cut short before "
                "they "
@@ -131,8 +122,8 @@ static void print_cloth(const struct tl_settings *settings, const struct tl_clot
 
 static void add_cloth(cJSON *object, const struct tl_settings *settings, const struct tl_cloth_report *report)
 {
-    char self_repulsion[256];
-    describe_self_repulsion(settings, report, self_repulsion, sizeof self_repulsion);
+    char self_contact[256];
+    describe_self_contact(settings, report, self_contact, sizeof self_contact);
     cJSON *cloth = cJSON_AddObjectToObject(object, "cloth");
     cJSON_AddNumberToObject(cloth, "vertices", (double)report->vertex_count);
     cJSON_AddItemToObject(cloth, "critical_step_s",
@@ -141,7 +132,8 @@ static void add_cloth(cJSON *object, const struct tl_settings *settings, const s
     cJSON_AddStringToObject(cloth, "solver", tl_cloth_solver_names[settings->cloth.solver]);
     cJSON_AddNumberToObject(cloth, "substeps", substeps_per_frame(settings, report));
     cJSON_AddNumberToObject(cloth, "substep_s", report->substep_s);
-    cJSON_AddStringToObject(cloth, "self_repulsion", self_repulsion);
+    cJSON_AddStringToObject(cloth, "self_contact", self_contact);
+    cJSON_AddNumberToObject(cloth, "crossings", (double)report->crossing_count);
     cJSON_AddNumberToObject(cloth, "caught", (double)report->caught_count);
     cJSON_AddNumberToObject(cloth, "unconverged_steps", (double)report->unconverged_steps);
     cJSON_AddNumberToObject(cloth, "shortened_steps", (double)report->shortened_steps);

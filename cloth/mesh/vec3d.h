@@ -10,6 +10,16 @@ typedef struct vec3d {
     double x, y, z;
 } vec3d;
 
+/* fmin and fmax follow rules for NaN that make them calls; these are one instruction. */
+static inline double tl_min(double a, double b)
+{
+    return a < b ? a : b;
+}
+static inline double tl_max(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static inline vec3d vec3d_from(vec3s v)
 {
     return (vec3d){(double)v.x, (double)v.y, (double)v.z};

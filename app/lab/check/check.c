@@ -91,6 +91,9 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.inside", "no particle is below the avatar's skin or the ground: largest depth, metres", 1e-3,
      "a third of the contact distance; the skin of a moving body is followed in steps", false,
      tl_measure_inside},
+    {"cloth.crossing", "the cloth does not pass through itself: pairs of triangles that cross", 0,
+     "planes separate what is near, and nothing else can reach (cloth/contact/keep_apart.h)", false,
+     tl_measure_crossing},
     {"cloth.energy",
      "kinetic and potential energy do not exceed the minimum of the total energy since something last drove "
      "the garment: gain, as the height in metres that it would lift the garment by",

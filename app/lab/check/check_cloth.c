@@ -85,6 +85,17 @@ void tl_measure_inside(const struct tl_checked *checked, struct tl_finding *find
                      report->vertex_count);
 }
 
+/* Cloth without contact with itself may cross. */
+void tl_measure_crossing(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const struct tl_checked_cloth *cloth = checked->cloth;
+    if (!cloth || !cloth->cannot_cross)
+        return;
+    tl_finding_add(finding, (double)cloth->report.crossing_count);
+    tl_finding_place(finding, "garment: of %zu triangles in %zu pieces", cloth->report.triangle_count,
+                     cloth->report.piece_count);
+}
+
 /* Kinetic and potential energy may rise to the minimum of the total energy, because elastic energy may turn
  * into them. The elastic energy of this frame is left out of the sum: `preview` does not balance its
  * constraints, so that gravity and swing strain the cloth without losing energy of their own. */

@@ -28,7 +28,7 @@ tl_measure tl_measure_oracle;
 tl_measure tl_measure_furnace, tl_measure_furnace_shadowed;
 
 /* check_cloth.c */
-tl_measure tl_measure_strain, tl_measure_stretch, tl_measure_inside, tl_measure_energy, tl_measure_momentum,
-    tl_measure_speed;
+tl_measure tl_measure_strain, tl_measure_stretch, tl_measure_inside, tl_measure_crossing, tl_measure_energy,
+    tl_measure_momentum, tl_measure_speed;
 
 #endif

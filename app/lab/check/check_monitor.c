@@ -123,6 +123,7 @@ struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch,
                                      .least_energy_j = watch->least_energy_j,
                                      .is_held = is_held,
                                      .is_hurried = is_changed,
+                                     .cannot_cross = params->self_contact,
                                      .is_dragged = tl_session_plays_clip(watch->session)};
     cloth.is_driven = is_held || is_changed || blows > 0 || cloth.is_dragged;
     const struct tl_cloth_report *report = &cloth.report;

@@ -23,6 +23,7 @@ struct tl_checked_cloth {
     bool is_held;         /* by the hand */
     bool is_dragged;      /* by its moving wearer */
     bool is_hurried;      /* a budget may reduce its substeps */
+    bool cannot_cross;    /* contact with itself is on */
     /* Horizontal displacement of the centre of mass since frame 0; NaN unless the cloth is free of contact
      * and drive. */
     double drift_m;

@@ -116,7 +116,7 @@ static void preview_goes_on_as_it_would(void **state)
     (void)state;
     SAME_PLAY("cloth.settle_s=2");
     SAME_PLAY("cloth.settle_s=0.3", "cloth.wind=[2, 0, 1]", "cloth.gust=0.5");
-    SAME_PLAY("cloth.settle_s=0.3", "cloth.self_repulsion=true");
+    SAME_PLAY("cloth.settle_s=0.3", "cloth.self_contact=true");
 }
 
 static void settle_goes_on_as_it_would(void **state)
@@ -187,19 +187,11 @@ static void other_options_make_other_drapes(void **state)
     }
 }
 
-/* Layers remember where their surfaces were: their drapes are made again. */
-static void layers_are_not_kept(void **state)
+/* Nothing is remembered of contact of the layers with each other. */
+static void layers_go_on_as_they_would(void **state)
 {
     (void)state;
-    static const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.05",
-                                              "scene.garment=layers", "cloth.self_repulsion=true"};
-    struct tl_settings settings = settings_of(assignments, TL_COUNT(assignments));
-    tl_cache_use(folder, LIMIT_BYTES);
-    tl_session *session = open(&settings);
-    size_t pieces = tl_session_report(session).piece_count;
-    tl_session_destroy(&session);
-    assert_true(pieces > 1); /* or it would have no layers */
-    assert_int_equal(kept_count(), 0);
+    SAME_PLAY("cloth.settle_s=0.3", "scene.garment=layers", "cloth.self_contact=true");
 }
 
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
@@ -210,7 +202,7 @@ int main(void)
         IN_FOLDER(preview_goes_on_as_it_would),     IN_FOLDER(settle_goes_on_as_it_would),
         IN_FOLDER(reference_goes_on_as_it_would),   IN_FOLDER(pins_go_on_as_they_would),
         IN_FOLDER(open_seams_go_on_as_they_would),  IN_FOLDER(clips_go_on_as_they_would),
-        IN_FOLDER(other_options_make_other_drapes), IN_FOLDER(layers_are_not_kept),
+        IN_FOLDER(other_options_make_other_drapes), IN_FOLDER(layers_go_on_as_they_would),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,383 @@
+/* Windows of keep_apart.h: the balls, planes and contacts that hold until the next one. */
+#include "cloth/contact/keep_apart.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Radius of a ball: at rest; times what the vertex moves within WINDOW_SUBSTEPS; at most this share of the
+ * mesh's own size there, so that triangles around a vertex need no planes. */
+#define RADIUS_M        0.0005
+#define RADIUS_LEAD     1.3
+#define WINDOW_SUBSTEPS 4
+#define RADIUS_SHARE    0.115
+/* Balls for longer ways: times the way, and at most this share of the mesh's size. Farther in one substep,
+ * besides the common motion, the cloth would have to be searched as a whole. */
+#define WIDE         1.02
+#define WIDEST_SHARE 2.0
+/* A list reaches as far as this many windows. */
+#define LIST_WINDOWS 5
+/* A list is renewed when it leaves a vertex less than this share of the radius that it wants. */
+#define WANTED_SHARE 0.7
+/* Common motion is renewed before it turns or stretches by more than this. */
+#define COMMON_MOST 0.2
+/* Of lists: more stretch of the common motion since then asks for a new one. */
+#define LIST_STRETCH 1.1
+
+/* Distance that a plane keeps on either side. Without it each window under pressure would halve the gap, down
+ * to the rounding of drawn positions; features that are nearer come no nearer. */
+#define FLOOR_M 2e-5
+/* Share of the distance that is safe without a plane: a ball of it about each vertex. */
+#define UNPLANED_SHARE 0.45
+/* Features that are nearer have no direction from one to the other: they may come apart, or cross and be
+ * found. */
+#define TOUCHING_M 1e-9
+/* Bounds of the distance that contact keeps, besides the thickness: of the mesh's own size there, and of the
+ * distance as made. */
+#define KEPT_SHARE 0.25
+#define KEPT_MADE  0.9
+
+/* ---- Balls ---- */
+
+static void choose_radii(struct tl_apart *apart, const vec3d *x, double h)
+{
+    size_t count = apart->near.topology->vertex_count;
+#pragma omp parallel for if (count >= TL_PARALLEL_VERTICES)
+    for (size_t i = 0; i < count; i++) {
+        double speed = vec3d_norm(vec3d_sub(apart->speed[i], tl_affine_at(&apart->velocity, x[i])));
+        double wanted = RADIUS_M + RADIUS_LEAD * speed * WINDOW_SUBSTEPS * h;
+        apart->radius[i] = tl_min(wanted, RADIUS_SHARE * apart->size[i]);
+    }
+}
+
+/* Balls about `from` that hold the places `to`, to which the vertices want to go in one substep. */
+static void widen_radii(struct tl_apart *apart, const vec3d *from, const vec3d *to)
+{
+    size_t count = apart->near.topology->vertex_count;
+#pragma omp parallel for if (count >= TL_PARALLEL_VERTICES)
+    for (size_t i = 0; i < count; i++) {
+        double wanted = WIDE * vec3d_distance(tl_affine_undo(&apart->back, to[i]), from[i]);
+        apart->radius[i] = tl_max(apart->radius[i], tl_min(wanted, WIDEST_SHARE * apart->size[i]));
+    }
+}
+
+static void make_list(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x)
+{
+    struct tl_near *near = &apart->near;
+    size_t count = near->topology->vertex_count;
+    for (size_t i = 0; i < count; i++)
+        near->reach[i] = LIST_WINDOWS * apart->radius[i];
+    near->margin = LIST_STRETCH * params->thickness_m;
+    tl_near_list(near, x);
+    memset(apart->off, 0, count * sizeof *apart->off);
+    apart->lists++;
+}
+
+static struct tl_affine common_motion(const vec3d *from, const vec3d *to, size_t count)
+{
+    vec3d *displacements = TL_NEW_ARRAY(vec3d, count);
+    for (size_t i = 0; i < count; i++)
+        displacements[i] = vec3d_sub(to[i], from[i]);
+    struct tl_affine moved = tl_affine_fit(from, displacements, count);
+    free(displacements);
+    return moved;
+}
+
+/* Takes the common motion since the list out of the particles' displacements. Returns the factor by which its
+ * inverse stretches at most, or 0 if the list is of no use any more. */
+static double measure_list(struct tl_apart *apart, const vec3d *x)
+{
+    struct tl_near *near = &apart->near;
+    struct tl_affine_inverse back;
+    size_t count = near->topology->vertex_count;
+    if (!near->listed)
+        return 0;
+    const struct tl_affine moved = common_motion(near->base, x, count);
+    if (!tl_affine_invert(&moved, &back) || back.norm > LIST_STRETCH)
+        return 0;
+    bool good = true;
+#pragma omp parallel for reduction(&& : good) if (count >= TL_PARALLEL_VERTICES)
+    for (size_t i = 0; i < count; i++) {
+        apart->off[i] = vec3d_distance(tl_affine_undo(&back, x[i]), near->base[i]);
+        good = good && near->reach[i] - apart->off[i] >= WANTED_SHARE * back.norm * apart->radius[i];
+    }
+    return good ? back.norm : 0;
+}
+
+/* ---- Pairs ---- */
+
+/* What one thread finds in its part of the list. */
+struct found {
+    bool touching;
+    struct tl_apart_contacts contacts;
+    size_t plane_count, plane_capacity;
+    struct found_plane {
+        uint32_t vertex;
+        struct tl_apart_plane plane;
+    } * planes;
+    size_t tight_count, tight_capacity;
+    struct tight_pair {
+        uint32_t v[4];
+        double radius;
+    } * tight; /* no plane separates them safely */
+};
+
+static void add_plane(struct found *found, uint32_t vertex, vec3d normal, double room, double radius)
+{
+    if (room >= radius)
+        return;
+    if (found->plane_count == found->plane_capacity) {
+        found->plane_capacity = 2 * found->plane_capacity + 256;
+        found->planes = tl_resize(found->planes, found->plane_capacity, sizeof *found->planes);
+    }
+    found->planes[found->plane_count++] = (struct found_plane){vertex, {normal, tl_max(room, 0)}};
+}
+
+static void add_tight(struct found *found, const struct tl_near_pair *pair, double distance)
+{
+    if (found->tight_count == found->tight_capacity) {
+        found->tight_capacity = 2 * found->tight_capacity + 64;
+        found->tight = tl_resize(found->tight, found->tight_capacity, sizeof *found->tight);
+    }
+    struct tight_pair tight = {.radius = UNPLANED_SHARE * distance};
+    memcpy(tight.v, pair->v, sizeof tight.v);
+    found->tight[found->tight_count++] = tight;
+}
+
+/* Puts the plane half way between the features, as the vertices themselves show it: so it separates them even
+ * where the nearest points are rounded. */
+static void add_planes(const struct tl_apart *apart, const struct tl_near_pair *pair, const vec3d *x,
+                       vec3d normal, double distance, struct found *found)
+{
+    int second = tl_near_second(pair);
+    double heights[4], below = -HUGE_VAL, above = HUGE_VAL;
+    for (int i = 0; i < 4; i++) {
+        heights[i] = vec3d_dot(normal, vec3d_sub(x[pair->v[i]], x[pair->v[0]]));
+        if (i < second)
+            below = tl_max(below, heights[i]);
+        else
+            above = tl_min(above, heights[i]);
+    }
+    if (!(above - below > UNPLANED_SHARE * distance)) {
+        add_tight(found, pair, distance);
+        return;
+    }
+    double middle = (below + above) / 2;
+    for (int i = 0; i < 4; i++) {
+        bool first = i < second;
+        double room = (first ? middle - heights[i] : heights[i] - middle) - FLOOR_M;
+        add_plane(found, pair->v[i], first ? normal : vec3d_scale(normal, -1), room,
+                  apart->radius[pair->v[i]]);
+    }
+}
+
+static void add_contact(struct tl_apart_contacts *list, const struct tl_apart_contact *contact)
+{
+    if (list->count == list->capacity) {
+        list->capacity = 2 * list->capacity + 64;
+        list->contacts = tl_resize(list->contacts, list->capacity, sizeof *list->contacts);
+    }
+    list->contacts[list->count++] = *contact;
+}
+
+/* Computed once a pair and list. */
+static double kept_between(const struct tl_apart *apart, const struct tl_apart_params *params,
+                           struct tl_near_pair *pair)
+{
+    double kept = params->thickness_m, weights[4];
+    if (pair->kept >= 0)
+        return (double)pair->kept;
+    for (int i = 0; i < 4; i++)
+        kept = tl_min(kept, KEPT_SHARE * apart->size[pair->v[i]]);
+    double made = vec3d_norm(tl_near_closest(pair, params->made_at, weights));
+    pair->kept = (float)tl_min(kept, KEPT_MADE * made);
+    return (double)pair->kept;
+}
+
+static double most_of(const double *numbers, const struct tl_near_pair *pair, int from, int to)
+{
+    double most = numbers[pair->v[from]];
+    for (int i = from + 1; i < to; i++)
+        most = tl_max(most, numbers[pair->v[i]]);
+    return most;
+}
+
+static void look_at(const struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
+                    struct tl_near_pair *pair, struct found *found)
+{
+    struct tl_apart_contact contact;
+    int second = tl_near_second(pair);
+    if (!apart->clean && tl_untangle_is_free(&apart->untangle, pair))
+        return;
+    vec3d between = tl_near_closest(pair, x, contact.weights);
+    double distance = vec3d_norm(between);
+    if (distance < TOUCHING_M) {
+        found->touching = true;
+        return;
+    }
+    double reach = most_of(apart->radius, pair, 0, second) + most_of(apart->radius, pair, second, 4);
+    if (distance > reach + params->thickness_m)
+        return;
+    vec3d normal = vec3d_unit_or(between, (vec3d){0});
+    if (distance <= reach + 2 * FLOOR_M)
+        add_planes(apart, pair, x, normal, distance, found);
+    memcpy(contact.v, pair->v, sizeof contact.v);
+    for (int i = 0; i < second; i++)
+        contact.weights[i] = -contact.weights[i];
+    contact.normal = normal;
+    contact.kept = kept_between(apart, params, pair);
+    if (distance < reach + contact.kept)
+        add_contact(&found->contacts, &contact);
+}
+
+/* `reach` [vertex] is what each vertex may have moved since the list, may move within the window, and half
+ * the thickness. */
+static void look_at_range(const struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
+                          const double *reach, struct tl_range range, struct found *found)
+{
+    for (size_t k = range.from; k < range.to; k++) {
+        struct tl_near_pair *pair = &apart->near.pairs[k];
+        int second = tl_near_second(pair);
+        if ((double)pair->distance <= most_of(reach, pair, 0, second) + most_of(reach, pair, second, 4))
+            look_at(apart, params, x, pair, found);
+    }
+}
+
+/* ---- Gathering ---- */
+
+/* Bounds balls where no plane separates, and sorts the planes by vertex, in the order of the list. */
+static void gather_planes(struct tl_apart *apart, const struct found *parts, size_t part_count)
+{
+    size_t count = apart->near.topology->vertex_count, total = 0;
+    uint32_t *first = apart->plane_first;
+    memset(first, 0, (count + 1) * sizeof *first);
+    for (size_t part = 0; part < part_count; part++) {
+        total += parts[part].plane_count;
+        for (size_t k = 0; k < parts[part].plane_count; k++)
+            first[parts[part].planes[k].vertex + 1]++;
+        for (size_t k = 0; k < parts[part].tight_count; k++)
+            for (int i = 0; i < 4; i++) {
+                double *radius = &apart->radius[parts[part].tight[k].v[i]];
+                *radius = tl_min(*radius, parts[part].tight[k].radius);
+            }
+    }
+    for (size_t i = 0; i < count; i++)
+        first[i + 1] += first[i];
+    if (total > apart->plane_capacity) {
+        apart->plane_capacity = 2 * total;
+        apart->planes = tl_resize(apart->planes, apart->plane_capacity, sizeof *apart->planes);
+    }
+    for (size_t part = part_count; part-- > 0;) /* backwards, so that first[] ends where it began */
+        for (size_t k = parts[part].plane_count; k-- > 0;)
+            apart->planes[--first[parts[part].planes[k].vertex + 1]] = parts[part].planes[k].plane;
+    for (size_t i = 0; i < count; i++)
+        first[i] = first[i + 1];
+    first[count] = (uint32_t)total;
+}
+
+static void gather_contacts(struct tl_apart *apart, const struct found *parts, size_t part_count)
+{
+    apart->contacts.count = 0;
+    for (size_t part = 0; part < part_count; part++)
+        for (size_t k = 0; k < parts[part].contacts.count; k++)
+            add_contact(&apart->contacts, &parts[part].contacts.contacts[k]);
+}
+
+static void find_planes(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
+                        double stretch)
+{
+    size_t count = apart->near.topology->vertex_count;
+    size_t part_count = count >= TL_NEAR_PARALLEL_VERTICES ? (size_t)omp_get_max_threads() : 1;
+    struct found *parts = TL_NEW_ARRAY(struct found, part_count);
+    double *reach = TL_NEW_ARRAY(double, count);
+    for (size_t i = 0; i < count; i++)
+        reach[i] = apart->off[i] + stretch * (apart->radius[i] + params->thickness_m / 2);
+#pragma omp parallel num_threads((int)part_count) if (part_count > 1)
+    {
+        struct tl_range range = tl_thread_range(apart->near.pair_count, 1);
+        look_at_range(apart, params, x, reach, range, &parts[omp_get_thread_num()]);
+    }
+    gather_planes(apart, parts, part_count);
+    gather_contacts(apart, parts, part_count);
+    for (size_t part = 0; part < part_count; part++) {
+        apart->clean = apart->clean && !parts[part].touching;
+        free(parts[part].contacts.contacts);
+        free(parts[part].planes);
+        free(parts[part].tight);
+    }
+    free(parts);
+    free(reach);
+}
+
+/* ---- The window ---- */
+
+void tl_apart_set_time(struct tl_apart *apart, double time_s)
+{
+    apart->time_s = time_s;
+    apart->moved = tl_affine_scaled(&apart->velocity, time_s);
+    if (!tl_affine_invert(&apart->moved, &apart->back))
+        apart->current = false;
+}
+
+static void choose_common_motion(struct tl_apart *apart, const vec3d *x, double h)
+{
+    apart->velocity = tl_affine_fit(x, apart->speed, apart->near.topology->vertex_count);
+    if (tl_affine_gradient_norm(&apart->velocity) * 2 * h > COMMON_MOST)
+        memset(apart->velocity.gradient, 0, sizeof apart->velocity.gradient);
+    double norm = tl_affine_gradient_norm(&apart->velocity);
+    apart->longest_s = norm > 0 ? COMMON_MOST / norm : HUGE_VAL;
+}
+
+/* Makes the window at positions `x` for the speeds that are known; its balls hold `to`, if that is not NULL.
+ */
+static void make_window(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
+                        const vec3d *to)
+{
+    struct tl_near *near = &apart->near;
+    size_t count = near->topology->vertex_count;
+    if (!apart->clean) {
+        tl_untangle_search(&apart->untangle, near, x);
+        apart->clean = apart->untangle.pair_count == 0;
+        apart->was_clean = apart->was_clean || apart->clean;
+    }
+    choose_common_motion(apart, x, params->h);
+    choose_radii(apart, x, params->h);
+    tl_apart_set_time(apart, to ? params->h : 0);
+    if (to)
+        widen_radii(apart, x, to);
+    double stretch = measure_list(apart, x);
+    if (!(stretch > 0)) {
+        make_list(apart, params, x);
+        stretch = 1;
+    }
+    memcpy(apart->base, x, count * sizeof *x);
+    for (size_t i = 0; i < count; i++)
+        apart->radius[i] = tl_min(apart->radius[i], (near->reach[i] - apart->off[i]) / stretch);
+    find_planes(apart, params, x, stretch);
+    apart->current = true;
+    apart->rim = apart->stopped = false;
+    apart->substeps = to ? 1 : 0;
+    apart->windows++;
+}
+
+void tl_apart_renew(struct tl_apart *apart, const struct tl_apart_params *params,
+                    const struct tl_particles *particles, bool velocity_from_positions)
+{
+    size_t count = apart->near.topology->vertex_count;
+    const vec3d *x = particles->x, *before = particles->previous;
+    for (size_t i = 0; i < count; i++)
+        apart->speed[i] = velocity_from_positions ? vec3d_scale(vec3d_sub(x[i], before[i]), 1 / params->h)
+                                                  : particles->v[i];
+    make_window(apart, params, x, NULL);
+}
+
+void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params,
+                    const struct tl_particles *particles)
+{
+    size_t count = apart->near.topology->vertex_count;
+    const vec3d *x = particles->x, *before = particles->previous;
+    for (size_t i = 0; i < count; i++)
+        apart->speed[i] = vec3d_scale(vec3d_sub(x[i], before[i]), 1 / params->h);
+    make_window(apart, params, before, x);
+}

@@ -1,0 +1,88 @@
+#include "cloth/contact/crossings.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+
+/* Six times the volume of a tetrahedron; positive where d lies on the side of a b c that its normal points
+ * to. */
+static double volume(vec3d a, vec3d b, vec3d c, vec3d d)
+{
+    return vec3d_dot(vec3d_cross(vec3d_sub(b, a), vec3d_sub(c, a)), vec3d_sub(d, a));
+}
+
+static int sign(double number)
+{
+    return (number > 0) - (number < 0);
+}
+
+bool tl_segment_crosses(vec3d p, vec3d q, vec3d a, vec3d b, vec3d c)
+{
+    if (sign(volume(a, b, c, p)) * sign(volume(a, b, c, q)) >= 0)
+        return false;
+    int side = sign(volume(p, q, a, b));
+    return side != 0 && side == sign(volume(p, q, b, c)) && side == sign(volume(p, q, c, a));
+}
+
+static bool has_corner(const uint32_t triangle[3], uint32_t vertex)
+{
+    return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+static bool a_side_crosses(const uint32_t sides[3], const uint32_t triangle[3], const vec3d *x)
+{
+    for (int i = 0; i < 3; i++) {
+        uint32_t p = sides[i], q = sides[(i + 1) % 3];
+        if (!has_corner(triangle, p) && !has_corner(triangle, q) &&
+            tl_segment_crosses(x[p], x[q], x[triangle[0]], x[triangle[1]], x[triangle[2]]))
+            return true;
+    }
+    return false;
+}
+
+bool tl_triangles_cross(const uint32_t a[3], const uint32_t b[3], const vec3d *x)
+{
+    return a_side_crosses(a, b, x) || a_side_crosses(b, a, x);
+}
+
+void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x,
+                       struct tl_near_pairs *out)
+{
+    tl_near_tree_refit(tree, topology, x, NULL, NULL);
+    struct tl_near_pairs *found = TL_NEW_ARRAY(struct tl_near_pairs, tree->task_count);
+#pragma omp parallel for schedule(dynamic) if (topology->vertex_count >= TL_NEAR_PARALLEL_VERTICES)
+    for (size_t task = 0; task < tree->task_count; task++) {
+        struct tl_near_pairs *pairs = &found[task];
+        tl_near_tree_pairs(tree, task, pairs);
+        size_t kept = 0;
+        for (size_t i = 0; i < pairs->count; i++) {
+            const uint32_t a = pairs->pairs[i][0], b = pairs->pairs[i][1];
+            if (!tl_triangles_cross(topology->triangles[a], topology->triangles[b], x))
+                continue;
+            pairs->pairs[kept][0] = a;
+            pairs->pairs[kept++][1] = b;
+        }
+        pairs->count = kept;
+    }
+    out->count = 0;
+    for (size_t task = 0; task < tree->task_count; task++) {
+        tl_near_pairs_append(out, &found[task]);
+        tl_near_pairs_release(&found[task]);
+    }
+    free(found);
+}
+
+size_t tl_crossings_count(const struct tl_topology *topology, const vec3d *x)
+{
+    vec3d *drawn = TL_NEW_ARRAY(vec3d, topology->vertex_count);
+    for (size_t i = 0; i < topology->vertex_count; i++)
+        drawn[i] = vec3d_from(vec3d_to_float(x[i]));
+    struct tl_near_tree tree = tl_near_tree_create(topology, drawn);
+    struct tl_near_pairs pairs = {0};
+    tl_crossings_find(&tree, topology, drawn, &pairs);
+    size_t count = pairs.count;
+    tl_near_pairs_release(&pairs);
+    tl_near_tree_release(&tree);
+    free(drawn);
+    return count;
+}

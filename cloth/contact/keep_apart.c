@@ -1,0 +1,231 @@
+#include "cloth/contact/keep_apart.h"
+
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A vertex beyond this share of its ball's radius asks for a window, but not within RIM_SUBSTEPS of the last;
+ * one that a plane has stopped asks too, but not within STOPPED_SUBSTEPS: the next plane may leave more room.
+ */
+#define RIM_SHARE        0.8
+#define RIM_SUBSTEPS     2
+#define STOPPED_SUBSTEPS 5
+/* Farther past a plane, m, a vertex is not moved back before a new window has made sure that it must be:
+ * planes stand still, and two features that move on together would be stopped by the plane between them. */
+#define CUT_M 2e-5
+/* m/s, at which depth from before a substep is removed. */
+#define PUSH_SPEED 0.3
+/* Projections on all planes of a vertex, one after the other, before it is moved back along its way. */
+#define ROUNDS 3
+
+void tl_apart_release(struct tl_apart *apart)
+{
+    tl_near_release(&apart->near);
+    tl_untangle_release(&apart->untangle);
+    free(apart->size);
+    free(apart->speed);
+    free(apart->base);
+    free(apart->radius);
+    free(apart->off);
+    free(apart->plane_first);
+    free(apart->planes);
+    free(apart->contacts.contacts);
+    *apart = (struct tl_apart){0};
+}
+
+void tl_apart_forget(struct tl_apart *apart)
+{
+    tl_apart_release(apart);
+}
+
+void tl_apart_end_window(struct tl_apart *apart)
+{
+    apart->current = false;
+}
+
+/* Mean side at rest of the triangles around each vertex, m. */
+static void measure_sizes(const struct tl_topology *topology, const vec2s (*rest)[3], double *sizes)
+{
+    double *sides = TL_NEW_ARRAY(double, topology->vertex_count);
+    for (size_t t = 0; t < topology->triangle_count; t++)
+        for (int i = 0; i < 3; i++) {
+            double length = (double)glms_vec2_distance(rest[t][i], rest[t][(i + 1) % 3]);
+            for (int end = 0; end < 2; end++) {
+                uint32_t v = topology->triangles[t][(i + end) % 3];
+                sizes[v] += length;
+                sides[v]++;
+            }
+        }
+    for (size_t i = 0; i < topology->vertex_count; i++)
+        sizes[i] = sides[i] > 0 ? sizes[i] / sides[i] : 0;
+    free(sides);
+}
+
+void tl_apart_prepare(struct tl_apart *apart, const struct tl_apart_params *params, const uint32_t *class_of,
+                      const vec3d *x)
+{
+    if (apart->made)
+        return;
+    size_t count = params->topology->vertex_count;
+    *apart = (struct tl_apart){.near = tl_near_create(params->topology, class_of, x),
+                               .made = true,
+                               .size = TL_NEW_ARRAY(double, count),
+                               .speed = TL_NEW_ARRAY(vec3d, count),
+                               .base = TL_NEW_ARRAY(vec3d, count),
+                               .radius = TL_NEW_ARRAY(double, count),
+                               .off = TL_NEW_ARRAY(double, count),
+                               .plane_first = TL_NEW_ARRAY(uint32_t, count + 1)};
+    measure_sizes(params->topology, params->rest, apart->size);
+    tl_untangle_search(&apart->untangle, &apart->near, x);
+    apart->clean = apart->was_clean = apart->untangle.pair_count == 0;
+}
+
+bool tl_apart_is_due(const struct tl_apart *apart, double h)
+{
+    return !apart->current || (apart->rim && apart->substeps >= RIM_SUBSTEPS) ||
+           (apart->stopped && apart->substeps >= STOPPED_SUBSTEPS) || apart->time_s + h > apart->longest_s;
+}
+
+/* ---- Contacts ---- */
+
+static vec3d between(const struct tl_apart_contact *contact, const vec3d *x)
+{
+    vec3d sum = {0};
+    for (int i = 0; i < 4; i++)
+        sum = vec3d_muladd(sum, x[contact->v[i]], contact->weights[i]);
+    return sum;
+}
+
+/* Removes the depth of this substep, and of the depth before it what PUSH_SPEED allows. Friction reduces the
+ * slip of this substep by at most `friction` times the depth of this substep, as for the avatar (contact.h).
+ */
+static void solve_contact(const struct tl_apart_contact *contact, const struct tl_apart_params *params,
+                          struct tl_particles *particles)
+{
+    vec3d now = between(contact, particles->x);
+    double depth = contact->kept - vec3d_dot(now, contact->normal);
+    if (!(depth > 0))
+        return;
+    vec3d before = between(contact, particles->previous);
+    double depth_before = tl_max(contact->kept - vec3d_dot(before, contact->normal), 0);
+    double push = depth - tl_max(depth_before - PUSH_SPEED * params->h, 0), inverse = 0;
+    for (int i = 0; i < 4; i++)
+        inverse += particles->w[contact->v[i]] * contact->weights[i] * contact->weights[i];
+    if (!(push > 0) || !(inverse > 0))
+        return;
+    vec3d slip = vec3d_sub(now, before);
+    slip = vec3d_muladd(slip, contact->normal, -vec3d_dot(slip, contact->normal));
+    double length = vec3d_norm(slip), held = params->friction * tl_max(depth - depth_before, 0);
+    vec3d move = vec3d_scale(contact->normal, push);
+    move = vec3d_muladd(move, slip, length > held ? -held / length : -1);
+    move = vec3d_scale(move, 1 / inverse);
+    for (int i = 0; i < 4; i++) {
+        uint32_t v = contact->v[i];
+        particles->x[v] = vec3d_muladd(particles->x[v], move, particles->w[v] * contact->weights[i]);
+    }
+}
+
+void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params,
+                    struct tl_particles *particles)
+{
+    apart->substeps++;
+    tl_apart_set_time(apart, apart->time_s + params->h);
+    if (!apart->clean)
+        tl_untangle_push(&apart->untangle, params->h, particles);
+    for (size_t i = 0; i < apart->contacts.count; i++)
+        solve_contact(&apart->contacts.contacts[i], params, particles);
+}
+
+/* ---- Truncation ---- */
+
+/* The displacement nearest to d that heeds ball and planes, as far as a few projections find it; then so much
+ * of that as heeds all of them. */
+static vec3d bounded(vec3d d, double radius, const struct tl_apart_plane *planes, size_t plane_count,
+                     bool *stopped)
+{
+    double length = vec3d_norm(d);
+    if (length > radius)
+        d = vec3d_scale(d, radius / length);
+    bool outside = false;
+    for (int round = 0; round < ROUNDS; round++) {
+        outside = false;
+        for (size_t k = 0; k < plane_count; k++) {
+            double over = vec3d_dot(d, planes[k].normal) - planes[k].room;
+            if (over > 0) {
+                d = vec3d_muladd(d, planes[k].normal, -over);
+                outside = *stopped = true;
+            }
+        }
+        if (!outside)
+            break;
+    }
+    double share = 1;
+    for (size_t k = 0; k < plane_count && outside; k++) {
+        double along = vec3d_dot(d, planes[k].normal);
+        if (along > planes[k].room)
+            share = tl_min(share, planes[k].room / along);
+    }
+    length = vec3d_norm(d);
+    if (length * share > radius)
+        share = radius / length;
+    return share < 1 ? vec3d_scale(d, share) : d;
+}
+
+struct truncation {
+    bool rim, stopped;
+    bool over; /* a vertex that wants to leave its ball, or far past a plane, was left where it is */
+    bool let_go;
+};
+
+/* `last`: a vertex that wants to leave its ball, or far past a plane, is moved back too. */
+static void truncate_one(const struct tl_apart *apart, size_t i, bool last, vec3d *x, struct truncation *seen)
+{
+    double radius = apart->radius[i];
+    vec3d d = vec3d_sub(tl_affine_undo(&apart->back, *x), apart->base[i]);
+    double squared = vec3d_dot(d, d);
+    uint32_t from = apart->plane_first[i], to = apart->plane_first[i + 1];
+    seen->rim |= squared > RIM_SHARE * RIM_SHARE * radius * radius;
+    bool over = squared > radius * radius;
+    seen->over |= over && !last;
+    if ((over && !last) || (from == to && !over))
+        return;
+    vec3d kept = bounded(d, radius, apart->planes + from, to - from, &seen->stopped);
+    bool cut = vec3d_distance(kept, d) > CUT_M;
+    seen->over |= cut && !last;
+    if (!(cut && !last) && (kept.x != d.x || kept.y != d.y || kept.z != d.z))
+        *x = tl_affine_apply(&apart->moved, vec3d_add(apart->base[i], kept));
+}
+
+static struct truncation truncate_all(const struct tl_apart *apart, const bool *free, bool last, vec3d *x)
+{
+    size_t count = apart->near.topology->vertex_count;
+    bool rim = false, stopped = false, over = false, let_go = false;
+#pragma omp parallel for reduction(|| : rim, stopped, over, let_go) if (count >= TL_PARALLEL_VERTICES)
+    for (size_t i = 0; i < count; i++) {
+        struct truncation seen = {.let_go = free && free[i]};
+        if (!seen.let_go)
+            truncate_one(apart, i, last, &x[i], &seen);
+        rim = rim || seen.rim;
+        stopped = stopped || seen.stopped;
+        over = over || seen.over;
+        let_go = let_go || seen.let_go;
+    }
+    return (struct truncation){rim, stopped, over, let_go};
+}
+
+void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
+                       struct tl_particles *particles)
+{
+    if (!apart->current)
+        return;
+    struct truncation seen = truncate_all(apart, free, false, particles->x);
+    if (seen.over) {
+        tl_apart_widen(apart, params, particles);
+        seen = truncate_all(apart, free, true, particles->x);
+    }
+    apart->clean = apart->clean && !seen.let_go;
+    apart->current = apart->current && !seen.let_go;
+    apart->rim = apart->rim || seen.rim;
+    apart->stopped = apart->stopped || seen.stopped;
+}

@@ -1,0 +1,124 @@
+/* Contact of the cloth with itself: no two of its triangles cross, whatever moves them.
+ *
+ * For each pair of near features (near.h) whose nearest points are a and b, the plane half way between them,
+ * with normal (b - a) / |b - a|, has one feature on each side. While each of the four vertices stays on its
+ * side, the pair cannot touch; pairs that are not near cannot touch while each vertex stays within a ball.
+ * Given planes and balls, every vertex is bounded on its own: it is projected back on its side ("Divide and
+ * Truncate" in NVIDIA's Newton; the balls are those of Chen et al. 2025, "Offset Geometric Contact"). Results
+ * do not depend on an order or on the number of threads.
+ *
+ * A window is the time for which planes and balls hold. It ends when a vertex nears the rim of its ball, so
+ * that cloth at rest searches nothing. Planes and balls move by the affine motion that fits the cloth's
+ * velocities best: affine maps keep sides.
+ *
+ * Truncation is the guarantee and knows neither thickness nor friction; contacts do: a pair that is nearer
+ * than `kept` is pushed apart, by mass, with Coulomb friction.
+ *
+ * Cloth that comes crossed is untangled (untangle.h) before all this holds.
+ *
+ * Each substep calls tl_apart_renew if tl_apart_is_due, tl_apart_solve, and after all other constraints
+ * tl_apart_truncate. Metres, seconds. Errors: none. Lifetime: a plain struct that owns its arrays; it starts
+ * as {0}. The topology must outlive it. Threads: one call at a time. */
+#ifndef TOILE_CLOTH_CONTACT_KEEP_APART_H
+#define TOILE_CLOTH_CONTACT_KEEP_APART_H
+
+#include "cloth/contact/affine.h"
+#include "cloth/contact/near.h"
+#include "cloth/contact/untangle.h"
+#include "cloth/mesh/particles.h"
+
+/* A vertex's displacement d from its base satisfies d.normal <= room. */
+struct tl_apart_plane {
+    vec3d normal;
+    double room;
+};
+
+/* The gap of a pair is normal . sum of weights[i] x[v[i]]; weights of the first feature are negative. */
+struct tl_apart_contact {
+    uint32_t v[4];
+    double weights[4];
+    vec3d normal; /* from the first feature to the second */
+    double kept;  /* m */
+};
+
+struct tl_apart_contacts {
+    size_t count, capacity;
+    struct tl_apart_contact *contacts;
+};
+
+/* What the caller gives each time; borrowed for the call. */
+struct tl_apart_params {
+    const struct tl_topology *topology;
+    const vec2s (*rest)[3]; /* [triangle] */
+    const vec3d *made_at;   /* [vertex] m: pairs that were made nearer than thickness_m keep that distance */
+    double thickness_m;     /* between middle surfaces of two plies */
+    double friction;
+    double h; /* the substep */
+};
+
+struct tl_apart {
+    struct tl_near near;
+    bool made;                 /* near is that of the topology */
+    bool current;              /* there is a window */
+    bool rim, stopped;         /* a vertex has come near its ball's rim; a plane has stopped one */
+    int substeps;              /* of the window so far */
+    double time_s;             /* of the window so far */
+    double longest_s;          /* that the common motion may be continued */
+    struct tl_affine velocity; /* common motion */
+    struct tl_affine moved;    /* the same over time_s */
+    struct tl_affine_inverse back;
+    double *size;          /* [vertex] m, mean side of its triangles at rest */
+    vec3d *speed;          /* [vertex] m/s, at the window's start */
+    vec3d *base;           /* [vertex] m */
+    double *radius;        /* [vertex] m, of the balls */
+    double *off;           /* [vertex] m, from the list's base, common motion taken out */
+    uint32_t *plane_first; /* [vertex + 1] */
+    size_t plane_capacity;
+    struct tl_apart_plane *planes;
+    struct tl_apart_contacts contacts;
+    bool clean;     /* no pair crosses or touches: planes then keep it so, and nothing is searched */
+    bool was_clean; /* at some time since tl_apart_forget */
+    struct tl_untangle untangle;
+    size_t windows, lists; /* made since creation */
+};
+void tl_apart_release(struct tl_apart *apart);
+
+/* Drops what is known of the mesh, its places, or both: for cloth that was sewn, moved or restored. */
+void tl_apart_forget(struct tl_apart *apart);
+
+/* Prepares for the mesh, if that has not been done since tl_apart_forget, and searches crossings. Vertices of
+ * equal `class_of` [vertex] count as one: features that have one in common touch, which they may. `class_of`
+ * is copied. */
+void tl_apart_prepare(struct tl_apart *apart, const struct tl_apart_params *params, const uint32_t *class_of,
+                      const vec3d *x);
+
+/* Whether a window must be made before the next substep of h seconds. */
+bool tl_apart_is_due(const struct tl_apart *apart, double h);
+
+/* Ends the window, for cloth that was moved as a whole. */
+void tl_apart_end_window(struct tl_apart *apart);
+
+/* Makes a window. Velocities are (x - previous) / h if `velocity_from_positions`, else v. */
+void tl_apart_renew(struct tl_apart *apart, const struct tl_apart_params *params,
+                    const struct tl_particles *particles, bool velocity_from_positions);
+
+/* Pushes pairs apart that are too near, at a substep's predicted positions. */
+void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params,
+                    struct tl_particles *particles);
+
+/* Makes a window in the middle of a substep, at the positions before it, whose balls hold the present ones.
+ */
+void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params,
+                    const struct tl_particles *particles);
+
+/* Sets the window's time, and its common motion's place at that time. */
+void tl_apart_set_time(struct tl_apart *apart, double time_s);
+
+/* Moves every vertex back that has passed a plane. Where vertices want to leave their balls, or far past a
+ * plane, a new window is made first, about this substep's start and as wide as its ways, so that only what
+ * would meet within the substep is held back. If there are `free` ones (NULL: none), these are left where
+ * they are, and crossings are searched from then on until there are none. */
+void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
+                       struct tl_particles *particles);
+
+#endif
