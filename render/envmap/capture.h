@@ -12,7 +12,7 @@
 struct tl_capture {
     struct tl_gbuffer gbuffer;
     struct tl_light_buffer light;
-    struct tl_envmap around;     /* the environment, which lights the captured surfaces */
+    struct tl_envmap around; /* the environment, which lights the captured surfaces */
     tl_cube cube;
     struct tl_lobes lobes; /* lobes of the cube */
 };

@@ -75,8 +75,8 @@ struct tl_envmap_request {
     vec3s eye;
     const struct tl_maps_params *params;
 };
-/* Draws over the whole bound target, with the G-buffer in the first texture units (tl_light_buffer_begin). False
- * when a shader cannot be compiled. */
+/* Draws over the whole bound target, with the G-buffer in the first texture units (tl_light_buffer_begin).
+ * False when a shader cannot be compiled. */
 bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
                     tl_error *error);
 

@@ -53,8 +53,9 @@ struct tl_gbuffer_request {
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_detail_params *detail; /* NULL: normals alone */
     bool frames;                           /* with the layer of tangents */
-    bool only_triangle; /* one layer, like TL_GBUFFER_TRIANGLE but with places in cull.numbers: an ID buffer */
-    const tl_texture *passed;              /* only what lies behind this depth; NULL: what is nearest */
+    bool
+        only_triangle; /* one layer, like TL_GBUFFER_TRIANGLE but with places in cull.numbers: an ID buffer */
+    const tl_texture *passed; /* only what lies behind this depth; NULL: what is nearest */
 };
 
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
