@@ -2,6 +2,7 @@
 #include "render/env/lobes_fetch.h"
 #include "render/shade/pixels_internal.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -186,7 +187,7 @@ TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct fan_la
                          struct lobe_lanes *lobes)
 {
     const struct tl_fan_table *fan = lanes->look.part->fan;
-    const int middle = fan->lobe_count / 2;
+    const size_t middle = (size_t)fan->lobe_count / 2;
     for (int i = 0; i < lanes->look.count; i++) {
         const struct tl_fan_place place = {{at->row[i], at->row_share[i]},
                                            {at->column[i], at->column_share[i]},
@@ -196,7 +197,8 @@ TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct fan_la
         tl_quad nodes[2 * TL_LOBE_FIT_MAX];
         tl_fan_fetch(fan, &place, nodes);
         for (int k = 0; k < fan->lobe_count; k++) {
-            const tl_quad local = nodes[2 * k], weight = nodes[2 * k + 1];
+            const size_t node = 2 * (size_t)k;
+            const tl_quad local = nodes[node], weight = nodes[node + 1];
             for (int c = 0; c < 3; c++)
                 lobes->local[k][c][i] = local[c];
             lobes->weight[k][i] = shares.low * weight[0] + shares.high * weight[1];
@@ -223,6 +225,7 @@ TL_INLINE void add_facets(const struct tl_pixel_scene *scene, const struct tl_pi
                           struct gloss_lanes *gloss, tl_quad light[TL_LANES])
 {
     const int count = lanes->look.count, lobe_count = lanes->look.part->fan->lobe_count;
+    assert(count > 0); /* what idle lanes hold is the first one's */
     struct fan_lanes fan;
     struct lobe_lanes lobes;
     struct blend_lanes blends;

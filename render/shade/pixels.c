@@ -253,7 +253,7 @@ TL_CLONES static void shade_rows(const struct tl_pixel_scene *scene, int first, 
                 begin_run(scene, &scene->request->triangles[tl_ids_place(ids, row[x])], &run);
                 before = row[x];
             }
-            assert(run.triangle); /* of the first covered pixel */
+            assert(run.triangle && run.part); /* of the first covered pixel */
             if (run.is_flat && !run.is_mixed && !run.is_fading) {
                 x = shade_flat(scene, &run, row, x, y, out);
             } else {

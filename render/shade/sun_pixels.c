@@ -204,7 +204,7 @@ static enum cell_state fill_cell(struct tl_sun_bundle *bundle, const struct cell
     if (is_whole(ids, cell)) {
         for (int y = cell->y; y <= last_y; y++)
             memset(states + (size_t)y * (size_t)ids->width + (size_t)cell->x,
-                   cell->is_one ? cell->state : TL_SUN_EMPTY, (size_t)(last_x - cell->x + 1));
+                   cell->is_one ? cell->state : TL_SUN_EMPTY, (size_t)last_x - (size_t)cell->x + 1);
         return cell->is_one ? FILLED : BARE;
     }
     for (int y = cell->y; y <= last_y; y++)

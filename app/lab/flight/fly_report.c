@@ -315,7 +315,7 @@ static void print_levels(const struct tl_flight *flight, FILE *out)
     print_lines(
         &lines, "levels", &options,
         "On its line a control is where the settings want it; above, cheaper and worse by as many levels. "
-        "Knobs that are not shown stayed on their line.",
+        "Controls that are not shown stayed on their line.",
         out);
 }
 
