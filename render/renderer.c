@@ -139,6 +139,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     release_scene(resources);
     tl_gbuffer_release(&resources->gbuffer);
     tl_ids_release(&resources->ids);
+    tl_ids_release(&resources->pixel_ids);
     tl_shade_materials_release(&resources->shade_materials);
     tl_ratios_release(&resources->ratios);
     tl_sun_pixels_release(&resources->sun_pixels);
@@ -298,6 +299,7 @@ static void reload_shaders(tl_renderer *renderer)
     if (!tl_shadow_maps_reload(renderer->resources.maps, &error) ||
         !tl_gbuffer_reload(&renderer->resources.gbuffer, &error) ||
         !tl_gbuffer_reload(&renderer->resources.ids.drawn, &error) ||
+        !tl_gbuffer_reload(&renderer->resources.pixel_ids.drawn, &error) ||
         !tl_gbuffer_reload(&renderer->resources.transparency.behind, &error) ||
         !tl_lighting_reload(&renderer->resources.lighting, &error) ||
         !tl_envmap_reload(&renderer->resources.envmap, &error) ||

@@ -39,6 +39,12 @@ struct tl_size_input {
     int columns, rows;              /* samples */
 };
 
+/* True when there are fewer samples than pixels, so that pixels need ids of their own. */
+static inline bool tl_size_has_outlines(const struct tl_size_input *size)
+{
+    return size->columns < size->width || size->rows < size->height;
+}
+
 struct tl_cut_input {
     int regions, cut; /* enum tl_cut */
 };

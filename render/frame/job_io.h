@@ -155,6 +155,7 @@
     IO(READS, has_ground)                                                                                    \
     IO(READS, shapes)                                                                                        \
     IO(WRITES, ids)                                                                                          \
+    IO(WRITES, pixel_ids)                                                                                    \
     IO(USES, gpu)
 
 #define TL_SHADE_MATERIALS_JOB(IO)                                                                           \
@@ -240,6 +241,7 @@
 
 #define TL_SHADE_JOB(IO)                                                                                     \
     IO(READS, ids)                                                                                           \
+    IO(READS, pixel_ids)                                                                                     \
     IO(READS, ratios)                                                                                        \
     IO(READS, sun_pixels)                                                                                    \
     IO(READS, shade_materials)                                                                               \

@@ -57,7 +57,7 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
     case TL_MADE_GBUFFER:
         return tl_gbuffer_bytes(&from->gbuffer);
     case TL_MADE_IDS:
-        return tl_ids_bytes(&from->ids);
+        return tl_ids_bytes(&from->ids) + tl_ids_bytes(&from->pixel_ids);
     case TL_MADE_SHADE_MATERIALS:
         return tl_shade_materials_bytes(&from->shade_materials);
     case TL_MADE_RATIOS:

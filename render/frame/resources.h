@@ -91,6 +91,7 @@ struct tl_surroundings {
     RESOURCE(maps, TL_MADE_DEPTHS, tl_shadow_maps *)                                                         \
     RESOURCE(gbuffer, TL_MADE_GBUFFER, struct tl_gbuffer)                                                    \
     RESOURCE(ids, TL_MADE_IDS, struct tl_id_buffer)                                                          \
+    RESOURCE(pixel_ids, TL_MADE_IDS, struct tl_id_buffer) /* of every pixel, where samples are fewer */      \
     RESOURCE(shade_materials, TL_MADE_SHADE_MATERIALS, struct tl_shade_materials)                            \
     RESOURCE(ratios, TL_MADE_RATIOS, struct tl_vertex_ratios)                                                \
     RESOURCE(sun_pixels, TL_MADE_SUN_PIXELS, struct tl_sun_pixels)                                           \

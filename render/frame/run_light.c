@@ -8,6 +8,7 @@
 #include "render/light/compose.h"
 #include "render/local/lamp_samples.h"
 #include "render/present/resample.h"
+#include "render/shade/outlines.h"
 
 #include <stdlib.h>
 
@@ -111,6 +112,29 @@ bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
     return true;
 }
 
+/* From light at samples to the picture. */
+static void enlarge(const struct tl_shade_job *job, const float *shaded)
+{
+    const struct tl_size_input *size = job->size;
+    const struct tl_resample resample = {
+        .from = shaded,
+        .from_width = size->columns,
+        .from_height = size->rows,
+        .to = tl_present_begin_cpu_image(job->present, size->width, size->height),
+        .to_width = size->width,
+        .to_height = size->height};
+    const struct tl_outlines_request outlines = {.samples = job->ids,
+                                                 .pixels = job->pixel_ids,
+                                                 .light = shaded,
+                                                 .ranges = &job->shapes->ranges,
+                                                 .materials = job->shade_materials,
+                                                 .ground = *job->has_ground ? job->ground : NULL,
+                                                 .view = &job->camera->view};
+    tl_resample(&resample);
+    if (tl_size_has_outlines(size))
+        tl_outlines_draw(&outlines, resample.to);
+}
+
 bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
 {
     (void)error;
@@ -135,15 +159,9 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
         free(triangles);
         return true;
     }
-    struct tl_resample resample = {.from_width = size->columns,
-                                   .from_height = size->rows,
-                                   .to_width = size->width,
-                                   .to_height = size->height};
     float *shaded = tl_resize(NULL, 4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
     tl_pixels_shade(&request, 1, shaded);
-    resample.from = shaded;
-    resample.to = tl_present_begin_cpu_image(job->present, size->width, size->height);
-    tl_resample(&resample);
+    enlarge(job, shaded);
     free(shaded);
     free(triangles);
     return true;

@@ -70,15 +70,21 @@ bool tl_run_gbuffer(const struct tl_gbuffer_job *job, tl_error *error)
 
 bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
 {
-    const struct tl_gbuffer_request request = {.view = &job->camera->view,
-                                               .width = job->size->columns,
-                                               .height = job->size->rows,
-                                               .surfaces = job->surfaces,
-                                               .drawn = job->shapes->drawn,
-                                               .surface_count = job->shapes->drawn_count,
-                                               .ground = *job->has_ground ? job->ground : NULL,
-                                               .only_triangle = true};
-    return tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error);
+    const struct tl_size_input *size = job->size;
+    struct tl_gbuffer_request request = {.view = &job->camera->view,
+                                         .width = size->columns,
+                                         .height = size->rows,
+                                         .surfaces = job->surfaces,
+                                         .drawn = job->shapes->drawn,
+                                         .surface_count = job->shapes->drawn_count,
+                                         .ground = *job->has_ground ? job->ground : NULL,
+                                         .only_triangle = true};
+    if (!tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error))
+        return false;
+    request.width = size->width;
+    request.height = size->height;
+    return !tl_size_has_outlines(size) ||
+           tl_ids_draw(job->pixel_ids, *job->gpu, &request, &job->shapes->ranges, error);
 }
 
 bool tl_run_shade_materials(const struct tl_shade_materials_job *job, tl_error *error)

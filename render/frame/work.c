@@ -130,10 +130,19 @@ struct tl_work tl_samples_work(const void *context)
     return (struct tl_work){{1e-5 * seen->texels, 4e-5 * seen->covered}};
 }
 
+/* Pixels that have ids beside those of the samples; 0 where there are as many samples. */
+static double outlined(const struct tl_work_seen *seen)
+{
+    const struct tl_image_params *image = &seen->settings->image;
+    return image->scale * (float)image->supersample < 1 ? (double)image->width * image->height : 0;
+}
+
 struct tl_work tl_ids_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    return (struct tl_work){{0.3, 5e-5 * seen->triangles, 1.5e-6 * seen->texels, 1.5e-6 * seen->covered}};
+    double pixels = outlined(seen), draws = pixels > 0 ? 2 : 1;
+    return (struct tl_work){{0.3 * draws, 5e-5 * draws * seen->triangles, 1.5e-6 * (seen->texels + pixels),
+                             1.5e-6 * seen->covered}};
 }
 
 struct tl_work tl_ratios_work(const void *context)
@@ -152,7 +161,8 @@ struct tl_work tl_sun_pixels_work(const void *context)
 struct tl_work tl_shade_work(const void *context)
 {
     const struct tl_work_seen *seen = context;
-    return (struct tl_work){{0.5, 2e-6 * seen->texels, 2e-5 * (4 + seen->lobes) * seen->covered}};
+    return (struct tl_work){
+        {0.5, 2e-6 * seen->texels, 2e-5 * (4 + seen->lobes) * seen->covered, 1.2e-5 * outlined(seen)}};
 }
 
 struct tl_work tl_trace_work(const void *context)
