@@ -393,7 +393,8 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
 /* Particles deeper below the ground than this are being lifted out of it; less is rounding. */
 #define BURIED_M 1e-6
 
-/* Whether anything may add energy: contact that moves or pushes out, a pull, seams, contact with itself, wind. */
+/* Whether anything may add energy: contact that moves or pushes out, a pull, seams, contact with itself,
+ * wind. */
 static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
 {
     const float *wind = cloth->params.wind;
