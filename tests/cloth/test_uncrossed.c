@@ -6,6 +6,7 @@
 #include "cloth/advance.h"
 #include "tests/cloth/crossing_oracle.h"
 #include "tests/cloth/sheets.h"
+#include "tests/cloth/twist.h"
 #include "tests/testing.h"
 
 #include "config/hash.h"
@@ -55,13 +56,7 @@ static void take_off(struct worn *worn)
 static void twist(struct worn *worn, int frame)
 {
     const tl_mesh *mesh = &worn->avatar.model.mesh;
-    double swing = sin(2 * M_PI * frame / 60);
-    for (size_t i = 0; i < mesh->vertex_count; i++) {
-        vec3d p = vec3d_from(mesh->positions[i]);
-        double angle = 0.35 * p.y * swing, sway = 0.05 * p.y * p.y * swing;
-        worn->pose[i] = vec3d_to_float(
-            (vec3d){cos(angle) * p.x + sin(angle) * p.z + sway, p.y, cos(angle) * p.z - sin(angle) * p.x});
-    }
+    twist_pose(mesh, frame, worn->pose);
     tl_collider_move(worn->collider, worn->pose);
 }
 

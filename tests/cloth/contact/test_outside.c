@@ -5,6 +5,7 @@
 #include "assets/builtin/fit.h"
 #include "cloth/state.h"
 #include "tests/cloth/sheets.h"
+#include "tests/cloth/twist.h"
 #include "tests/testing.h"
 
 #include "config/log.h"
@@ -166,17 +167,10 @@ static void test_walking_slow_solvers(void **state)
     undress(&d);
 }
 
-/* The shoulders turn against the feet and the body sways sideways: every triangle moves and most deform. */
 static void twist(struct dressed *d, int frame)
 {
     const tl_mesh *mesh = &d->avatar.model.mesh;
-    double swing = sin(2 * M_PI * frame / 60);
-    for (size_t i = 0; i < mesh->vertex_count; i++) {
-        vec3d p = vec3d_from(mesh->positions[i]);
-        double angle = 0.35 * p.y * swing, sway = 0.05 * p.y * p.y * swing;
-        d->pose[i] = vec3d_to_float(
-            (vec3d){cos(angle) * p.x + sin(angle) * p.z + sway, p.y, cos(angle) * p.z - sin(angle) * p.x});
-    }
+    twist_pose(mesh, frame, d->pose);
 }
 
 /* Every solver begins with the same drape. */
