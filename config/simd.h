@@ -32,11 +32,11 @@
 #define TL_INLINE static inline __attribute__((always_inline))
 
 /* The rules of fminf and fmaxf for NaN and signed zero prevent vectorisation. */
-TL_INLINE float tl_lesser(float a, float b)
+TL_INLINE float tl_minf(float a, float b)
 {
     return a < b ? a : b;
 }
-TL_INLINE float tl_greater(float a, float b)
+TL_INLINE float tl_maxf(float a, float b)
 {
     return a > b ? a : b;
 }
@@ -75,7 +75,7 @@ TL_INLINE float tl_log2(float a)
  * denormal, which costs a hundred times as much. The polynomial interpolates 2^f at Chebyshev nodes. */
 TL_INLINE float tl_exp2(float a)
 {
-    a = tl_greater(tl_lesser(a, 127.0f), -80.0f);
+    a = tl_maxf(tl_minf(a, 127.0f), -80.0f);
     int32_t whole = (int32_t)(a + 127.0f) - 127; /* floor */
     float f = a - (float)whole;
     float series =
@@ -88,7 +88,7 @@ TL_INLINE float tl_exp2(float a)
 /* a^b for a >= 0 and b > 0. Below 1e-30 a counts as 1e-30. */
 TL_INLINE float tl_power(float a, float b)
 {
-    return tl_exp2(b * tl_log2(tl_greater(a, 1e-30f)));
+    return tl_exp2(b * tl_log2(tl_maxf(a, 1e-30f)));
 }
 
 #endif

@@ -220,18 +220,19 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     return renderer->resources.trace != NULL;
 }
 
-static struct tl_work work_of(int job, const struct tl_work_seen *seen)
+static struct tl_work work_of(int job, const struct tl_work_sizes *sizes)
 {
-    return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(seen) : (struct tl_work){{0}};
+    return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(sizes) : (struct tl_work){{0}};
 }
 
 static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *input,
                       const struct tl_render_settings *settings, tl_plan *plan)
 {
     double predicted_ms[TL_JOBS_MAX];
-    const struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, settings);
+    const struct tl_work_sizes sizes =
+        tl_work_estimate_sizes(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
-        struct tl_work work = work_of(i, &seen);
+        struct tl_work work = work_of(i, &sizes);
         predicted_ms[i] =
             tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
     }
@@ -243,14 +244,15 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
 static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
     const int known = 3; /* runs */
-    struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, &renderer->settings);
-    seen.new_regions = new_regions; /* counted before the jobs made them */
+    struct tl_work_sizes sizes =
+        tl_work_estimate_sizes(&renderer->resources, &renderer->counts, &renderer->settings);
+    sizes.new_regions = new_regions; /* counted before the jobs made them */
     double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         struct tl_cost_job *cost = &renderer->costs[i];
-        const struct tl_work work = work_of(i, &seen);
+        const struct tl_work work = work_of(i, &sizes);
         plan->rows[i].work_ms = tl_work_sum(&work);
         if (cost->runs >= known) {
             predicted_ms += tl_cost_predict(cost, &work, load);
@@ -265,7 +267,7 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
 {
     make_plan(renderer, input, &renderer->settings, plan);
     double new_regions =
-        tl_work_observe(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
+        tl_work_estimate_sizes(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
     tl_gpu_reset_state(renderer->resources.gpu);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
@@ -556,11 +558,12 @@ double tl_renderer_predict_ms(const tl_renderer *renderer, const struct tl_rende
                               tl_bits jobs)
 {
     double sum_ms = 0;
-    const struct tl_work_seen seen = tl_work_observe(&renderer->resources, &renderer->counts, settings);
+    const struct tl_work_sizes sizes =
+        tl_work_estimate_sizes(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         if (!(jobs & (tl_bits)1 << i))
             continue;
-        struct tl_work work = work_of(i, &seen);
+        struct tl_work work = work_of(i, &sizes);
         double ms = tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
         sum_ms += isfinite(ms) ? ms : 0;
     }

@@ -151,8 +151,8 @@ static void fit_leaf(struct tl_near_leaf *leaf, struct tl_near_box *node, const 
             leaf->high[axis][lane] = -FLT_MAX;
         }
         for (int axis = 0; axis < 3; axis++) {
-            node->low[axis] = tl_lesser(node->low[axis], leaf->low[axis][lane]);
-            node->high[axis] = tl_greater(node->high[axis], leaf->high[axis][lane]);
+            node->low[axis] = tl_minf(node->low[axis], leaf->low[axis][lane]);
+            node->high[axis] = tl_maxf(node->high[axis], leaf->high[axis][lane]);
         }
     }
 }
@@ -167,8 +167,8 @@ void tl_near_tree_refit(struct tl_near_tree *tree, const struct tl_topology *top
     for (size_t i = tree->leaf_count - 1; i > 0; i--)
         for (int axis = 0; axis < 3; axis++) {
             const struct tl_near_box *a = &tree->nodes[2 * i], *b = &tree->nodes[2 * i + 1];
-            tree->nodes[i].low[axis] = tl_lesser(a->low[axis], b->low[axis]);
-            tree->nodes[i].high[axis] = tl_greater(a->high[axis], b->high[axis]);
+            tree->nodes[i].low[axis] = tl_minf(a->low[axis], b->low[axis]);
+            tree->nodes[i].high[axis] = tl_maxf(a->high[axis], b->high[axis]);
         }
 }
 

@@ -98,7 +98,7 @@ TL_INLINE size_t fetch_edges(const struct fans *fans, size_t first, struct edges
 TL_INLINE float angle_over(float sine, float cosine, float length)
 {
     float adjacent = fabsf(cosine);
-    float low = tl_lesser(sine, adjacent), high = tl_greater(sine, adjacent);
+    float low = tl_minf(sine, adjacent), high = tl_maxf(sine, adjacent);
     float x = low / high, y = x * x;
     float series = 0.0986886546f + y * (-0.0588297531f + y * (0.0237805186f - 0.00455979199f * y));
     series = -0.333318127f + y * (0.199669618f + y * (-0.140032902f + y * series));

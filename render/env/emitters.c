@@ -221,8 +221,8 @@ void tl_lobe_packet_set(struct tl_lobe_packet *packet, const vec3s directions[TL
     packet->axis = glms_vec3_normalize(sum);
     float farthest = 0;
     for (int i = 0; i < TL_LANES; i++)
-        farthest = tl_greater(farthest, glms_vec3_distance2(packet->axis, directions[i]));
-    packet->radius = 2 * asinf(tl_lesser(sqrtf(farthest) / 2, 1));
+        farthest = tl_maxf(farthest, glms_vec3_distance2(packet->axis, directions[i]));
+    packet->radius = 2 * asinf(tl_minf(sqrtf(farthest) / 2, 1));
 }
 
 /* The angle from the axis of the packet beyond which all lobes are cut off. */
@@ -230,7 +230,7 @@ static float packet_reach(const struct tl_lobe_packet *packet)
 {
     float min = packet->exponent[0];
     for (int i = 1; i < TL_LANES; i++)
-        min = tl_lesser(min, packet->exponent[i]);
+        min = tl_minf(min, packet->exponent[i]);
     return acosf(powf(LOBE_CUT, 1 / min)) + packet->radius;
 }
 

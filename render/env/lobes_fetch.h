@@ -20,7 +20,7 @@ TL_INLINE struct tl_octahedral_place tl_octahedral_place(float x, float y, float
     float scale = 0.5f / (fabsf(x) + fabsf(y) + fabsf(z));
     float u = x * scale, v = z * scale;
     /* Below the horizon 1 - |v| = |u| + |y|. */
-    float outwards = tl_greater(-y, 0) * scale;
+    float outwards = tl_maxf(-y, 0) * scale;
     u += copysignf(outwards, u);
     v += copysignf(outwards, v);
     return (struct tl_octahedral_place){u + 0.5f, v + 0.5f};
@@ -35,8 +35,8 @@ struct tl_lobe_texels {
 TL_INLINE struct tl_lobe_texels tl_lobe_texels_about(int side, struct tl_octahedral_place place)
 {
     float x = place.u * (float)side + 0.5f, y = place.v * (float)side + 0.5f, last = (float)side + 0.5f;
-    x = tl_lesser(tl_greater(x, 0), last); /* NaN becomes 0, too */
-    y = tl_lesser(tl_greater(y, 0), last);
+    x = tl_minf(tl_maxf(x, 0), last); /* NaN becomes 0, too */
+    y = tl_minf(tl_maxf(y, 0), last);
     int column = (int)x, row = (int)y;
     return (struct tl_lobe_texels){row * (side + 2) + column, x - (float)column, y - (float)row};
 }

@@ -27,12 +27,12 @@ TL_CLONES static void range_of(const float *values, size_t count, float *low, fl
     size_t whole = count - count % LANES;
     for (size_t i = 0; i < whole; i += LANES)
         for (int k = 0; k < LANES; k++) {
-            lows[k] = tl_lesser(values[i + (size_t)k], lows[k]);
-            highs[k] = tl_greater(values[i + (size_t)k], highs[k]);
+            lows[k] = tl_minf(values[i + (size_t)k], lows[k]);
+            highs[k] = tl_maxf(values[i + (size_t)k], highs[k]);
         }
     for (size_t i = whole; i < count; i++) {
-        lows[0] = tl_lesser(values[i], lows[0]);
-        highs[0] = tl_greater(values[i], highs[0]);
+        lows[0] = tl_minf(values[i], lows[0]);
+        highs[0] = tl_maxf(values[i], highs[0]);
     }
     *low = INFINITY;
     *high = -INFINITY;

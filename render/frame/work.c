@@ -77,8 +77,9 @@ static double lobes_of(const struct tl_work_counts *counts, const struct tl_ligh
     return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);
 }
 
-struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
-                                    const struct tl_render_settings *settings)
+struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources,
+                                            const struct tl_work_counts *counts,
+                                            const struct tl_render_settings *settings)
 {
     const struct tl_samples *samples = &resources->samples;
     const struct tl_id_buffer *ids = &resources->ids;
@@ -90,7 +91,7 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
     bool at_vertices = counts->fits_vertices && light->ratio_at == TL_RATIO_AT_VERTICES;
     double covered = then > 0 ? covered_then / then * now : COVERED_AT_FIRST * now;
     bool shadowed = light->method != TL_METHOD_UNSHADOWED;
-    return (struct tl_work_seen){
+    return (struct tl_work_sizes){
         .settings = settings,
         .texels = now,
         .covered = covered,
@@ -108,127 +109,128 @@ struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const 
 
 struct tl_work tl_lights_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-3, seen->new_regions > 0 ? 40 : 0, 2 * seen->new_regions}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{1e-3, sizes->new_regions > 0 ? 40 : 0, 2 * sizes->new_regions}};
 }
 
 struct tl_work tl_gbuffer_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    const struct tl_detail_params *detail = &seen->settings->detail;
+    const struct tl_work_sizes *sizes = context;
+    const struct tl_detail_params *detail = &sizes->settings->detail;
     const double enough = 24; /* steps from cone to cone, for most rays */
-    double steps = !seen->is_bumpy                    ? 0
+    double steps = !sizes->is_bumpy                   ? 0
                    : detail->mode == TL_DETAIL_RELIEF ? 5 + fmin(detail->steps, enough)
                                                       : 5;
     return (struct tl_work){
-        {0.5, 0.039 * sqrt(seen->texels), 2e-6 * seen->texels, 2e-5 * steps * seen->covered}};
+        {0.5, 0.039 * sqrt(sizes->texels), 2e-6 * sizes->texels, 2e-5 * steps * sizes->covered}};
 }
 
 struct tl_work tl_samples_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-5 * seen->texels, 4e-5 * seen->covered}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{1e-5 * sizes->texels, 4e-5 * sizes->covered}};
 }
 
 /* Pixels that have ids beside those of the samples; 0 where there are as many samples. */
-static double outlined(const struct tl_work_seen *seen)
+static double outlined(const struct tl_work_sizes *sizes)
 {
-    const struct tl_image_params *image = &seen->settings->image;
+    const struct tl_image_params *image = &sizes->settings->image;
     return image->scale * (float)image->supersample < 1 ? (double)image->width * image->height : 0;
 }
 
 struct tl_work tl_ids_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    double pixels = outlined(seen), draws = pixels > 0 ? 2 : 1;
-    return (struct tl_work){{0.3 * draws, 5e-5 * draws * seen->triangles, 1.5e-6 * (seen->texels + pixels),
-                             1.5e-6 * seen->covered}};
+    const struct tl_work_sizes *sizes = context;
+    double pixels = outlined(sizes), draws = pixels > 0 ? 2 : 1;
+    return (struct tl_work){{0.3 * draws, 5e-5 * draws * sizes->triangles, 1.5e-6 * (sizes->texels + pixels),
+                             1.5e-6 * sizes->covered}};
 }
 
 struct tl_work tl_ratios_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{0.5, 1e-5 * seen->triangles, 1e-5 * seen->groups * seen->lobes * seen->points}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){
+        {0.5, 1e-5 * sizes->triangles, 1e-5 * sizes->groups * sizes->lobes * sizes->points}};
 }
 
 struct tl_work tl_sun_pixels_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{0.1, 1e-5 * seen->triangles, (1e-5 * seen->suns) * seen->covered,
-                             0.02 * seen->suns * sqrt(seen->covered)}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{0.1, 1e-5 * sizes->triangles, (1e-5 * sizes->suns) * sizes->covered,
+                             0.02 * sizes->suns * sqrt(sizes->covered)}};
 }
 
 struct tl_work tl_shade_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
+    const struct tl_work_sizes *sizes = context;
     return (struct tl_work){
-        {0.5, 2e-6 * seen->texels, 2e-5 * (4 + seen->lobes) * seen->covered, 1.2e-5 * outlined(seen)}};
+        {0.5, 2e-6 * sizes->texels, 2e-5 * (4 + sizes->lobes) * sizes->covered, 1.2e-5 * outlined(sizes)}};
 }
 
 struct tl_work tl_trace_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-4 * seen->triangles}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{1e-4 * sizes->triangles}};
 }
 
 struct tl_work tl_points_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    double samples = seen->at_vertices ? 0 : (4e-5 + 1e-4 * seen->suns) * seen->covered;
+    const struct tl_work_sizes *sizes = context;
+    double samples = sizes->at_vertices ? 0 : (4e-5 + 1e-4 * sizes->suns) * sizes->covered;
     return (struct tl_work){
-        {1e-4 * seen->triangles, samples, 2e-4 * seen->points, 8e-5 * seen->points * seen->refreshed}};
+        {1e-4 * sizes->triangles, samples, 2e-4 * sizes->points, 8e-5 * sizes->points * sizes->refreshed}};
 }
 
 struct tl_work tl_compose_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
+    const struct tl_work_sizes *sizes = context;
     return (struct tl_work){
-        {3e-6 * seen->texels, 2e-4 * seen->covered, 1e-5 * seen->groups * seen->lobes * seen->covered}};
+        {3e-6 * sizes->texels, 2e-4 * sizes->covered, 1e-5 * sizes->groups * sizes->lobes * sizes->covered}};
 }
 
 struct tl_work tl_inspect_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    double groups = tl_view_is_visibility(seen->settings->image.view) ? seen->groups : 0;
-    return (struct tl_work){{3e-6 * seen->texels, 1e-4 * seen->covered, 3e-5 * groups * seen->covered}};
+    const struct tl_work_sizes *sizes = context;
+    double groups = tl_view_is_visibility(sizes->settings->image.view) ? sizes->groups : 0;
+    return (struct tl_work){{3e-6 * sizes->texels, 1e-4 * sizes->covered, 3e-5 * groups * sizes->covered}};
 }
 
 struct tl_work tl_passes_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-4 * seen->texels, 5e-5 * seen->settings->light.regions * seen->covered}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{1e-4 * sizes->texels, 5e-5 * sizes->settings->light.regions * sizes->covered}};
 }
 
 struct tl_work tl_maps_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    double maps = seen->refreshed, side = seen->settings->light.map_size;
-    return (struct tl_work){{1e-4 * maps * seen->triangles, 1e-5 * maps * side * side}};
+    const struct tl_work_sizes *sizes = context;
+    double maps = sizes->refreshed, side = sizes->settings->light.map_size;
+    return (struct tl_work){{1e-4 * maps * sizes->triangles, 1e-5 * maps * side * side}};
 }
 
 struct tl_work tl_resolve_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    const struct tl_image_params *image = &seen->settings->image;
+    const struct tl_work_sizes *sizes = context;
+    const struct tl_image_params *image = &sizes->settings->image;
     double pixels = (double)image->width * image->height;
     bool is_resampled = image->scale < 1;
-    return (struct tl_work){{1e-5 * seen->texels, 1e-5 * pixels, is_resampled ? 2e-5 * pixels : 0}};
+    return (struct tl_work){{1e-5 * sizes->texels, 1e-5 * pixels, is_resampled ? 2e-5 * pixels : 0}};
 }
 
 struct tl_work tl_lamps_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{5, 1e-4 * seen->lamps * seen->covered}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{5, 1e-4 * sizes->lamps * sizes->covered}};
 }
 
 struct tl_work tl_lamp_maps_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{5, 1e-4 * seen->lamps * seen->triangles}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{5, 1e-4 * sizes->lamps * sizes->triangles}};
 }
 
 struct tl_work tl_sample_rays_work(const void *context)
 {
-    const struct tl_work_seen *seen = context;
-    return (struct tl_work){{1e-4 * seen->triangles, 1e-4 * seen->covered}};
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{1e-4 * sizes->triangles, 1e-4 * sizes->covered}};
 }

@@ -1,22 +1,23 @@
-/* Estimates the work of each job of a frame to come from the last frame's counts, at other settings. Reads
- * the renderer's state and changes nothing. */
+/* Estimates the work of each job of the next frame from the last frame's counts, at other settings. Reads the
+ * renderer's state and changes nothing. */
 #ifndef TOILE_RENDER_FRAME_WORK_H
 #define TOILE_RENDER_FRAME_WORK_H
 
 #include "render/frame/resources.h"
 
-struct tl_work_seen {
+/* The quantities that the jobs' work depends on, estimated for the next frame. */
+struct tl_work_sizes {
     const struct tl_render_settings *settings;
-    double texels, covered; /* samples of the frame to come, and those with something in them */
-    double points;          /* of visibility, in sight */
-    double groups;          /* of sixteen regions, that shadows are summed over */
-    double lobes;           /* at most, that a sample sums them through */
+    double texels, covered; /* samples of the frame; those covered by a surface */
+    double points;          /* visible points that visibility is stored at */
+    double groups;          /* of TL_LANES regions; 0 where light is unshadowed */
+    double lobes;           /* max a sample sums the regions' light through */
     double refreshed;       /* rays a point */
     double triangles;
     bool at_vertices;   /* ratios at vertices light the pixels */
-    bool is_bumpy;      /* something has maps of normals or heights */
-    double lamps, suns; /* lit; that stand apart */
-    double new_regions; /* as lights that are not kept from an earlier frame */
+    bool is_bumpy;      /* a material has a normal or a height map */
+    double lamps, suns; /* lamps that are lit; suns that are separate from the regions */
+    double new_regions; /* regions whose light is not cached from an earlier frame */
 };
 /* Counts of a frame, kept because its surfaces may be freed after the draw. */
 struct tl_work_counts {
@@ -26,11 +27,12 @@ struct tl_work_counts {
     bool is_glossy, is_faceted, is_bumpy; /* any material */
 };
 struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings);
-/* `counts` of the last frame, whose resources these are. */
-struct tl_work_seen tl_work_observe(const struct tl_resources *resources, const struct tl_work_counts *counts,
-                                    const struct tl_render_settings *settings);
+/* `resources` and `counts` are those of the last frame; `settings` are those of the next. */
+struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources,
+                                            const struct tl_work_counts *counts,
+                                            const struct tl_render_settings *settings);
 
-/* The work of the jobs of the same names; `context` is a struct tl_work_seen. */
+/* The work of the jobs of the same names; `context` is a struct tl_work_sizes. */
 struct tl_work tl_lights_work(const void *context);
 struct tl_work tl_gbuffer_work(const void *context);
 struct tl_work tl_samples_work(const void *context);

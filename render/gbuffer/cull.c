@@ -52,19 +52,19 @@ TL_CLONES static void place_vertices(const tl_surface *surface, const struct tl_
 
 TL_INLINE float least_of(float a, float b, float c)
 {
-    return tl_lesser(tl_lesser(a, b), c);
+    return tl_minf(tl_minf(a, b), c);
 }
 
 TL_INLINE float greatest_of(float a, float b, float c)
 {
-    return tl_greater(tl_greater(a, b), c);
+    return tl_maxf(tl_maxf(a, b), c);
 }
 
 /* Samples whose middles lie between two places. False when there is none. */
 TL_INLINE bool span(float low, float high, int size, int *first, int *last)
 {
-    *first = (int)ceilf(tl_lesser(tl_greater(low - 0.5f, 0), (float)size));
-    *last = (int)floorf(tl_greater(tl_lesser(high - 0.5f, (float)(size - 1)), -1));
+    *first = (int)ceilf(tl_minf(tl_maxf(low - 0.5f, 0), (float)size));
+    *last = (int)floorf(tl_maxf(tl_minf(high - 0.5f, (float)(size - 1)), -1));
     return *first <= *last;
 }
 

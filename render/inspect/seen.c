@@ -30,7 +30,7 @@ TL_INLINE void add_group(const struct tl_seen_group *group, int number, const ui
     size_t first = (size_t)number * TL_LANES;
     for (int lane = 0; lane < TL_LANES; lane++) {
         float cosine = group->x[lane] * normal.x + group->y[lane] * normal.y + group->z[lane] * normal.z;
-        float light = group->weight[lane] * tl_greater(cosine, 0);
+        float light = group->weight[lane] * tl_maxf(cosine, 0);
         float visibility = weights[0] * (float)rows[0][first + (size_t)lane] +
                            weights[1] * (float)rows[1][first + (size_t)lane] +
                            weights[2] * (float)rows[2][first + (size_t)lane] +
@@ -39,7 +39,7 @@ TL_INLINE void add_group(const struct tl_seen_group *group, int number, const ui
         lanes->all[lane] += light;
         lanes->seen[lane] += arriving;
         lanes->best_group[lane] = arriving > lanes->best[lane] ? number : lanes->best_group[lane];
-        lanes->best[lane] = tl_greater(arriving, lanes->best[lane]);
+        lanes->best[lane] = tl_maxf(arriving, lanes->best[lane]);
     }
 }
 

@@ -100,7 +100,7 @@ TL_INLINE void add_group(struct accumulator *sums, const struct tl_region_group 
         float above = disc_share((x * smooth.x + y * smooth.y + z * smooth.z) * inverse), both = 1;
         float cosine = x * normal.x + y * normal.y + z * normal.z;
         if (kind.bumped)
-            both = tl_lesser(above / tl_greater(disc_share(cosine * inverse), 1e-6f), 1);
+            both = tl_minf(above / tl_maxf(disc_share(cosine * inverse), 1e-6f), 1);
         diffuse[lane] = tl_region_lobe_diffuse(cosine, sine, inverse) * both * visibility[lane];
         float gloss_cosine = x * gloss.x + y * gloss.y + z * gloss.z;
         glossy[lane] = kind.glossy ? tl_region_lobe(gloss_cosine, sine, inverse, exponents[lane]) * above *
@@ -354,7 +354,7 @@ TL_INLINE void add_group_of_lobes(float sums[LOBES_MAX][3][TL_LANES], const stru
     float exponents[TL_LANES] = {0}, broadened = -1; /* all lobes of a fan have the same */
     for (int k = 0; k < lobes->count; k++) {
         const vec3s d = lobes->items[k].direction;
-        const float s = tl_lesser(lobes->items[k].exponent, TL_REGION_LOBE_MAX);
+        const float s = tl_minf(lobes->items[k].exponent, TL_REGION_LOBE_MAX);
         float glossy[TL_LANES];
         if (s != broadened)
             for (int lane = 0; lane < TL_LANES; lane++)

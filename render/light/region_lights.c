@@ -72,7 +72,7 @@ static vec3s divide(vec3s light, const float sum[3])
 static vec3s gain_of(vec3s direction, float exponent, vec3s light, const void *context)
 {
     float sum[3];
-    sum_lobes(context, direction, tl_lesser(exponent, TL_REGION_LOBE_MAX), false, sum);
+    sum_lobes(context, direction, tl_minf(exponent, TL_REGION_LOBE_MAX), false, sum);
     return divide(light, sum);
 }
 

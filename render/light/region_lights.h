@@ -72,7 +72,7 @@ TL_INLINE void tl_region_broaden(struct tl_region_exponents *exponents, const st
     for (int g = 0; g < lights->group_count; g++)
         for (int lane = 0; lane < TL_LANES; lane++)
             exponents->broadened[g][lane] =
-                lobe_broadened_exponent(tl_lesser(s, TL_REGION_LOBE_MAX), lights->groups[g].spread[lane]);
+                lobe_broadened_exponent(tl_minf(s, TL_REGION_LOBE_MAX), lights->groups[g].spread[lane]);
 }
 
 /* The lobe of one region at a direction with this cosine to it, without its power: K_s averaged over the

@@ -54,7 +54,7 @@ TL_INLINE int within(int i, int count)
 
 TL_INLINE float between(float value, float a, float b)
 {
-    return tl_lesser(tl_greater(value, tl_lesser(a, b)), tl_greater(a, b));
+    return tl_minf(tl_maxf(value, tl_minf(a, b)), tl_maxf(a, b));
 }
 
 /* Upwards: the cubic through four texels, kept between the two in the middle. */

@@ -10,7 +10,7 @@
 #define pow   powf
 TL_INLINE float tone_clamp(float x, float low, float high)
 {
-    return tl_greater(tl_lesser(x, high), low);
+    return tl_maxf(tl_minf(x, high), low);
 }
 #include "render/present/tone.glsl"
 #undef TERM

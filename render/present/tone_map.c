@@ -68,11 +68,11 @@ TL_INLINE void map(struct row *row)
     for (int i = 0; i < COLUMNS; i++) {
         float red = tone_bound(row->red[i]), green = tone_bound(row->green[i]),
               blue = tone_bound(row->blue[i]);
-        float offset = tone_offset(tl_lesser(red, tl_lesser(green, blue)));
+        float offset = tone_offset(tl_minf(red, tl_minf(green, blue)));
         row->red[i] = red - offset;
         row->green[i] = green - offset;
         row->blue[i] = blue - offset;
-        peaks[i] = tl_greater(row->red[i], tl_greater(row->green[i], row->blue[i]));
+        peaks[i] = tl_maxf(row->red[i], tl_maxf(row->green[i], row->blue[i]));
     }
     for (int i = 0; i < COLUMNS; i++)
         is_bright |= peaks[i] >= TONE_START;

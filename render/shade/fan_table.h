@@ -54,7 +54,7 @@ struct tl_fan_between {
 
 TL_INLINE struct tl_fan_between tl_fan_between(float at, int count)
 {
-    at = tl_lesser(tl_greater(at, 0), (float)(count - 1));
+    at = tl_minf(tl_maxf(at, 0), (float)(count - 1));
     int first = (int)at;
     first = first < count - 1 ? first : count > 1 ? count - 2 : 0;
     return (struct tl_fan_between){first, at - (float)first};
@@ -68,8 +68,8 @@ TL_INLINE struct tl_fan_between tl_fan_between(float at, int count)
 /* atan2 over [0, pi], y >= 0, within 2e-5 rad: a minimax polynomial of atan over [0, 1]. */
 TL_INLINE float tl_fan_azimuth(float x, float y)
 {
-    float along = fabsf(x), most = tl_greater(tl_greater(along, y), 1e-30f);
-    float q = tl_lesser(along, y) / most, square = q * q;
+    float along = fabsf(x), most = tl_maxf(tl_maxf(along, y), 1e-30f);
+    float q = tl_minf(along, y) / most, square = q * q;
     float series = -0.11643287f + square * (0.05265332f - 0.01172120f * square);
     float angle = q * (0.99997726f + square * (-0.33262347f + square * (0.19354346f + square * series)));
     angle = y > along ? 1.57079633f - angle : angle;
@@ -115,7 +115,7 @@ TL_INLINE struct tl_fan_place tl_fan_place(const struct tl_fan_table *table, flo
     float side = y < 0 ? -1.0f : 1.0f;
     struct tl_fan_between column = tl_fan_between(
         tl_fan_azimuth(side * x, side * y) * ((TL_FAN_AZIMUTHS - 1) / 3.14159265f), TL_FAN_AZIMUTHS);
-    float sine = sqrtf(tl_greater(1 - cosine * cosine, 0));
+    float sine = sqrtf(tl_maxf(1 - cosine * cosine, 0));
     float elevation = tl_fan_azimuth(sine, cosine) * (2 / 3.14159265f);
     struct tl_fan_between row = tl_fan_between(sqrtf(elevation) * TL_FAN_ROWS - TL_FAN_FIRST, TL_FAN_COSINES);
     struct tl_fan_between gloss =
@@ -151,7 +151,7 @@ struct tl_fan_shares {
 
 TL_INLINE float tl_fan_high_share(float f0)
 {
-    return tl_greater((f0 - TL_FAN_LOW_F0) * (1 / (1 - TL_FAN_LOW_F0)), 0);
+    return tl_maxf((f0 - TL_FAN_LOW_F0) * (1 / (1 - TL_FAN_LOW_F0)), 0);
 }
 
 TL_INLINE float tl_fan_low_share(float f0)

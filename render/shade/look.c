@@ -13,7 +13,7 @@ struct texel_lanes {
 TL_INLINE float level_of(float u_across, float v_across, float u_up, float v_up)
 {
     float across = u_across * u_across + v_across * v_across, up = u_up * u_up + v_up * v_up;
-    return 0.5f * tl_log2(tl_greater(tl_greater(across, up), 1));
+    return 0.5f * tl_log2(tl_maxf(tl_maxf(across, up), 1));
 }
 
 /* `r`: rows of the affine map from the mesh's UV; the size is in texels. */
@@ -87,7 +87,7 @@ TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_loo
             lanes->glossiness[i] += texels[i][3];
     }
     for (int i = 0; i < TL_LANES; i++)
-        lanes->glossiness[i] = tl_greater(tl_lesser(lanes->glossiness[i], 1), 0);
+        lanes->glossiness[i] = tl_maxf(tl_minf(lanes->glossiness[i], 1), 0);
     if (maps[TL_MAP_OCCLUSION].texels) {
         read_map(lanes, &maps[TL_MAP_OCCLUSION], maps[TL_MAP_OCCLUSION].texels, texels);
         for (int i = 0; i < count; i++)

@@ -123,10 +123,10 @@ TL_INLINE bool fits(uint32_t part, float nearness, float change, uint32_t sample
                     float margin)
 {
     const float allowed = margin * nearness, most = SLOPE_MAX / SLOPE_MARGIN * allowed;
-    const float trusted = tl_greater(tl_lesser(change, most), -most);
+    const float trusted = tl_maxf(tl_minf(change, most), -most);
     const float difference = sample_nearness - nearness;
-    return (part == sample_part) & (difference >= tl_lesser(trusted, 0) - allowed) &
-           (difference <= tl_greater(trusted, 0) + allowed);
+    return (part == sample_part) & (difference >= tl_minf(trusted, 0) - allowed) &
+           (difference <= tl_maxf(trusted, 0) + allowed);
 }
 
 TL_INLINE int within(int i, int count)

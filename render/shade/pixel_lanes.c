@@ -24,7 +24,7 @@ struct tl_pixel_blends *tl_pixel_blends_make(void)
 
 TL_INLINE struct tl_exponent_blend blend_of(const struct tl_pixel_scene *scene, float log_exponent)
 {
-    float at = tl_greater(tl_lesser(log_exponent, BLEND_OCTAVES), 0) * BLEND_STEPS;
+    float at = tl_maxf(tl_minf(log_exponent, BLEND_OCTAVES), 0) * BLEND_STEPS;
     return scene->blends->items[(int)(at + 0.5f)];
 }
 
@@ -117,13 +117,13 @@ struct gloss_lanes {
 /* Schlick's factor of what is missing from F0 to its greatest value. */
 TL_INLINE float schlick_share(float cosine)
 {
-    float away = 1 - tl_greater(tl_lesser(cosine, 1), 0);
+    float away = 1 - tl_maxf(tl_minf(cosine, 1), 0);
     return away * away * away * away * away;
 }
 
 TL_INLINE tl_quad schlick(tl_quad f0, float share)
 {
-    const tl_quad most = {tl_lesser(50 * f0[0], 1), tl_lesser(50 * f0[1], 1), tl_lesser(50 * f0[2], 1), 0};
+    const tl_quad most = {tl_minf(50 * f0[0], 1), tl_minf(50 * f0[1], 1), tl_minf(50 * f0[2], 1), 0};
     return f0 + (most - f0) * share;
 }
 
@@ -255,10 +255,10 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(look->shown, i), viewer = tl_lane_vector(look->viewer, i);
         float cosine = glms_vec3_dot(normal, viewer);
-        vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * tl_greater(cosine, 0)), viewer);
+        vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * tl_maxf(cosine, 0)), viewer);
         tl_lane_store(gloss->mirror, i, tl_unit_or(mirror, normal));
         shares[i] = schlick_share(cosine);
-        gloss->exponent[i] = 1 / tl_greater(1 - look->glossiness[i], 1e-6f);
+        gloss->exponent[i] = 1 / tl_maxf(1 - look->glossiness[i], 1e-6f);
         log_exponents[i] = tl_log2(gloss->exponent[i]);
     }
     choose_maps(scene, log_exponents, look->count, &blends);
@@ -329,7 +329,7 @@ TL_INLINE void add_mirrored(const struct tl_pixel_lanes *lanes, const struct glo
     float lobe[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         float exponent = lobe_broadened_exponent(gloss->exponent[i], sun->radius * GLM_SQRT1_2f);
-        float cosine = tl_greater(glms_vec3_dot(direction, tl_lane_vector(gloss->mirror, i)), 1e-30f);
+        float cosine = tl_maxf(glms_vec3_dot(direction, tl_lane_vector(gloss->mirror, i)), 1e-30f);
         lobe[i] = 0.159154943f * (exponent + 1) * tl_power(cosine, exponent);
     }
     for (int i = 0; i < lanes->look.count; i++)
@@ -352,7 +352,7 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
     }
     for (int i = 0; i < look->count; i++) {
         seen[i] *= tl_pixel_sun_seen(request, sun, lanes->pixel[i]);
-        any = tl_greater(any, seen[i]);
+        any = tl_maxf(any, seen[i]);
     }
     if (!(any > 0))
         return;

@@ -220,11 +220,10 @@ TL_INLINE int shade_flat(const struct tl_pixel_scene *scene, const struct pixel_
         base[i] = e[0] * (0.5f - triangle->x0) + e[1] * ((float)y + 0.5f - triangle->y0) + e[2];
     }
     for (; x < width && row[x] == id; x++) {
-        float a = tl_greater(base[0] + step[0] * (float)x, 0),
-              b = tl_greater(base[1] + step[1] * (float)x, 0),
-              c = tl_greater(base[2] + step[2] * (float)x, 0);
+        float a = tl_maxf(base[0] + step[0] * (float)x, 0), b = tl_maxf(base[1] + step[1] * (float)x, 0),
+              c = tl_maxf(base[2] + step[2] * (float)x, 0);
         tl_quad colour = (a * run->diffuse[0] + b * run->diffuse[1] + c * run->diffuse[2]) *
-                         (1 / tl_greater(a + b + c, 1e-30f));
+                         (1 / tl_maxf(a + b + c, 1e-30f));
         for (int i = 0; i < suns; i++)
             colour += tl_pixel_sun_seen(request, i, first + (size_t)x) * run->sunlight[i];
         colour[3] = 1;

@@ -37,13 +37,13 @@ struct tl_pixel_blends *tl_pixel_blends_make(void);
 /* K_1 without a power. */
 TL_INLINE float tl_pixel_diffuse_lobe(float cosine)
 {
-    return 0.318309886f * tl_greater(cosine, 0);
+    return 0.318309886f * tl_maxf(cosine, 0);
 }
 
 /* Share of a sun's disc above the plane of the smooth normal. */
 TL_INLINE float tl_pixel_sun_above(const struct tl_sun *sun, float cosine)
 {
-    return disc_share(cosine / tl_greater(sun->radius, 1e-3f));
+    return disc_share(cosine / tl_maxf(sun->radius, 1e-3f));
 }
 
 /* What of a sun is seen at a pixel. */

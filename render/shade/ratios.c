@@ -84,7 +84,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
     const bool back = seen & TL_SAMPLE_BACK;
     const vec3s normal = glms_vec3_scale(tl_lane_vector(look->smooth, lane), look->side[lane]);
     const vec3s viewer = tl_lane_vector(look->viewer, lane);
-    float cosine = tl_greater(glms_vec3_dot(normal, viewer), 0);
+    float cosine = tl_maxf(glms_vec3_dot(normal, viewer), 0);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * cosine), viewer);
     /* Facets need a viewer above the surface: one at the horizon stands for those below it. */
     const float least = 0.02f;

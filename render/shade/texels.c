@@ -41,7 +41,7 @@ static void pack_level(const struct tl_map_texture *map, int level, struct tl_te
                 ((float *)texels->levels[level])[4 * i + (size_t)c] = value;
             else
                 ((uint16_t *)texels->levels[level])[4 * i + (size_t)c] =
-                    (uint16_t)(tl_greater(tl_lesser((value - texels->base) / texels->step, 65535), 0) + 0.5f);
+                    (uint16_t)(tl_maxf(tl_minf((value - texels->base) / texels->step, 65535), 0) + 0.5f);
         }
 }
 

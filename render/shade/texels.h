@@ -33,7 +33,7 @@ size_t tl_texels_bytes(const struct tl_texels *texels);
 TL_INLINE float tl_texels_wrap(float x, int size, bool clamp, int *first, int *second)
 {
     if (clamp) {
-        x = tl_greater(tl_lesser(x, (float)(size - 1)), 0);
+        x = tl_maxf(tl_minf(x, (float)(size - 1)), 0);
         *first = (int)x;
         *second = *first + 1 < size ? *first + 1 : *first;
         return x - (float)*first;

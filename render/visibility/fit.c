@@ -74,12 +74,12 @@ TL_CLONES static struct value_range range_along(const struct tl_caster_cloud *cl
         for (int lane = 0; lane < TL_LANES; lane++) {
             size_t k = i + (size_t)lane;
             float value = axis.x * x[k] + axis.y * y[k] + axis.z * z[k];
-            low[lane] = tl_lesser(low[lane], value);
-            high[lane] = tl_greater(high[lane], value);
+            low[lane] = tl_minf(low[lane], value);
+            high[lane] = tl_maxf(high[lane], value);
         }
     struct value_range range = {low[0], high[0]};
     for (int lane = 1; lane < TL_LANES; lane++)
-        range = (struct value_range){tl_lesser(range.low, low[lane]), tl_greater(range.high, high[lane])};
+        range = (struct value_range){tl_minf(range.low, low[lane]), tl_maxf(range.high, high[lane])};
     return range;
 }
 
@@ -87,7 +87,7 @@ TL_CLONES static struct value_range range_along(const struct tl_caster_cloud *cl
 static vec4s fit_row(const struct tl_caster_cloud *cloud, vec3s axis, float share)
 {
     struct value_range range = range_along(cloud, axis);
-    float scale = share / tl_greater(range.high - range.low, EXTENT_MIN);
+    float scale = share / tl_maxf(range.high - range.low, EXTENT_MIN);
     return (vec4s){
         {axis.x * scale, axis.y * scale, axis.z * scale, 0.5f - scale * 0.5f * (range.low + range.high)}};
 }

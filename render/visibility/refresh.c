@@ -114,7 +114,7 @@ TL_INLINE float greatest_cosine(const struct cluster_lanes *lanes, vec3s directi
         cosines[i] = lanes->nx[i] * direction.x + lanes->ny[i] * direction.y + lanes->nz[i] * direction.z;
     float greatest = -1;
     for (int i = 0; i < TL_CLUSTER; i++)
-        greatest = tl_greater(greatest, lanes->members >> i & 1 ? cosines[i] : -1);
+        greatest = tl_maxf(greatest, lanes->members >> i & 1 ? cosines[i] : -1);
     return greatest;
 }
 

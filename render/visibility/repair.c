@@ -41,7 +41,7 @@ TL_INLINE float spread_of(const struct weights *weights, vec3s normal, const uin
             high = high > c ? high : c;
             low = low < c ? low : c;
             float cosine = weights->x[i] * normal.x + weights->y[i] * normal.y + weights->z[i] * normal.z;
-            sums[lane] += weights->importance[i] * tl_greater(cosine, 0) * (float)(high - low);
+            sums[lane] += weights->importance[i] * tl_maxf(cosine, 0) * (float)(high - low);
         }
     return tl_sum_lanes(sums);
 }
