@@ -1,9 +1,9 @@
-/* Garments by file (here) and by name (assets/builtin/garment_cut.h). */
+/* Garments by file (here) and by name (assets/cut/garment_cut.h). */
 #ifndef TOILE_ASSETS_GARMENT_H
 #define TOILE_ASSETS_GARMENT_H
 
 #include "assets/base/garment.h"
-#include "assets/builtin/garment_cut.h"
+#include "assets/cut/garment_cut.h"
 #include "config/error.h"
 
 /* Loads a glTF or OBJ file as a garment, with the pins that the file names.

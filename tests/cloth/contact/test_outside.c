@@ -2,7 +2,7 @@
  * through his skirt, and on two bodies that twist. TOILE_FRAMES=300 runs the full length: 90 s of CPU for the
  * reference on the man, 30 s for settle. The default is 1.5 s of motion, and less for the slow solvers. */
 #include "assets/avatar.h"
-#include "assets/builtin/fit.h"
+#include "assets/cut/fit.h"
 #include "cloth/state.h"
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/twist.h"

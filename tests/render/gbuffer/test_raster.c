@@ -6,7 +6,7 @@
 #include "tests/render/soup.h"
 
 #include "assets/builtin/form.h"
-#include "assets/builtin/garment_cut.h"
+#include "assets/cut/garment_cut.h"
 #include "config/memory.h"
 #include "render/gbuffer/ids_internal.h"
 

@@ -1,4 +1,4 @@
-#include "assets/builtin/garment_cut_internal.h"
+#include "assets/cut/garment_cut_internal.h"
 
 #include "config/memory.h"
 

@@ -1,7 +1,7 @@
 /* Girths against circles of known length. */
 #include "tests/testing.h"
 
-#include "assets/builtin/fit.h"
+#include "assets/cut/fit.h"
 #include "config/memory.h"
 
 #define SIDES 96

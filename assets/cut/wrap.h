@@ -1,8 +1,8 @@
 /* Surfaces around the dress form that are nearly developable, for placing the flat pieces of built-in
  * garments with little strain: rings by arc length, and flares that hang from a ring. Metres. Threads: pure.
  */
-#ifndef TOILE_ASSETS_BUILTIN_WRAP_H
-#define TOILE_ASSETS_BUILTIN_WRAP_H
+#ifndef TOILE_ASSETS_CUT_WRAP_H
+#define TOILE_ASSETS_CUT_WRAP_H
 
 #include "assets/builtin/panel.h"
 

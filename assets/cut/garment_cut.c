@@ -1,6 +1,6 @@
-#include "assets/builtin/garment_cut.h"
+#include "assets/cut/garment_cut.h"
 
-#include "assets/builtin/garment_cut_internal.h"
+#include "assets/cut/garment_cut_internal.h"
 #include "config/memory.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-#include "assets/builtin/wrap.h"
+#include "assets/cut/wrap.h"
 
 #include "assets/builtin/form.h"
 

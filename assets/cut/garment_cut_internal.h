@@ -5,12 +5,12 @@
  * A piece is symmetric about x = 0: `half` runs counter-clockwise along its right side from the bottom's
  * middle to the top's middle. In the whole outline, curve i < half_count is half[i] and curve
  * 2 half_count - 1 - i is its mirror image. Metres; x along the weft, y along the warp. */
-#ifndef TOILE_ASSETS_BUILTIN_GARMENT_CUT_INTERNAL_H
-#define TOILE_ASSETS_BUILTIN_GARMENT_CUT_INTERNAL_H
+#ifndef TOILE_ASSETS_CUT_GARMENT_CUT_INTERNAL_H
+#define TOILE_ASSETS_CUT_GARMENT_CUT_INTERNAL_H
 
-#include "assets/builtin/garment_cut.h"
 #include "assets/builtin/panel.h"
-#include "assets/builtin/wrap.h"
+#include "assets/cut/garment_cut.h"
+#include "assets/cut/wrap.h"
 
 #include <stdbool.h>
 

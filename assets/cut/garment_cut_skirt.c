@@ -1,5 +1,5 @@
 #include "assets/builtin/form.h"
-#include "assets/builtin/garment_cut_internal.h"
+#include "assets/cut/garment_cut_internal.h"
 
 #include "config/memory.h"
 

@@ -1,7 +1,7 @@
 /* Built-in garments on other bodies: girths measured on the body's mesh, and the garment scaled and moved to
  * them. */
-#ifndef TOILE_ASSETS_BUILTIN_FIT_H
-#define TOILE_ASSETS_BUILTIN_FIT_H
+#ifndef TOILE_ASSETS_CUT_FIT_H
+#define TOILE_ASSETS_CUT_FIT_H
 
 #include "assets/base/garment.h"
 

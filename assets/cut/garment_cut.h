@@ -1,6 +1,6 @@
 /* Garments that need no file. Threads: pure. */
-#ifndef TOILE_ASSETS_BUILTIN_GARMENT_CUT_H
-#define TOILE_ASSETS_BUILTIN_GARMENT_CUT_H
+#ifndef TOILE_ASSETS_CUT_GARMENT_CUT_H
+#define TOILE_ASSETS_CUT_GARMENT_CUT_H
 
 #include "assets/base/garment.h"
 #include "config/error.h"

@@ -1,4 +1,4 @@
-#include "assets/builtin/fit.h"
+#include "assets/cut/fit.h"
 
 #include "assets/builtin/form.h"
 #include "config/memory.h"
