@@ -1,4 +1,4 @@
-/* toile cache: lists what is kept of drapes, and clears it. */
+/* toile cache: lists the cached drapes, or removes them. */
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
 #include "app/drape/cache.h"

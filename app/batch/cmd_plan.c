@@ -59,7 +59,7 @@ static void print_budget(const struct budgeted *budgeted)
         if (step->level > 0)
             printf("%+.1f ms, %+.2g of FLIP\n", step->ms, -step->error);
         else
-            printf("%s\n", step->level_count > 1 ? "as asked for" : "not of this scene");
+            printf("%s\n", step->level_count > 1 ? "as asked for" : "has no effect in this scene");
     }
 }
 

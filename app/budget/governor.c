@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Samples a pixel side at least, where ratios at vertices make them cheap: with a quarter of the pixels a
- * garment can be judged. Rather fewer frames a second than fewer samples. Scenes whose samples are dear (open
- * cloth, lamps) may go lower. */
+/* The minimum of samples along the side of a pixel while ratios at vertices light them: the frame rate is
+ * reduced rather than the samples below a quarter of the pixels, with which a garment can still be judged.
+ * Scenes whose samples are expensive (open cloth, lamps) may go lower. */
 #define SAMPLES_MIN 0.5f
 
 /* After this many frames without a change the viewer is looking at a still image. */
@@ -25,7 +25,7 @@ struct tl_quality_governor {
     struct tl_quality_choice choice;
     struct tl_cost_job cloth, other; /* all of a frame but drawing */
     double load;                     /* of the machine when the levels were chosen */
-    bool is_preparing; /* the frame prepared regions, which others do not: its time is not learnt */
+    bool is_preparing; /* the frame prepares regions: its time is not typical and is not learned */
     int rested;        /* frames without a change */
     uint64_t environment_revision;
 };

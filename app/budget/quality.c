@@ -16,7 +16,7 @@ static const int level_counts[TL_CONTROL_COUNT] = {2, 3, 4, 3, TL_COUNT(scales)}
 #define REGIONS_MIN 24
 #define REFRESH_MIN 2
 #define RELIEF_MIN  8
-#define SAMPLES_MIN 0.25f /* a pixel side: with fewer a garment cannot be made out */
+#define SAMPLES_MIN 0.25f /* along the side of a pixel: with fewer a garment is not recognisable */
 
 static int halved(int value, int times, int minimum)
 {
@@ -161,7 +161,8 @@ static double light_square(const struct tl_light_params *light)
     return error * error;
 }
 
-/* Fewer samples count twice: missing detail is seen in any picture, light that is off only beside another. */
+/* The error of fewer samples counts twice: missing detail is visible in a single picture, an error of light
+ * only next to the correct one. */
 #define SAMPLING_WEIGHT 2
 
 /* Squared error of 2, 1 .. 1/4 samples a pixel side against many. The errors of the settings' own image and

@@ -22,7 +22,8 @@ bool tl_height_picture_load(const char *path, tl_image *out, tl_error *error)
         if (!isfinite(tl_image_floats(out)[i])) {
             tl_image_release(out);
             return tl_fail(error, TL_INPUT,
-                           "%s: holds a value that is not finite: mend it in the program that made it", path);
+                           "%s: holds a value that is not finite: correct it in the program that made it",
+                           path);
         }
     return true;
 }

@@ -146,7 +146,8 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PAGE,
      .name = "resolution",
      .title = "The trade of resolution: error against time",
-     .text = FRONT "The truth is ray traced with nine samples a pixel, so that edges and threads count.",
+     .text = FRONT "The reference is ray traced with nine samples a pixel, so that the error includes edges "
+                   "and threads.",
      .scene = "review",
      .reference = {.assignments = {TRACED, "image.supersample=3"}},
      APPEARANCES(cloths),
@@ -155,11 +156,11 @@ static const struct tl_experiment experiments[] = {
      .measured = 3},
     {.output = TL_OUTPUT_PAGE,
      .name = "levels",
-     .title = "What each level of the planner costs and errs by itself",
-     .text = FRONT "What the planner can turn (but the cloth, whose motion is recorded), from the preset "
-                   "review; the truth is ray traced. The error is FLIP of the picture as shown, over the "
-                   "pixels of the garment. What a level adds is what its error's square has over that of the "
-                   "settings.",
+     .title = "Error and time of each quality level alone",
+     .text = FRONT "The levels of each quality control alone, from the preset review; the reference is ray "
+                   "traced. The error is FLIP of the displayed picture over the pixels of the garment. The "
+                   "squared error that a level adds is the difference between its squared error and that of "
+                   "the settings.",
      .scene = "dress",
      .reference = {.assignments = {QUICK_TRUTH}},
      APPEARANCES(samples),
@@ -170,11 +171,11 @@ static const struct tl_experiment experiments[] = {
      .by_flip = true},
     {.output = TL_OUTPUT_PAGE,
      .name = "overall",
-     .title = "What a frame's time buys",
-     .text =
-         FRONT "The presets, and the planner from the preset review downwards at budgets of 8 to 200 ms; the "
-               "truth is ray traced. The error is FLIP of the picture as shown, over the pixels of the "
-               "garment. Time is that of drawing: the motion was recorded before.",
+     .title = "Error against the time budget of a frame",
+     .text = FRONT "The presets, and the quality levels that the governor chooses from the preset review at "
+                   "budgets of 8 to 200 ms; the reference is ray traced. The error is FLIP of the displayed "
+                   "picture over the pixels of the garment. Times are those of drawing: the motion was "
+                   "recorded before.",
      .scene = "dress",
      .reference = {.assignments = {QUICK_TRUTH, "light.lobe=dual"}},
      APPEARANCES(worn),

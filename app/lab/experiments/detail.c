@@ -120,8 +120,9 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PAGE,
      .name = "detail",
      .title = "The trade of fabric detail: error against time",
-     .text = FRONT "One lamp. Of threads that can be seen the truth is a march of 256 steps with its own "
-                   "shadows; of those that cannot, 64 samples a pixel.",
+     .text =
+         FRONT "The scene has one lamp. Where threads are visible, the reference is relief mapping of 256 "
+               "steps with its own shadows; elsewhere, an image of 64 samples a pixel.",
      .scene = "review",
      .base = {LAMPLIT, "lamp.pitch_deg=25", "material.use_file=false"},
      APPEARANCES(threads),
@@ -132,9 +133,8 @@ static const struct tl_experiment experiments[] = {
      .name = "c1",
      .scene = "gallery",
      .title = "C1, C2  Heights as normals",
-     .text =
-         "A weave of yarns 8 mm apart. Exact is Blinn's perturbed normal at every pixel, which knows how the "
-         "parametrisation stretches; the normal map assumes square patches.",
+     .text = "A weave of yarns 8 mm apart. Reference: Blinn's perturbed normal at every pixel, which "
+             "follows the stretch of the parametrisation; the normal map assumes square patches.",
      .solid = "torus",
      .base = {LAMPLIT, BUMPY},
      .reference = {.assignments = {"detail.mode=blinn"}},
@@ -144,9 +144,8 @@ static const struct tl_experiment experiments[] = {
      .name = "c3",
      .scene = "gallery",
      .title = "C3  Frames rebuilt every frame",
-     .text = "A highlight that follows the threads, on the coarser meshes against the finest of the same "
-             "kind: exact is the "
-             "ray-traced reference of the same mesh.",
+     .text = "A highlight that follows the threads, on coarse meshes and on the finest mesh of the same "
+             "shape. Reference: the ray-traced image of the same mesh.",
      .solid = "torus",
      .base = {"material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1",
               "material.specular=[0.15, 0.15, 0.15]"},
@@ -157,9 +156,9 @@ static const struct tl_experiment experiments[] = {
      .name = "c4",
      .scene = "gallery",
      .title = "C4  Parallax",
-     .text = "Looking up where the view meets the mean height moves bumps as one moves; limiting the shift "
-             "tames it at "
-             "grazing views. Exact is relief mapping with 256 steps.",
+     .text = "Parallax mapping reads the maps where the view ray meets the mean height, so that bumps "
+             "shift with the viewer; a limit on the shift reduces its errors at grazing views. "
+             "Reference: relief mapping with 256 steps.",
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16"},
      .reference = {.assignments = {"detail.mode=relief", "detail.steps=256", "detail.refine=8"}},
@@ -169,10 +168,10 @@ static const struct tl_experiment experiments[] = {
      .name = "c5",
      .scene = "gallery",
      .title = "C5  Shadows of bumps",
-     .text = "Horizon angles baked for some directions a texel, front and back, against a march through the "
-             "heights. Exact is the march with 256 steps. Between two directions a horizon's slope is linear "
-             "in the direction, which is right for a straight yarn; near the terminator, where the lamp "
-             "stands lowest over the cloth, eight of them still miss the gaps between yarns.",
+     .text = "Horizon angles are stored for several directions a texel, on both sides of the cloth. "
+             "Reference: relief mapping with 256 steps. Between two directions the slope of a horizon is "
+             "linear, which is exact for a straight yarn. Near the terminator, where the lamp is lowest "
+             "over the cloth, eight directions do not resolve the gaps between yarns.",
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief", "lamp.yaw_deg=-70",
               "lamp.pitch_deg=20"},
@@ -183,9 +182,8 @@ static const struct tl_experiment experiments[] = {
      .name = "c6",
      .scene = "gallery",
      .title = "C6  Relief by number of steps",
-     .text =
-         "From cone to cone, each so wide that a ray goes under the field once at most before it leaves it; "
-         "then halvings of the last step. Exact is 256 steps.",
+     .text = "Each step goes to the end of a cone which is so wide that the ray crosses the height field "
+             "at most once within it; the last step is then bisected. Reference: 256 steps.",
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief"},
      .reference = {.assignments = {"detail.steps=256", "detail.refine=8"}},
@@ -195,7 +193,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c7",
      .scene = "gallery",
      .title = "C7  Yarns that differ in gloss",
-     .text = "Glossiness per texel. Exact is the ray-traced reference.",
+     .text = "Glossiness varies from texel to texel. Reference: the ray-traced image.",
      .solid = "torus",
      .base = {BUMPY},
      .reference = {.assignments = {"light.method=reference"}},
@@ -205,9 +203,9 @@ static const struct tl_experiment experiments[] = {
      .name = "c8",
      .scene = "gallery",
      .title = "C8  A fine weave far away",
-     .text = "Yarns 2.4 mm apart, not two pixels. Bumps that vanish leave plastic; roughness widened "
-             "by the spread of "
-             "their normals keeps the cloth. Exact is 8 x 8 samples a pixel.",
+     .text = "Yarns are 2.4 mm apart, less than two pixels. Without its bumps the cloth would look like "
+             "plastic; roughness that is widened by the variance of their normals keeps its appearance. "
+             "Reference: 8 x 8 samples a pixel.",
      .solid = "torus",
      .base = {LAMPLIT, "weave.pattern=plain", "weave.warp_pitch_mm=2.4", "weave.weft_pitch_mm=2.4",
               "weave.crimp_mm=0.6", "material.specular=[0.15, 0.15, 0.15]"},

@@ -140,9 +140,7 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PAGE,
      .name = "light",
      .title = "The trade of light: error against time",
-     .text =
-         "Down and left is better. Every mark is one choice of settings that drew the same moving cloth; the "
-         "dashed line joins those that nothing else beats in both.",
+     .text = FRONT,
      .scene = "review",
      .reference = {.assignments = {TRACED}},
      APPEARANCES(materials),
@@ -161,10 +159,9 @@ static const struct tl_experiment experiments[] = {
      .name = "d9",
      .scene = "gallery",
      .title = "D9  The comparison of figure 6",
-     .text =
-         "What each method makes of the same light: exact is the ray-traced reference. Ambient occlusion "
-         "darkens "
-         "folds but knows no direction; lights in place of prefiltered regions show themselves in the gloss.",
+     .text = "The methods of light under the same environment. Reference: the ray-traced image. Ambient "
+             "occlusion darkens folds, but does not depend on the direction of light; point lights in "
+             "place of prefiltered regions are visible as separate highlights.",
      .solid = "torus",
      .base = {"image.ground=true"},
      .reference = {.assignments = {"light.method=reference", "light.lobe=dual"}},

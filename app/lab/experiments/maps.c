@@ -58,10 +58,10 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "b1",
      .scene = "gallery",
-     .title = "B1  The sphere of directions as a picture",
-     .text = "A mirror shows the map itself. Exact is a cube of 256 texels a face. The sphere map loses what "
-             "lies "
-             "behind in its rim and has to be rebuilt when the view turns; paraboloids and the cube do not.",
+     .title = "B1  Layouts of environment maps",
+     .text = "A mirror shows the map itself. Reference: a cube map of 256 texels a face. The sphere map "
+             "compresses the directions behind it into its rim, and has to be rebuilt when the view "
+             "turns; paraboloids and the cube map do not.",
      .solid = "sphere",
      .base = {"light.method=maps", "maps.mode=mirror"},
      .reference = {.assignments = {"maps.layout=cube", "maps.size=256"}},
@@ -73,9 +73,8 @@ static const struct tl_experiment experiments[] = {
      .name = "b3",
      .scene = "gallery",
      .title = "B3  Levels that keep the light",
-     .text = "Texels weigh by their solid angle when a map shrinks [op. cit., eq. 6], so that even a few "
-             "texels hold the "
-             "diffuse light. Exact is a cube of 256 texels a face.",
+     .text = "Texels are weighted by their solid angle when a map is reduced [op. cit., eq. 6], so that "
+             "even a few texels hold the diffuse light. Reference: a cube map of 256 texels a face.",
      .solid = "sphere",
      .base = {"light.method=maps", "maps.mode=diffuse"},
      .reference = {.assignments = {"maps.layout=cube", "maps.size=256"}},
@@ -85,10 +84,10 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "b4",
      .scene = "gallery",
-     .title = "B4  Two ways to look a paraboloid up",
-     .text = "Reflection vectors computed directly, or by the texture matrix P S M^-1 and a projective "
-             "look-up, the "
-             "first map's alpha choosing the half: the same picture.",
+     .title = "B4  Two look-ups of a paraboloid",
+     .text = "Reflection vectors are computed directly; or by the texture matrix P S M^-1 and a "
+             "projective look-up, where the alpha of the first map selects the half. Both give the same "
+             "picture.",
      .solid = "sphere",
      .base = {"light.method=maps", "maps.mode=mirror", "maps.layout=paraboloid", "maps.size=256"},
      .reference = {.assignments = {"maps.look_up=direct"}},
@@ -98,9 +97,9 @@ static const struct tl_experiment experiments[] = {
      .name = "b5",
      .scene = "gallery",
      .title = "B5  Terms that a map can hold",
-     .text = "One term alone each: prefiltered for a diffuse or a glossy lobe, looked up along the mirrored "
-             "or the "
-             "refracted ray, or straight through. Exact is the same from a cube of 256 texels a face.",
+     .text = "Each picture shows one term alone: prefiltered for a diffuse or a glossy lobe, and looked "
+             "up along the reflected ray, the refracted ray, or straight through. Reference: a cube map "
+             "of 256 texels a face.",
      .solid = "torus",
      .base = {"light.method=maps", "maps.layout=paraboloid", "maps.size=128"},
      .reference = {.assignments = {"maps.layout=cube", "maps.size=256"}},
@@ -111,9 +110,8 @@ static const struct tl_experiment experiments[] = {
      .name = "b2",
      .scene = "gallery",
      .title = "B2  The scene in its own map",
-     .text = "A cube drawn from the middle of the scene instead of the environment alone, so that what "
-             "stands around is "
-             "mirrored. Exact is a capture in every frame.",
+     .text = "The environment map is captured from the middle of the scene, so that the reflections "
+             "include the objects around it. Reference: a capture in every frame.",
      .solid = "torus",
      .base = {"light.method=maps", "maps.mode=mirror", "image.ground=true"},
      .reference = {.assignments = {"maps.capture_every=1"}},
@@ -124,9 +122,9 @@ static const struct tl_experiment experiments[] = {
      .name = "b6",
      .scene = "gallery",
      .title = "B6  Fresnel's term from a table of one row",
-     .text = "The indices of the paper's figure 7. Added to what lies below, energy is made from nothing at "
-             "grazing "
-             "angles; a coat lets through only the rest. Exact is the same from a cube of 256 texels a face.",
+     .text = "The indices of refraction are those of the paper's figure 7. Reflection that is added to "
+             "the light of the base creates energy at grazing angles; a coat transmits only the rest. "
+             "Reference: a cube map of 256 texels a face.",
      .solid = "torus",
      .base = {"light.method=maps", "maps.size=128", "material.fresnel=dielectric",
               "material.specular=[1, 1, 1]"},
@@ -137,9 +135,8 @@ static const struct tl_experiment experiments[] = {
      .name = "b7",
      .scene = "gallery",
      .title = "B7  Bumps under an environment",
-     .text = "Normal maps in a frame that is rebuilt every frame, looked up in world space at every pixel. "
-             "Exact: a "
-             "cube of 256 texels a face.",
+     .text = "Normal maps in tangent frames that are rebuilt every frame; the environment is looked up "
+             "in world space at every pixel. Reference: a cube map of 256 texels a face.",
      .solid = "torus",
      .base = {"light.method=maps", "maps.size=128"},
      .reference = {.assignments = {"maps.size=256"}},

@@ -228,7 +228,7 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PAGE,
      .name = "shading",
      .title = "The trade of shading under a lamp: error against time",
-     .text = FRONT "The truth is the formula itself, at every pixel, with vectors made unit.",
+     .text = FRONT "The reference evaluates the formula at every pixel, with normalised vectors.",
      .scene = "review",
      .base = {LAMPLIT, "lamp.pitch_deg=25", "material.use_file=false"},
      APPEARANCES(models),
@@ -239,9 +239,8 @@ static const struct tl_experiment experiments[] = {
      .name = "a1",
      .scene = "gallery",
      .title = "A1  Torrance-Sparrow from two tables",
-     .text = "F D and G / (pi cos b) in a table each, multiplied per pixel [Heidrich and Seidel 1999, "
-             "section 3.1]. "
-             "Exact is the formula itself.",
+     .text = "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
+             "[Heidrich and Seidel 1999, section 3.1]. Reference: the formula itself.",
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.fresnel=dielectric",
               "material.width_weft=0.3", "material.specular=[1, 1, 1]"},
@@ -251,12 +250,11 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a2",
      .scene = "gallery",
-     .title = "A2  The factor that has no bound",
-     .text = "G / (pi cos b) grows without bound towards grazing views. Cut at 1, as fixed-point hardware "
-             "does, it "
-             "darkens them; divided by its greatest value and multiplied back it does not, but spends its "
-             "bits there. "
-             "The lamp stands behind, where it shows.",
+     .title = "A2  The unbounded factor",
+     .text = "G / (pi cos b) grows without bound towards grazing views. Fixed-point hardware clamps it "
+             "to 1, which darkens these views. Dividing the table by its maximum, and multiplying by it "
+             "again in the shader, avoids that, but leaves fewer bits for all other views. The lamp is "
+             "behind the object, where the difference is visible.",
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.width_weft=0.2",
               "material.specular=[1, 1, 1]", "lamp.yaw_deg=190", "lamp.pitch_deg=25",
@@ -268,7 +266,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a3",
      .scene = "gallery",
      .title = "A3  Phong, Blinn-Phong and cosine lobe",
-     .text = "One table each. Exact is the formula.",
+     .text = "Each model is read from one table. Reference: the formula.",
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
@@ -278,8 +276,9 @@ static const struct tl_experiment experiments[] = {
      .name = "a4",
      .scene = "gallery",
      .title = "A4  Ward's elliptical Gaussian",
-     .text = "Facets spread unlike along weft and warp: the highlight lies across the narrower. Exact is the "
-             "formula.",
+     .text = "The facets have different slopes along weft and warp; the highlight is elongated along the "
+             "direction of "
+             "the larger slopes. Reference: the formula.",
      .solid = "sphere",
      .base = {LAMPLIT, "material.model=ward", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
@@ -289,7 +288,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a5",
      .scene = "gallery",
      .title = "A5  Banks's threads",
-     .text = "A thread has no normal but a circle of them; the one in the plane of thread and lamp counts.",
+     .text = "A thread has a circle of normals; the normal in the plane of thread and lamp is used.",
      .solid = "sphere",
      .base = {LAMPLIT, "material.model=banks", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
@@ -298,10 +297,10 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a6",
      .scene = "gallery",
-     .title = "A6  Where table coordinates come from",
-     .text = "One texture matrix for a lamp and a viewer far away; per vertex with a local viewer; per "
-             "pixel. Exact is "
-             "the last, evaluated directly.",
+     .title = "A6  Coordinates of the tables",
+     .text = "The coordinates of a table are computed by one texture matrix, for a lamp and a viewer at "
+             "infinity; or at vertices, with a local viewer; or at pixels. Reference: the formula, "
+             "evaluated at pixels.",
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", "material.model=blinn_phong", SPECULAR},
      .reference = {.assignments = {"shading.coordinates=pixel", "shading.reflectance=direct"}},
@@ -312,8 +311,8 @@ static const struct tl_experiment experiments[] = {
      .name = "a7",
      .scene = "gallery",
      .title = "A7  Passes",
-     .text = "Hardware with one texture a pass multiplies the factors by blending; what the target cannot "
-             "hold is lost.",
+     .text = "Hardware with one texture a pass multiplies the factors by blending; values beyond the "
+             "range or the precision of the target are lost.",
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", "material.model=torrance_sparrow",
               "material.width_weft=0.3", "material.specular=[1, 1, 1]"},
@@ -324,9 +323,9 @@ static const struct tl_experiment experiments[] = {
      .name = "a8",
      .scene = "gallery",
      .title = "A8  How often light is evaluated",
-     .text = "At vertices the highlight is lost first; interpolated vectors that are not made unit again dim "
-             "it between "
-             "vertices. Exact is Phong shading on the same mesh.",
+     .text = "Light that is evaluated at vertices alone loses the highlight first. Interpolated vectors "
+             "that are not normalised again darken the highlight between vertices. Reference: Phong "
+             "shading on the same mesh.",
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR},
      .reference = {.assignments = {"shading.frequency=phong"}},
@@ -336,11 +335,10 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a9",
      .scene = "gallery",
-     .title = "A9  Making interpolated vectors unit",
-     .text = "As in figure 9 of [001]: one step of Newton's is better than the cube map of 8 bits as long as "
-             "less than 38 "
-             "degrees lie between vertices, the one of 16 bits is nearly exact. Edges of 1.5 cm; folds turn "
-             "more.",
+     .title = "A9  Normalisation of interpolated vectors",
+     .text = "As in figure 9 of [001]: one step of Newton's method is better than the 8-bit cube map "
+             "while the normals at two neighbouring vertices are less than 38 degrees apart; the 16-bit "
+             "cube map is nearly exact. Edges are 1.5 cm long; in folds the angles are larger.",
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR, "cloth.edge_m=0.008"},
      .reference = {.assignments = {"shading.normalisation=exact"}},
@@ -349,10 +347,9 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a10",
      .scene = "gallery",
-     .title = "A10  Powers of little precision",
-     .text = "As in figure 10 of [001]: repeated squaring in fixed point bands, a table with linear "
-             "interpolation is weak "
-             "where the power is steep.",
+     .title = "A10  Powers at low precision",
+     .text = "As in figure 10 of [001]: repeated squaring in fixed point shows bands; a table with "
+             "linear interpolation has its largest error where the power is steep.",
      .solid = "sphere",
      .base = {LAMPLIT, "material.specular=[0.2, 0.2, 0.2]"},
      .reference = {.assignments = {"shading.power=pow"}},
@@ -362,10 +359,10 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a11",
      .scene = "gallery",
-     .title = "A11  In which space",
-     .text = "Vectors taken into tangent space at vertices and interpolated, against lighting in the world "
-             "at every "
-             "pixel: what differs is how the frame turns across a triangle.",
+     .title = "A11  The space of lighting",
+     .text = "Vectors are transformed into tangent space at vertices and interpolated, or light is "
+             "evaluated in world space at every pixel: the results differ by how much the tangent frame "
+             "turns within a triangle.",
      .solid = "torus",
      .base = {LAMPLIT, BUMPY, SPECULAR},
      .reference = {.assignments = {"shading.space=world"}},
@@ -376,9 +373,8 @@ static const struct tl_experiment experiments[] = {
      .name = "a12",
      .scene = "gallery",
      .title = "A12  A bumped surface's own shadow",
-     .text = "Light ends at the horizon of the smooth surface, at once or along a steep ramp. Exact is the "
-             "step; the "
-             "ramp's difference is its width. The lamp stands to the side.",
+     .text = "Light ends at the horizon of the smooth surface, by a step or by a steep ramp. Reference: "
+             "the step; the difference is the width of the ramp. The lamp is at the side.",
      .solid = "torus",
      .base = {LAMPLIT, BUMPY, "lamp.yaw_deg=-70", "lamp.pitch_deg=10"},
      .reference = {.assignments = {"shading.self_shadow=step"}},

@@ -1,4 +1,4 @@
-/* toile fly: a recorded fly-through, and what it came to. */
+/* toile fly: records a flight around the garment, and reports its results. */
 #include "app/cli/json.h"
 #include "app/lab/flight/commands.h"
 #include "app/lab/flight/fly_account.h"
@@ -30,7 +30,7 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "fly: no folder named: add -o FOLDER");
     if (arguments->replay && (arguments->budget_ms > 0 || arguments->path))
-        return tl_fail(error, TL_USAGE, "--replay: has its levels and its path from %s: leave %s out",
+        return tl_fail(error, TL_USAGE, "--replay: takes its levels and its path from %s: leave %s out",
                        arguments->replay, arguments->path ? "--path" : "--budget");
     return true;
 }
@@ -61,7 +61,7 @@ static bool same_path(const struct tl_path *a, const struct tl_path *b)
     return same;
 }
 
-/* All that can be known to be wrong before the cloth is draped. */
+/* Checks all that can be checked before the cloth is draped. */
 static bool load_records(struct flying *flying, tl_error *error)
 {
     const struct tl_arguments *arguments = flying->arguments;
@@ -84,7 +84,7 @@ static bool load_records(struct flying *flying, tl_error *error)
             tl_flight_record_suits(&flying->against, arguments->against, settings, false, error));
 }
 
-/* The camera says where it is, so that a path can go on from there. */
+/* Gives an automatically framed camera its target and distance, from which a path can continue. */
 static void make_camera_explicit(struct tl_headless *headless)
 {
     const tl_frame frame = tl_session_frame(headless->session);
@@ -150,7 +150,7 @@ static bool prepare(struct flying *flying, struct tl_headless *headless, struct 
         return false;
     if (arguments->against && !same_path(path, &flying->against.flight.path))
         return tl_fail(error, TL_USAGE,
-                       "%s: was flown along another path: times of other work cannot be compared",
+                       "%s: was recorded along another path: times of different work cannot be compared",
                        arguments->against);
     options->budget_ms = arguments->replay ? flying->replay.flight.budget_ms : arguments->budget_ms;
     options->hash = arguments->hash || arguments->replay;

@@ -1,7 +1,7 @@
 /* A recorded flight: the camera follows a path while the cloth moves, under a frame budget or without one,
  * and every frame is recorded.
  *
- * A frame's clock, on the wall: from the choice of its levels over cloth and drawing to the finished linear
+ * A frame's time is wall time: from the choice of its levels over cloth and drawing to the finished linear
  * image. Later work on the image (thumbnails, hashes, video) is not counted. The first second is warm-up: it
  * is recorded, but left out of the figures. Levels recorded and applied again (a replay) give the same images
  * bit by bit. Milliseconds, bytes. Threads: the one that the GL context is current on. */

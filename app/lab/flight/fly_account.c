@@ -173,7 +173,7 @@ void tl_flight_print(const struct tl_flight_account *account, FILE *out)
     const struct tl_flight *flight = account->flight;
     const struct tl_flight_figures *figures = &account->figures;
     if (!figures->judged) {
-        fprintf(out, "%d frames, all of them warm-up: nothing is judged\n", flight->count);
+        fprintf(out, "%d frames, all of them warm-up: there are no figures\n", flight->count);
         return;
     }
     fprintf(out, "%d frames: median %.2f ms, 95 %% within %.2f ms, 99 %% within %.2f ms, longest %.2f ms\n",
@@ -276,7 +276,7 @@ bool tl_flight_record_suits(const struct tl_flight_record *record, const char *f
                 suits = tl_fail(error, TL_USAGE, "%s: was flown with %s %s, here it is %s: %s", folder, key,
                                 text, own,
                                 whole ? "a replay needs the same scene and options"
-                                      : "times of other work cannot be compared");
+                                      : "times of different work cannot be compared");
             free(own);
             free(key);
         }

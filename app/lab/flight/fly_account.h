@@ -16,7 +16,7 @@ struct tl_flight_account { /* strings are borrowed */
     int cores;
     const char *stopped; /* why it ended early; NULL: it did not */
 
-    const char *replay;                       /* the folder whose levels were flown; NULL: none */
+    const char *replay;                       /* the folder whose levels were replayed; NULL: none */
     int compared, different, first_different; /* images with a hash in both; the frame, -1: none */
 
     const char *against; /* the folder that it is compared with; NULL: none */

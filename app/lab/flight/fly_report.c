@@ -84,8 +84,8 @@ static void print_tiles(const struct tl_flight_account *account, FILE *out)
     add_tile(&tiles, "median frame", 1, figures->p50_ms, " ms");
     add_tile(&tiles, "95 % of frames take at most", 1, figures->p95_ms, " ms");
     add_tile(&tiles, "99 % of frames take at most", 1, figures->p99_ms, " ms");
-    add_tile(&tiles, "of it for the cloth (median)", 1, figures->cloth_ms, " ms");
-    add_tile(&tiles, "off: predicted against measured", 1, 100 * figures->prediction_error, " %");
+    add_tile(&tiles, "for the cloth (median)", 1, figures->cloth_ms, " ms");
+    add_tile(&tiles, "median error of predicted times", 1, 100 * figures->prediction_error, " %");
     add_tile(&tiles, "mean FLIP that levels add, estimated", 3, figures->estimated_error, "");
     add_tile(&tiles, "FLIP of the garment", 3, figures->garment_flip, "");
     add_tile(&tiles, "FLIP of its worst 5 %", 3, figures->garment_flip_worst, "");
@@ -153,11 +153,10 @@ static void print_strip(const struct tl_flight_account *account, FILE *out)
     struct tl_plot_options options = time_options(flight);
     options.guides = &budget;
     options.guide_count = flight->budget_ms > 0;
-    snprintf(
-        caption, sizeof caption,
-        "Time on the wall, from the choice of levels to the finished image. Shaded: warm-up, which is not "
-        "judged%s.",
-        first_ms > highest_ms ? "; what goes beyond the top is cut off" : "");
+    snprintf(caption, sizeof caption,
+             "Wall time from the choice of levels to the finished image. Shaded: warm-up, which is not "
+             "judged%s.",
+             first_ms > highest_ms ? "; longer times are cut off" : "");
     tl_report_heading(out, "Every frame");
     print_lines(&lines, "ms", &options, caption, out);
 }
@@ -183,8 +182,8 @@ static void print_histogram(const struct tl_flight_account *account, FILE *out)
     for (int i = 0; i < BARS; i++)
         snprintf(names[i], sizeof names[i], "%.4g to %.4g ms: %.0f frames", i * width, (i + 1) * width,
                  points[i].y);
-    snprintf(caption, sizeof caption, "How often a frame took how long%s.",
-             beyond ? "; the last bar holds all that took longer too" : "");
+    snprintf(caption, sizeof caption, "The number of frames by their time%s.",
+             beyond ? "; the last bar includes all longer frames" : "");
     const struct tl_plot_series series = {.name = "frames", .points = points, .count = BARS};
     tl_report_plot_with(
         out, &(struct tl_plot){.x_label = "ms", .y_label = "frames", .series = &series, .series_count = 1},
@@ -243,8 +242,8 @@ static void print_stack(const struct tl_flight_account *account, FILE *out)
     struct tl_plot_options options = time_options(flight);
     options.kind = TL_PLOT_AREAS;
     tl_report_heading(out, "What it went to");
-    print_lines(&lines, "ms", &options,
-                "Each job's time, one on the other: `toile plan` says what each does.", out);
+    print_lines(&lines, "ms", &options, "The times of the jobs, stacked: `toile plan` says what each does.",
+                out);
 }
 
 static void print_job_table(const struct tl_flight *flight, FILE *out)
@@ -300,7 +299,7 @@ static void print_levels(const struct tl_flight *flight, FILE *out)
         for (int i = 0; i < flight->count; i++)
             points[i].y = base + used * flight->frames[i].levels.of[control] / highest;
     }
-    tl_report_heading(out, "What was shed to keep the time");
+    tl_report_heading(out, "Quality that was reduced to keep the budget");
     if (!count) {
         tl_report_paragraph(out, "Nothing: every frame was drawn as the settings ask for.");
         free(lines.points);
@@ -314,8 +313,8 @@ static void print_levels(const struct tl_flight *flight, FILE *out)
     options.height = 66 + lane_height * (double)count;
     print_lines(
         &lines, "levels", &options,
-        "On its line a control is where the settings want it; above, cheaper and worse by as many levels. "
-        "Controls that are not shown stayed on their line.",
+        "A control on its line has the quality of the settings; the distance above the line is the number of "
+        "levels by which it is reduced. Controls that are not shown were never reduced.",
         out);
 }
 
@@ -340,9 +339,10 @@ static void print_predictions(const struct tl_flight_account *account, FILE *out
     const struct tl_plot_series series[] = {
         {.name = "frames", .points = points, .count = count},
         {.name = "as predicted", .points = diagonal, .count = 2, .front = true}};
-    snprintf(caption, sizeof caption,
-             "Half of all frames were predicted within %.1f %%. Above the line: took longer than expected.",
-             100 * account->figures.prediction_error);
+    snprintf(
+        caption, sizeof caption,
+        "Half of all frames were predicted within %.1f %%. Frames above the line took longer than predicted.",
+        100 * account->figures.prediction_error);
     if (count) {
         tl_report_heading(out, "Predicted and measured");
         tl_report_plot_with(
@@ -395,7 +395,7 @@ static void print_worst(const struct tl_flight_account *account, FILE *out)
     tl_report_pictures_end(out);
 }
 
-/* The headline first. */
+/* The main figure first. */
 static const struct {
     const char *name;
     size_t offset;
@@ -404,7 +404,7 @@ static const struct {
     {"of its worst 5 %", offsetof(struct tl_flight_frame, garment_flip_worst)},
     {"FLIP of all covered pixels", offsetof(struct tl_flight_frame, flip_mean)},
     {"relative RMSE of all covered pixels", offsetof(struct tl_flight_frame, rel_rmse)},
-    {"what levels add, estimated", offsetof(struct tl_flight_frame, error)},
+    {"estimated error of the levels", offsetof(struct tl_flight_frame, error)},
 };
 
 static void print_oracle(const struct tl_flight_account *account, FILE *out)
@@ -428,7 +428,7 @@ static void print_oracle(const struct tl_flight_account *account, FILE *out)
         lines.series[k].count = (size_t)count;
     }
     struct tl_plot_options options = time_options(flight);
-    tl_report_heading(out, "How wrong it was");
+    tl_report_heading(out, "Error against the reference");
     if (figures->garment_frames)
         snprintf(garment, sizeof garment,
                  "FLIP of the garment, as shown: mean %.4f (largest of a frame %.4f), of its worst 5 %% of "
@@ -451,8 +451,8 @@ static void print_against(const struct tl_flight_account *account, FILE *out)
         return;
     tl_report_heading(out, "Against an earlier flight");
     snprintf(text, sizeof text,
-             "Medians of this flight over those of %.150s, frame by frame along the same way. The interval "
-             "knows the noise within the two runs, not a machine that was busier in one of them.",
+             "Medians of this flight over those of %.150s, frame by frame along the same path. The interval "
+             "includes the noise within each run, but not a machine that was busier in one of them.",
              account->against);
     tl_report_paragraph(out, text);
     for (size_t i = 0; i < TL_COUNT(heads); i++)

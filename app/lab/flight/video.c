@@ -114,7 +114,7 @@ bool tl_video_add(tl_video *video, const tl_image *image, tl_error *error)
             error, TL_OUTPUT, "%s: frame %d is %d x %d pixels, the first was %d x %d: a video has one size",
             video->writer.path, video->count, image->width, image->height, video->width, video->height);
     if (fwrite(image->texels, 1, size, video->waiting) != size)
-        return tl_fail(error, TL_OUTPUT, "%s: frames could not be put aside: %s: free some space",
+        return tl_fail(error, TL_OUTPUT, "%s: frames could not be stored: %s: free some space",
                        video->writer.path, strerror(errno));
     video->count++;
     return true;
@@ -133,7 +133,7 @@ static void last_line(FILE *log, char *out, size_t size)
     }
 }
 
-/* False when ffmpeg stopped listening. */
+/* False when ffmpeg has closed its input. */
 static bool feed(tl_video *video, int pipe_end)
 {
     static char block[1 << 16];
@@ -210,7 +210,7 @@ static bool encode(tl_video *video, FILE *log, tl_error *error)
         return tl_fail(error, TL_OUTPUT, "%s: ffmpeg could not be started: %s", video->writer.path,
                        strerror(reason));
     }
-    /* One that has died must not take this program along. */
+    /* If ffmpeg has ended, writing to it must not end this program. */
     struct sigaction ignored = {.sa_handler = SIG_IGN}, before;
     sigaction(SIGPIPE, &ignored, &before);
     bool heard = feed(video, ends[1]);

@@ -90,9 +90,10 @@ void tl_gallery_write_html(const struct tl_gallery *gallery, FILE *out)
         gallery->complete ? "" : "; interrupted: what was drawn until then");
     tl_report_begin(out, "The gallery of techniques", subtitle);
     tl_report_paragraph(
-        out, "Errors are relative RMSE over covered pixels against what the section's text names as exact. "
-             "Times are process CPU time of a whole frame, all threads, in this one run: compare them "
-             "with one another, not with other machines.");
+        out,
+        "Errors are relative RMSE over covered pixels against the reference that the section's text names. "
+        "Times are process CPU time of a whole frame, all threads, in this one run: compare them "
+        "with one another, not with other machines.");
     for (size_t i = 0; i < gallery->count;)
         i = print_section(gallery, i, out);
     tl_report_end(out);

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Interrupted, what was measured is worth as much as before: `done` says whether all was. */
+/* Results that were measured before an interruption are valid and are written; `done` says whether there are
+ * all. */
 static bool write_both(const char *folder, const void *trade, void (*write_csv)(const void *, FILE *),
                        void (*write_html)(const void *, FILE *), bool done, tl_error *error)
 {

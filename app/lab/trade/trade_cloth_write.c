@@ -225,7 +225,7 @@ void tl_trade_cloth_write_html(const struct tl_trade_cloth *trade, FILE *out)
     snprintf(text, sizeof text,
              "Down and left is better. A level sheet, clamped by an edge, falls for 0.5 s without damping; "
              "compared with %d x %d vertices solved by the reference at half its own step (whose step still "
-             "moves it by %.2g mm). What a mesh is too coarse to show counts as error.",
+             "moves it by %.2g mm). Detail that a mesh is too coarse for counts as error.",
              trade->truth_side, trade->truth_side, 1e3 * trade->truth_error_m);
     tl_report_paragraph(out, text);
     struct chart chart = make_chart(trade, TOTAL_ERROR, 0);

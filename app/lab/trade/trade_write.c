@@ -205,12 +205,13 @@ static void print_scatters(const struct tl_trade *trade, FILE *out)
         struct scatter scatter;
         make_scatter(trade, appearance, &scatter);
         char caption[300];
-        snprintf(caption, sizeof caption, "%c%s, %d x %d pixels. Errors over %s pixels against the truth.",
+        snprintf(caption, sizeof caption,
+                 "%c%s, %d x %d pixels. Errors over %s pixels against the reference.",
                  trade->experiment->appearances[appearance].title[0] - 'a' + 'A',
                  trade->experiment->appearances[appearance].title + 1, any->settings.image.width,
                  any->settings.image.height, garment ? "the garment's" : "covered");
         tl_report_plot(out,
-                       &(struct tl_plot){trade->experiment->by_wall ? "ms a frame on the wall"
+                       &(struct tl_plot){trade->experiment->by_wall ? "wall time of a frame, ms"
                                                                     : "CPU ms a frame, all threads",
                                          measure, true, true, scatter.series, scatter.series_count},
                        caption);
@@ -255,9 +256,9 @@ static void print_tables(const struct tl_trade *trade, int appearance, FILE *out
     tl_report_paragraph(
         out, trade->experiment->by_flip
                  ? "Errors are FLIP of the picture as shown over the garment's pixels, and over the "
-                   "worst 5 % of them, against the truth; times are medians."
+                   "worst 5 % of them, against the reference; times are medians."
                  : "Errors are relative RMSE and mean FLIP over covered pixels against the "
-                   "truth; times are medians of process CPU time; at rest, of the last frames "
+                   "reference; times are medians of process CPU time; at rest, of the last frames "
                    "averaged.");
     const char *group = NULL;
     for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, appearance, false));) {
