@@ -1,0 +1,415 @@
+extern "C" {
+#include "assets/halfmesh/halfmesh.h"
+#include "assets/halfmesh/sector.h"
+}
+
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* in OpenMesh's properties, which are inlined */
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModBaseT.hh>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <vector>
+
+namespace
+{
+
+using Mesh = OpenMesh::TriMesh_ArrayKernelT<>;
+using Weights = std::array<double, 3>;
+
+/* New edges may be this many times as long as the sides of equal triangles of the cage's number. */
+constexpr double LONGEST = 3;
+
+/* A face of the mesh by its number there, which it keeps while its neighbours vanish. */
+struct Face {
+    std::array<int, 3> corners; /* vertices of the mesh */
+    double rest[3][2];
+    std::vector<size_t> points; /* source vertices that were removed and lie here */
+};
+
+struct Located {
+    size_t point;
+    int face;
+    Weights weights; /* of the face's corners */
+};
+
+/* The mesh, and what belongs to it and is not OpenMesh's. */
+struct Work {
+    Mesh mesh;
+    std::vector<size_t> source; /* of each mesh vertex: its vertex in the source */
+    std::vector<char> held;     /* of each mesh vertex */
+    std::vector<Face> faces;
+    std::vector<Weights> weights; /* [source vertex] in the face whose `points` name it */
+    double longest = 0;           /* m, for new edges */
+    size_t refused = 0;
+};
+
+/* A sector around the vertex that a collapse removes, in terms of the mesh. */
+struct Around {
+    tl_sector sector;
+    size_t target;
+    std::array<int, TL_SECTOR_FACES> faces;
+    std::array<size_t, TL_SECTOR_FACES> slots; /* of the hub among each face's corners */
+};
+
+bool is_line(const Mesh &mesh, OpenMesh::HalfedgeHandle half)
+{
+    OpenMesh::EdgeHandle edge = mesh.edge_handle(half);
+    return mesh.is_boundary(edge) || mesh.status(edge).feature();
+}
+
+/* Collects the faces counter-clockwise from an outgoing half-edge to the next line, or once around. False
+ * when there are too many; a sector outside the border has none. */
+bool collect(const Work &work, OpenMesh::HalfedgeHandle start, Around &around)
+{
+    const Mesh &mesh = work.mesh;
+    OpenMesh::HalfedgeHandle half = start;
+    int hub = mesh.from_vertex_handle(start).idx();
+    around.sector.face_count = 0;
+    do {
+        OpenMesh::FaceHandle handle = mesh.face_handle(half);
+        if (!handle.is_valid())
+            break;
+        size_t n = around.sector.face_count++;
+        if (n == TL_SECTOR_FACES)
+            return false;
+        const Face &face = work.faces[static_cast<size_t>(handle.idx())];
+        size_t slot = face.corners[0] == hub ? 0 : face.corners[1] == hub ? 1 : 2;
+        around.faces[n] = handle.idx();
+        around.slots[n] = slot;
+        for (size_t k = 0; k < 3; k++)
+            std::memcpy(around.sector.rest[n][k], face.rest[(slot + k) % 3], sizeof face.rest[0]);
+        half = mesh.ccw_rotated_halfedge_handle(half);
+    } while (half != start && !is_line(mesh, half));
+    return true;
+}
+
+/* Finds the sectors around the start of `collapsed`, laid out: one within a piece; on a line up to two, if it
+ * leads on at the other end. False where the collapse is not allowed. */
+bool find_sectors(const Work &work, OpenMesh::HalfedgeHandle collapsed, std::vector<Around> &out)
+{
+    const Mesh &mesh = work.mesh;
+    OpenMesh::HalfedgeHandle other;
+    int lines = 0;
+    out.clear();
+    for (OpenMesh::HalfedgeHandle half : mesh.voh_range(mesh.from_vertex_handle(collapsed))) {
+        lines += is_line(mesh, half);
+        if (is_line(mesh, half) && half != collapsed)
+            other = half;
+    }
+    if (lines != 0 && (lines != 2 || !is_line(mesh, collapsed)))
+        return false;
+    for (OpenMesh::HalfedgeHandle start : {collapsed, other}) {
+        if (!start.is_valid())
+            continue;
+        out.emplace_back();
+        Around &around = out.back();
+        if (!collect(work, start, around))
+            return false;
+        if (around.sector.face_count == 0) {
+            out.pop_back();
+            continue;
+        }
+        around.sector.closed = lines == 0;
+        around.target = start == collapsed ? 0 : around.sector.face_count;
+        if (!tl_sector_lay_out(&around.sector))
+            return false;
+    }
+    return !out.empty();
+}
+
+/* Orders weights of a face's corners as a sector does, the hub first, and back. */
+Weights from_hub(const Weights &corners, size_t slot)
+{
+    return {corners[slot], corners[(slot + 1) % 3], corners[(slot + 2) % 3]};
+}
+Weights to_corners(const double found[3], size_t slot)
+{
+    Weights corners;
+    for (size_t k = 0; k < 3; k++)
+        corners[(slot + k) % 3] = found[k];
+    return corners;
+}
+
+/* Where a point of face `n` of a sector lies after the collapse. */
+Located locate(const Around &around, size_t n, size_t point, const Weights &weights, double &inside)
+{
+    double found[3];
+    size_t face = tl_sector_locate(&around.sector, around.target, n, weights.data(), found, &inside);
+    return {point, around.faces[face], to_corners(found, around.slots[face])};
+}
+
+/* Applies a collapse to the faces: their shapes, corners and points. */
+void collapse(Work &work, const std::vector<Around> &sectors, int hub, int target)
+{
+    std::vector<Located> moved;
+    Located of_hub{};
+    double best = -INFINITY, inside;
+    for (const Around &around : sectors) {
+        for (size_t n = 0; n < around.sector.face_count; n++) {
+            Face &face = work.faces[static_cast<size_t>(around.faces[n])];
+            for (size_t point : face.points)
+                moved.push_back(
+                    locate(around, n, point, from_hub(work.weights[point], around.slots[n]), inside));
+            face.points.clear();
+        }
+        Located here = locate(around, 0, work.source[static_cast<size_t>(hub)], {1, 0, 0}, inside);
+        if (inside > best) {
+            best = inside;
+            of_hub = here;
+        }
+    }
+    moved.push_back(of_hub);
+    for (const Located &located : moved) {
+        work.weights[located.point] = located.weights;
+        work.faces[static_cast<size_t>(located.face)].points.push_back(located.point);
+    }
+    for (const Around &around : sectors)
+        for (size_t n = 0; n < around.sector.face_count; n++) {
+            if (!tl_sector_keeps(&around.sector, around.target, n))
+                continue;
+            Face &face = work.faces[static_cast<size_t>(around.faces[n])];
+            double rest[3][2];
+            size_t slot = around.slots[n];
+            tl_sector_rest(&around.sector, around.target, n, rest);
+            face.corners[slot] = target;
+            for (size_t k = 0; k < 3; k++)
+                std::memcpy(face.rest[(slot + k) % 3], rest[k], sizeof rest[k]);
+        }
+}
+
+/* The decimater's only module: it judges collapses, and follows them. */
+template <class MeshT> class CageModule : public OpenMesh::Decimater::ModBaseT<MeshT>
+{
+  public:
+    DECIMATING_MODULE(CageModule, MeshT, Cage);
+
+    explicit CageModule(MeshT &mesh) : Base(mesh, false) {}
+    void follow(Work *work) { work_ = work; }
+
+    float collapse_priority(const CollapseInfo &info) override
+    {
+        if (work_->held[at(info.v0)] && !work_->held[at(info.v1)])
+            return Base::ILLEGAL_COLLAPSE;
+        if (!find_sectors(*work_, info.v0v1, sectors_))
+            return Base::ILLEGAL_COLLAPSE;
+        double worst = 0;
+        for (const Around &around : sectors_) {
+            double length = tl_sector_judge(&around.sector, around.target);
+            if (!(length >= 0 && length <= work_->longest))
+                return Base::ILLEGAL_COLLAPSE;
+            worst = std::max(worst, length);
+        }
+        return static_cast<float>(worst);
+    }
+
+    void preprocess_collapse(const CollapseInfo &info) override
+    {
+        find_sectors(*work_, info.v0v1, sectors_); /* allowed, or the decimater would not ask */
+        collapse(*work_, sectors_, info.v0.idx(), info.v1.idx());
+        left_ = info.fl.is_valid() && is_line(work_->mesh, info.vlv1);
+        right_ = info.fr.is_valid() && is_line(work_->mesh, info.v1vr);
+    }
+
+    /* Of the two edges that a vanished face joins OpenMesh keeps either. */
+    void postprocess_collapse(const CollapseInfo &info) override
+    {
+        if (left_)
+            mark_line(info.v1, info.vl);
+        if (right_)
+            mark_line(info.v1, info.vr);
+    }
+
+  private:
+    static size_t at(OpenMesh::VertexHandle vertex) { return static_cast<size_t>(vertex.idx()); }
+
+    void mark_line(OpenMesh::VertexHandle a, OpenMesh::VertexHandle b)
+    {
+        Mesh &mesh = work_->mesh;
+        OpenMesh::HalfedgeHandle half = mesh.find_halfedge(a, b);
+        if (half.is_valid())
+            mesh.status(mesh.edge_handle(half)).set_feature(true);
+    }
+
+    Work *work_ = nullptr;
+    std::vector<Around> sectors_;
+    bool left_ = false, right_ = false;
+};
+
+OpenMesh::VertexHandle add_vertex(Work &work, const tl_cage_source &source, size_t vertex)
+{
+    work.source.push_back(vertex);
+    work.held.push_back(source.held[vertex]);
+    return work.mesh.add_vertex(Mesh::Point(0, 0, 0));
+}
+
+/* Adds a face. If it is refused, it gets three vertices of its own; they and those that they stand for stay,
+ * so that the cage is joined where the cloth is. */
+void add_face(Work &work, const tl_cage_source &source, size_t triangle)
+{
+    const uint32_t *v = source.triangles[triangle];
+    auto handle = [](uint32_t vertex) { return OpenMesh::VertexHandle(static_cast<int>(vertex)); };
+    OpenMesh::VertexHandle corners[3] = {handle(v[0]), handle(v[1]), handle(v[2])};
+    if (!work.mesh.add_face(corners, 3).is_valid()) {
+        work.refused++;
+        for (size_t k = 0; k < 3; k++) {
+            work.mesh.status(corners[k]).set_locked(true);
+            corners[k] = add_vertex(work, source, v[k]);
+            work.mesh.status(corners[k]).set_locked(true);
+        }
+        work.mesh.add_face(corners, 3);
+    }
+    Face face;
+    for (size_t k = 0; k < 3; k++) {
+        face.corners[k] = corners[k].idx();
+        for (size_t c = 0; c < 2; c++)
+            face.rest[k][c] = static_cast<double>(source.rest[triangle][k][c]);
+    }
+    work.faces.push_back(face);
+}
+
+void mark_seams(Work &work, const tl_cage_source &source)
+{
+    for (size_t t = 0; t < source.triangle_count; t++)
+        for (size_t k = 0; k < 3; k++) {
+            if (!source.seams[t][k])
+                continue;
+            const std::array<int, 3> &v = work.faces[t].corners;
+            OpenMesh::HalfedgeHandle half = work.mesh.find_halfedge(OpenMesh::VertexHandle(v[(k + 1) % 3]),
+                                                                    OpenMesh::VertexHandle(v[(k + 2) % 3]));
+            work.mesh.status(work.mesh.edge_handle(half)).set_feature(true);
+        }
+}
+
+double area_of(const Work &work)
+{
+    double area = 0;
+    for (const Face &face : work.faces) {
+        const double(*p)[2] = face.rest;
+        area +=
+            std::fabs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0])) /
+            2;
+    }
+    return area;
+}
+
+void build(Work &work, const tl_cage_source &source)
+{
+    omerr().disable(); /* refused faces are counted */
+    work.mesh.request_vertex_status();
+    work.mesh.request_edge_status();
+    work.mesh.request_halfedge_status();
+    work.mesh.request_face_status();
+    work.weights.resize(source.vertex_count);
+    for (size_t i = 0; i < source.vertex_count; i++)
+        add_vertex(work, source, i);
+    for (size_t t = 0; t < source.triangle_count; t++)
+        add_face(work, source, t);
+    mark_seams(work, source);
+}
+
+/* Vertices of the source that triangles use. */
+size_t count_used(const tl_cage_source &source)
+{
+    std::vector<char> used(source.vertex_count);
+    for (size_t t = 0; t < source.triangle_count; t++)
+        for (size_t k = 0; k < 3; k++)
+            used[source.triangles[t][k]] = 1;
+    return static_cast<size_t>(std::count(used.begin(), used.end(), 1));
+}
+
+void decimate(Work &work, size_t used, size_t vertex_target)
+{
+    OpenMesh::Decimater::DecimaterT<Mesh> decimater(work.mesh);
+    CageModule<Mesh>::Handle handle;
+    decimater.add(handle);
+    decimater.module(handle).follow(&work);
+    work.longest =
+        LONGEST * std::sqrt(2 / std::sqrt(3.0) * area_of(work) / static_cast<double>(vertex_target));
+    decimater.initialize();
+    decimater.decimate(used - vertex_target);
+}
+
+template <typename T> T *new_array(size_t count)
+{
+    T *array = static_cast<T *>(std::malloc(std::max<size_t>(count, 1) * sizeof(T)));
+    if (!array)
+        throw std::bad_alloc();
+    return array;
+}
+
+void write_cage(const Work &work, const tl_cage_source &source, tl_cage *out)
+{
+    constexpr uint32_t none = UINT32_MAX;
+    std::vector<uint32_t> number(source.vertex_count, none);
+    std::vector<size_t> left;
+    for (size_t f = 0; f < work.faces.size(); f++) {
+        if (work.mesh.status(OpenMesh::FaceHandle(static_cast<int>(f))).deleted())
+            continue;
+        left.push_back(f);
+        for (int corner : work.faces[f].corners)
+            number[work.source[static_cast<size_t>(corner)]] = 0;
+    }
+    for (uint32_t &n : number)
+        n = n == none ? none : static_cast<uint32_t>(out->vertex_count++);
+    out->triangle_count = left.size();
+    out->refused = work.refused;
+    out->vertices = new_array<uint32_t>(out->vertex_count);
+    out->triangles = new_array<uint32_t[3]>(left.size());
+    out->rest = new_array<float[3][2]>(left.size());
+    out->points = new_array<tl_cage_point>(source.vertex_count);
+    for (size_t i = 0; i < source.vertex_count; i++) {
+        out->points[i] = {none, {0, 0, 0}};
+        if (number[i] != none)
+            out->vertices[number[i]] = static_cast<uint32_t>(i);
+    }
+    for (size_t t = 0; t < left.size(); t++) {
+        const Face &face = work.faces[left[t]];
+        for (size_t k = 0; k < 3; k++) {
+            size_t vertex = work.source[static_cast<size_t>(face.corners[k])];
+            out->triangles[t][k] = number[vertex];
+            for (size_t c = 0; c < 2; c++)
+                out->rest[t][k][c] = static_cast<float>(face.rest[k][c]);
+            out->points[vertex] = {static_cast<uint32_t>(t),
+                                   {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}};
+        }
+        for (size_t point : face.points) {
+            const Weights &weights = work.weights[point];
+            out->points[point] = {static_cast<uint32_t>(t), {weights[0], weights[1], weights[2]}};
+        }
+    }
+}
+
+} // namespace
+
+bool tl_cage_make(const struct tl_cage_source *source, size_t vertex_target, struct tl_cage *out)
+{
+    *out = tl_cage{};
+    try {
+        Work work;
+        build(work, *source);
+        size_t used = count_used(*source), target = std::max<size_t>(vertex_target, 3);
+        if (used > target)
+            decimate(work, used, target);
+        write_cage(work, *source, out);
+        return true;
+    } catch (const std::exception &) {
+        tl_cage_release(out);
+        return false;
+    }
+}
+
+void tl_cage_release(struct tl_cage *cage)
+{
+    std::free(cage->vertices);
+    std::free(cage->triangles);
+    std::free(cage->rest);
+    std::free(cage->points);
+    *cage = tl_cage{};
+}

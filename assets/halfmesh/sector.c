@@ -1,0 +1,199 @@
+#include "assets/halfmesh/sector.h"
+
+#include <math.h>
+
+/* Of a triangle's height to its longest side (0.87 at best): flatter ones are needles. */
+#define NEEDLE 0.15
+#define BEST   0.866
+/* Rise of an outline's vertex over the chord that replaces it, to the chord: a turn of 27 degrees. */
+#define OUTLINE_RISE 0.12
+/* Radians by which the angles of a closed sector may differ from a full turn. */
+#define CURVED 1.0
+
+static double cross(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+static void subtract(const double a[2], const double b[2], double out[2])
+{
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+}
+
+static double distance(const double a[2], const double b[2])
+{
+    return hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+/* Twice the area; positive when a, b, c run counter-clockwise. */
+static double area_of(const double a[2], const double b[2], const double c[2])
+{
+    double side[2], other[2];
+    subtract(b, a, side);
+    subtract(c, a, other);
+    return cross(side, other);
+}
+
+/* Height over longest side; negative when turned over. */
+static double shape_of(const double a[2], const double b[2], const double c[2])
+{
+    double longest = fmax(distance(a, b), fmax(distance(b, c), distance(c, a)));
+    return longest > 0 ? area_of(a, b, c) / (longest * longest) : 0;
+}
+
+static size_t spoke_after(const struct tl_sector *sector, size_t face)
+{
+    return sector->closed && face + 1 == sector->face_count ? 0 : face + 1;
+}
+
+static size_t spoke_count(const struct tl_sector *sector)
+{
+    return sector->face_count + !sector->closed;
+}
+
+/* A side from a face's hub, in its own frame or the mirror image of that. */
+static void side_of(const struct tl_sector *sector, size_t face, int end, double out[2])
+{
+    subtract(sector->rest[face][end], sector->rest[face][0], out);
+    if (sector->mirrored)
+        out[1] = -out[1];
+}
+
+/* The angle at the hub. */
+static double angle_of(const struct tl_sector *sector, size_t face)
+{
+    double a[2], b[2];
+    side_of(sector, face, 1, a);
+    side_of(sector, face, 2, b);
+    return atan2(cross(a, b), a[0] * b[0] + a[1] * b[1]);
+}
+
+/* The mean of the turns of the frames, by area. */
+static void find_turn(struct tl_sector *sector)
+{
+    double sum[2] = {0, 0};
+    for (size_t i = 0; i < sector->face_count; i++) {
+        double a[2], b[2];
+        const double *spoke = sector->spokes[i];
+        side_of(sector, i, 1, a);
+        side_of(sector, i, 2, b);
+        double weight = cross(a, b) / (hypot(a[0], a[1]) * hypot(spoke[0], spoke[1]));
+        sum[0] += weight * (a[0] * spoke[0] + a[1] * spoke[1]);
+        sum[1] += weight * cross(a, spoke);
+    }
+    double length = hypot(sum[0], sum[1]);
+    sector->turn[0] = length > 0 ? sum[0] / length : 1;
+    sector->turn[1] = length > 0 ? sum[1] / length : 0;
+}
+
+bool tl_sector_lay_out(struct tl_sector *sector)
+{
+    const size_t count = sector->face_count;
+    double angles[TL_SECTOR_FACES], total = 0;
+    sector->mirrored = area_of(sector->rest[0][0], sector->rest[0][1], sector->rest[0][2]) < 0;
+    for (size_t i = 0; i < count; i++) {
+        angles[i] = angle_of(sector, i);
+        if (!(angles[i] > 0))
+            return false;
+        total += angles[i];
+    }
+    const double turn = 2 * M_PI;
+    if (sector->closed ? fabs(total - turn) > CURVED : total > turn)
+        return false;
+    double scale = sector->closed ? turn / total : 1, angle = 0;
+    for (size_t i = 0; i < spoke_count(sector); i++) {
+        /* Both faces at a spoke know its length; they differ where the rest shapes do not fit together. */
+        size_t before = i > 0 ? i - 1 : count - 1;
+        bool has_before = i > 0 || sector->closed, has_after = i < count;
+        double length = 0, side[2];
+        if (has_after) {
+            side_of(sector, i, 1, side);
+            length += hypot(side[0], side[1]);
+        }
+        if (has_before) {
+            side_of(sector, before, 2, side);
+            length += hypot(side[0], side[1]);
+        }
+        length /= has_before + has_after;
+        sector->spokes[i][0] = length * cos(angle);
+        sector->spokes[i][1] = length * sin(angle);
+        angle += i < count ? scale * angles[i] : 0;
+    }
+    find_turn(sector);
+    return true;
+}
+
+bool tl_sector_keeps(const struct tl_sector *sector, size_t target, size_t face)
+{
+    return face != target && spoke_after(sector, face) != target;
+}
+
+/* Whether the outline keeps its shape when the chord between the ends of an open sector replaces the hub. */
+static bool outline_stays(const struct tl_sector *sector, size_t target)
+{
+    const double *end = sector->spokes[target == 0 ? sector->face_count : 0], *at = sector->spokes[target];
+    double chord = distance(end, at), dot = end[0] * at[0] + end[1] * at[1];
+    return dot < 0 && fabs(cross(end, at)) <= OUTLINE_RISE * chord * chord;
+}
+
+double tl_sector_judge(const struct tl_sector *sector, size_t target)
+{
+    const double *to = sector->spokes[target], hub[2] = {0, 0};
+    double longest = 0, shape = BEST, shape_before = BEST;
+    size_t kept = 0;
+    for (size_t i = 0; i < sector->face_count; i++) {
+        const double *a = sector->spokes[i], *b = sector->spokes[spoke_after(sector, i)];
+        shape_before = fmin(shape_before, shape_of(hub, a, b));
+        if (!tl_sector_keeps(sector, target, i))
+            continue;
+        kept++;
+        shape = fmin(shape, shape_of(to, a, b));
+        longest = fmax(longest, fmax(distance(to, a), distance(to, b)));
+    }
+    bool shaped = shape >= NEEDLE || (shape > 0 && shape >= shape_before);
+    if (kept == 0 || !shaped || (!sector->closed && !outline_stays(sector, target)))
+        return -1;
+    return longest * sqrt(BEST / shape);
+}
+
+void tl_sector_rest(const struct tl_sector *sector, size_t target, size_t face, double rest[3][2])
+{
+    const double *corners[3] = {sector->spokes[target], sector->spokes[face],
+                                sector->spokes[spoke_after(sector, face)]};
+    const double cosine = sector->turn[0], sine = sector->turn[1];
+    for (int i = 0; i < 3; i++) { /* turned back */
+        rest[i][0] = cosine * corners[i][0] + sine * corners[i][1];
+        rest[i][1] = cosine * corners[i][1] - sine * corners[i][0];
+        if (sector->mirrored)
+            rest[i][1] = -rest[i][1];
+    }
+}
+
+size_t tl_sector_locate(const struct tl_sector *sector, size_t target, size_t from, const double weights[3],
+                        double found[3], double *inside)
+{
+    const double *to = sector->spokes[target], *first = sector->spokes[from],
+                 *second = sector->spokes[spoke_after(sector, from)];
+    double point[2];
+    size_t best = 0;
+    for (int c = 0; c < 2; c++)
+        point[c] = weights[1] * first[c] + weights[2] * second[c];
+    *inside = -INFINITY;
+    for (size_t i = 0; i < sector->face_count; i++) {
+        if (!tl_sector_keeps(sector, target, i))
+            continue;
+        const double *a = sector->spokes[i], *b = sector->spokes[spoke_after(sector, i)];
+        double area = area_of(to, a, b);
+        double here[3] = {area_of(point, a, b) / area, area_of(to, point, b) / area,
+                          area_of(to, a, point) / area};
+        double least = fmin(here[0], fmin(here[1], here[2]));
+        if (!(least > *inside))
+            continue;
+        *inside = least;
+        best = i;
+        for (int k = 0; k < 3; k++)
+            found[k] = here[k];
+    }
+    return best;
+}
