@@ -184,7 +184,8 @@ void collapse(Work &work, const std::vector<Around> &sectors, int hub, int targe
         }
 }
 
-/* The decimater's only module: it judges collapses, and follows them. */
+/* The decimater's only module: it judges collapses, and follows them. A line along a face that vanishes stays
+ * one: of the edges that become one OpenMesh keeps the target's, and the hub's are none (find_sectors). */
 template <class MeshT> class CageModule : public OpenMesh::Decimater::ModBaseT<MeshT>
 {
   public:
@@ -213,33 +214,13 @@ template <class MeshT> class CageModule : public OpenMesh::Decimater::ModBaseT<M
     {
         find_sectors(*work_, info.v0v1, sectors_); /* allowed, or the decimater would not ask */
         collapse(*work_, sectors_, info.v0.idx(), info.v1.idx());
-        left_ = info.fl.is_valid() && is_line(work_->mesh, info.vlv1);
-        right_ = info.fr.is_valid() && is_line(work_->mesh, info.v1vr);
-    }
-
-    /* Of the two edges that a vanished face joins OpenMesh keeps either. */
-    void postprocess_collapse(const CollapseInfo &info) override
-    {
-        if (left_)
-            mark_line(info.v1, info.vl);
-        if (right_)
-            mark_line(info.v1, info.vr);
     }
 
   private:
     static size_t at(OpenMesh::VertexHandle vertex) { return static_cast<size_t>(vertex.idx()); }
 
-    void mark_line(OpenMesh::VertexHandle a, OpenMesh::VertexHandle b)
-    {
-        Mesh &mesh = work_->mesh;
-        OpenMesh::HalfedgeHandle half = mesh.find_halfedge(a, b);
-        if (half.is_valid())
-            mesh.status(mesh.edge_handle(half)).set_feature(true);
-    }
-
     Work *work_ = nullptr;
     std::vector<Around> sectors_;
-    bool left_ = false, right_ = false;
 };
 
 OpenMesh::VertexHandle add_vertex(Work &work, const tl_cage_source &source, size_t vertex)
