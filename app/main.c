@@ -61,13 +61,13 @@ static void keep_freed_memory(void)
     mallopt(M_TRIM_THRESHOLD, trimmed_beyond);
 }
 
-/* OpenMP's idle threads would spin beside software GL's, which want the same cores. Its library reads the
- * policy before main begins, so the program starts once more; where that fails it only runs slower. */
+/* Idle OpenMP threads would spin on the cores that software GL's threads need. The OpenMP library reads its
+ * policy before main begins, so the program executes itself again; where that fails it only runs slower. */
 static void let_idle_threads_sleep(char **argv)
 {
     if (!getenv("OMP_WAIT_POLICY") && setenv("OMP_WAIT_POLICY", "passive", 0) == 0)
         execv("/proc/self/exe", argv);
-    prctl(PR_SET_NAME, "toile"); /* "exe" since then, which no killall finds */
+    prctl(PR_SET_NAME, "toile"); /* the kernel named it "exe" after the file that was executed */
 }
 
 int main(int argc, char **argv)

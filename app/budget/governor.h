@@ -20,7 +20,8 @@ struct tl_quality_choice {
     struct tl_quality levels;
     double predicted_ms; /* cloth and drawing; NaN before the first frame */
     double change_ms;    /* the part of it that the change to these levels costs once */
-    double min_ms; /* of the least that is chosen, where predicted_ms exceeds the budget; else predicted_ms */
+    double min_ms; /* of the cheapest levels that may be chosen, where predicted_ms exceeds the budget; else
+                      predicted_ms */
     double error;  /* estimated; what the levels add to that of the settings (quality.h) */
     char reason[120]; /* for people: what was reduced or restored, and why; "" when nothing changed */
 };

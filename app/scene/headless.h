@@ -18,14 +18,14 @@ bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settin
 
 /* Device and session (settled) for settings. On failure nothing is left. */
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error);
-/* Both. */
+/* tl_headless_settings, then tl_headless_open. */
 bool tl_headless_create(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error);
 void tl_headless_release(struct tl_headless *headless);
 
 /* Draws the session's current frame. */
 bool tl_headless_draw(struct tl_headless *headless, tl_error *error);
 /* The same as a still image: with light.jitter it is drawn light.rounds times, which the renderer averages.
- * Ctrl-C ends the averaging, not the image: who keeps it asks tl_interrupted. */
+ * Ctrl-C ends the averaging; a caller that keeps the image checks tl_interrupted. */
 bool tl_headless_draw_still(struct tl_headless *headless, tl_error *error);
 
 #endif

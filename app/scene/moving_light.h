@@ -1,4 +1,4 @@
-/* The light of a session: an environment that stands still, or a sequence that plays round and round. A frame
+/* The light of a session: an environment that stands still, or a sequence that plays in a loop. A frame
  * is read when it is due: one of 512 x 256 texels takes less than 10 ms. */
 #ifndef TOILE_APP_SCENE_MOVING_LIGHT_H
 #define TOILE_APP_SCENE_MOVING_LIGHT_H

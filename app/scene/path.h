@@ -4,9 +4,9 @@
  *       - {time_s: 0, yaw_deg: 0, pitch_deg: 5, distance_m: 2.5, target: [0, 1, 0], fov_deg: 30}
  *       - {time_s: 4, yaw_deg: 360, environment_yaw_deg: 90}
  *
- * A key that leaves something out has what the key before it has (the first: the scene's, and time 0). Angles
- * are not wrapped: from 0 to 720 turns twice. A distance of 0 frames the scene (app/scene/camera.h): so do
- * all keys or none, because no distance can be interpolated between a given one and an automatic one. A
+ * A field that a key leaves out has the value of the key before it (the first: the scene's, and time 0).
+ * Angles are not wrapped: from 0 to 720 turns twice. A distance of 0 frames the scene (app/scene/camera.h):
+ * so do all keys or none, because no distance can be interpolated between a given one and an automatic one. A
  * target of 0 0 0 is the scene's. Failure: as scene files (config/yaml.h), with file, line and field. Pure
  * but for the files. */
 #ifndef TOILE_APP_SCENE_PATH_H

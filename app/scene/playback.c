@@ -23,11 +23,11 @@ static bool check_count(const tl_playback *playback, const char *name, tl_error 
                    found, playback->model->name, wanted);
 }
 
-static void tell(const tl_playback *playback, const char *name)
+static void log_missing_frames(const tl_playback *playback, const char *name)
 {
     const struct tl_point_cache_facts *facts = tl_point_cache_facts(playback->cache);
     if (!facts->in_seconds && facts->step == 0 && facts->sample_count > 1)
-        tl_info("%s: %zu of the frames %g to %g are there: straight lines between them", name,
+        tl_info("%s: only %zu of the frames %g to %g exist: those between them are interpolated", name,
                 facts->sample_count, facts->first, facts->last);
 }
 
@@ -42,7 +42,7 @@ tl_playback *tl_playback_open(const struct tl_settings *settings, const tl_model
         return NULL;
     }
     playback->points = TL_NEW_ARRAY(vec3s, tl_model_point_count(model));
-    tell(playback, name);
+    log_missing_frames(playback, name);
     return playback;
 }
 

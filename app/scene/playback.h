@@ -10,8 +10,8 @@
 
 typedef struct tl_playback tl_playback;
 
-/* Opens scene.motion for the garment's model; refuses one with another number of points. Says how it is read
- * where that is not plain. */
+/* Opens scene.motion for the garment's model; refuses one with another number of points. Logs
+ * whether frames are missing from the motion. */
 tl_playback *tl_playback_open(const struct tl_settings *settings, const tl_model *model, tl_error *error);
 void tl_playback_close(tl_playback **handle); /* nulls it; null is fine */
 

@@ -55,7 +55,7 @@ struct tl_session {
         struct tl_appearance appearance;
         uint64_t revision;
         struct tl_settings made_of;
-    } spares[2]; /* the newest first: comparisons switch to and fro between the last one and the next */
+    } spares[2]; /* the newest first: comparisons alternate between two */
 
     int frame;
     struct tl_box framed; /* what the camera frames: all there is at frame 0 */

@@ -4,10 +4,10 @@
  * Units: metres, seconds; world space is right-handed, +Y up.
  *
  * Errors: a function that can fail takes a tl_error and says below which codes it sets. TL_USAGE: an option
- * that means nothing for this scene; TL_INPUT: a file that cannot be read; TL_INTERRUPTED: the user stopped
+ * without meaning in this scene; TL_INPUT: a file that cannot be read; TL_INTERRUPTED: the user stopped
  * it.
  *
- * Lifetime: a session owns all that it loads. What it hands out is borrowed, until the call that each
+ * Lifetime: a session owns all that it loads. Its results are borrowed until the call that each
  * function names.
  *
  * Threads: a session is used by one thread at a time, which may be any. Two sessions do not share anything
@@ -40,17 +40,15 @@ void tl_session_destroy(tl_session **handle);
 
 /* ---- Time ---- */
 
-/* Goes on by one frame (1/frame_rate s): environment, avatar, cloth, normals and tangents.
+/* Advances by one frame (1/frame_rate s): environment, avatar, cloth, normals and tangents.
  * Errors: TL_INPUT when a sequence's or a motion's next file cannot be read, or the error of tl_cloth_step.
  * The frame number then stays, but parts may have moved: reset the session or destroy it. Lifetime: ends the
  * last tl_session_frame. Threads: the session's. */
 bool tl_session_advance(tl_session *session, tl_error *error);
 
-/* Goes to frame `number` (0: the settled start), and through the start when it lies behind: cloth has no way
- * back.
- * Errors: as tl_session_advance, and TL_INTERRUPTED at the frame that was reached.
- * Lifetime: ends the last tl_session_frame.
- * Threads: the session's. */
+/* Advances to frame `number` (0: the settled start); an earlier frame is reached from the start, because
+ * cloth cannot be stepped backwards. Errors: as tl_session_advance, and TL_INTERRUPTED at the frame that was
+ * reached. Lifetime: ends the last tl_session_frame. Threads: the session's. */
 bool tl_session_go_to(tl_session *session, int number, tl_error *error);
 
 /* The number of the present frame. Errors: none. Threads: the session's. */

@@ -8,10 +8,10 @@
  *       As cut:
  *
  * that is NAME: {MATERIAL: {OPTION: VALUE}}. MATERIAL is a material of the garment, or `all`; later ones win.
- * The options are those of the tables material and weave, `fabric`, whose look (not whose stiffness) the
- * material takes on before the others change it, and `print`. What is not given stays as the scene has it. A
- * garment's or avatar's glTF file brings colourways of its own, KHR_materials_variants; a name that both have
- * means both, the scene's on top.
+ * The options are those of the tables material and weave, `fabric`, whose appearance (not whose stiffness)
+ * the material takes on before the others change it, and `print`. What is not given stays as the scene has
+ * it. A garment's or avatar's glTF file brings colourways of its own, KHR_materials_variants; a name that
+ * both have means both, the scene's on top.
  *
  * A colourway changes materials and weaves only, never how the cloth moves. Failure: one line with file,
  * line, field and the nearest name. Threads: pure. */
@@ -50,7 +50,7 @@ struct tl_colourways {
 
 /* Takes a document's section, as config/options.h hands it over: names and swatches go to `out`. */
 struct tl_colourways_reader {
-    const char *chosen; /* whose swatches are wanted; "": nobody's */
+    const char *chosen; /* whose swatches are read; "": none are */
     struct tl_colourways *out;
     struct tl_swatch swatch; /* of the part that is being read */
     bool is_chosen;          /* the record that is being read is */

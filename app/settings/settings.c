@@ -204,7 +204,7 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
     return applied;
 }
 
-/* A garment file brings its own look; what is built in needs a fabric to have one. */
+/* A garment file has materials of its own; a built-in garment gets them from a fabric. */
 static void choose_fabric(struct tl_scene_params *scene)
 {
     if (scene->fabric[0] == '\0')

@@ -95,7 +95,7 @@ bool tl_settings_assign(struct tl_settings *settings, const char *const *assignm
  * also after scene.garment or scene.colourways changed). */
 bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error);
-/* A named fabric as the look of the garment's second one. */
+/* Gives the garment's second fabric the appearance of a named one. */
 bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
 

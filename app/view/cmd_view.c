@@ -59,7 +59,7 @@ static bool panel_is_due(const struct tl_review *review)
     bool is_used = review->drag == TL_DRAG_WIPE || review->editing || tl_panel_wants_pointer(review->panel) ||
                    tl_panel_wants_keys(review->panel) ||
                    (review->drag == TL_DRAG_NONE && review->pointer_x >= (float)width);
-    return is_used || !review->is_paced || tl_clock_s() >= review->times.panel_s + every_s;
+    return is_used || !review->is_budgeted || tl_clock_s() >= review->times.panel_s + every_s;
 }
 
 /* The work between two checks for events. */

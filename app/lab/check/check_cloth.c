@@ -102,14 +102,14 @@ void tl_measure_crossing(const struct tl_checked *checked, struct tl_finding *fi
 void tl_measure_energy(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_checked_cloth *cloth = checked->cloth;
-    if (!cloth || cloth->is_driven || isnan(cloth->least_energy_j) || !(cloth->weight_n > 0))
+    if (!cloth || cloth->is_driven || isnan(cloth->min_energy_j) || !(cloth->weight_n > 0))
         return;
     finding->bound = fmax(cloth->kept_m, ROUNDED_M);
     double energy_j = cloth->report.kinetic_energy + cloth->report.potential_energy;
-    double gain_m = (energy_j - cloth->least_energy_j) / cloth->weight_n;
+    double gain_m = (energy_j - cloth->min_energy_j) / cloth->weight_n;
     tl_finding_add(finding, gain_m < 0 ? 0 : gain_m);
     tl_finding_place(finding, "garment: %.4g J of motion and height after %.4g J of all", energy_j,
-                     cloth->least_energy_j);
+                     cloth->min_energy_j);
 }
 
 void tl_measure_momentum(const struct tl_checked *checked, struct tl_finding *finding)

@@ -97,9 +97,9 @@ void tl_measure_repeat(const struct tl_checked *checked, struct tl_finding *find
         return;
     tl_finding_add(finding, checked->hash == checked->first_hash ? 0 : 1);
     tl_finding_place(finding, "%s",
-                     checked->places_hash != checked->first_places_hash ? "in positions"
-                     : checked->hash != checked->first_hash             ? "in pixels only"
-                                                                        : "");
+                     checked->positions_hash != checked->first_positions_hash ? "in positions"
+                     : checked->hash != checked->first_hash                   ? "in pixels only"
+                                                                              : "");
 }
 
 /* If even the cheapest plan exceeds the budget, its predicted time is the bound. */
@@ -107,8 +107,8 @@ void tl_measure_budget(const struct tl_checked *checked, struct tl_finding *find
 {
     if (!(checked->budget_ms > 0) || !isfinite(checked->predicted_ms))
         return;
-    double could_ms = fmax(checked->budget_ms, fmin(checked->least_ms, checked->predicted_ms));
+    double could_ms = fmax(checked->budget_ms, fmin(checked->min_ms, checked->predicted_ms));
     tl_finding_add(finding, checked->predicted_ms / could_ms);
     tl_finding_place(finding, "predicted %.1f ms of %.1f, the cheapest plan %.1f", checked->predicted_ms,
-                     checked->budget_ms, checked->least_ms);
+                     checked->budget_ms, checked->min_ms);
 }

@@ -120,7 +120,7 @@ struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch,
                                      .weight_n = watch->weight_n,
                                      .kept_m = watch->settings->fabric.thickness_m,
                                      .first_strain = watch->first_strain,
-                                     .least_energy_j = watch->least_energy_j,
+                                     .min_energy_j = watch->min_energy_j,
                                      .is_held = is_held,
                                      .is_hurried = is_changed,
                                      .cannot_cross = params->self_contact,
@@ -135,8 +135,8 @@ struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch,
     if (isnan(watch->first_strain))
         watch->first_strain = report->max_strain;
     double energy_j = report->kinetic_energy + report->elastic_energy + report->potential_energy;
-    watch->least_energy_j =
-        cloth.is_driven ? NAN : fmin(watch->least_energy_j, energy_j); /* fmin of a NaN: the other */
+    watch->min_energy_j =
+        cloth.is_driven ? NAN : fmin(watch->min_energy_j, energy_j); /* fmin of a NaN: the other */
     return cloth;
 }
 
@@ -145,7 +145,7 @@ struct tl_cloth_monitor tl_cloth_monitor_begin(tl_session *session, const struct
     return (struct tl_cloth_monitor){.session = session,
                                      .settings = settings,
                                      .weight_n = weigh(session, settings),
-                                     .least_energy_j = NAN,
+                                     .min_energy_j = NAN,
                                      .first_strain = NAN,
                                      .centre = {NAN, NAN}};
 }

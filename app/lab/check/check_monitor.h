@@ -14,7 +14,7 @@ struct tl_cloth_monitor {
     double weight_n; /* of the garment in its rest shape */
     bool was_held;   /* by the hand, in any frame so far */
     /* NaN: not known yet. */
-    double least_energy_j, first_strain;
+    double min_energy_j, first_strain;
     double centre[2]; /* of mass, x and z, in the first frame that nothing drives it in */
     vec3s *wearer;    /* positions one frame ago; NULL: none */
 };

@@ -26,10 +26,10 @@ struct check_run {
     struct tl_check_outcome *outcome;
     struct tl_motion motion;
     struct auxiliary auxiliary;
-    uint64_t *hashes, *places;     /* [frames]: of all that is seen; of positions alone */
-    int played;                    /* number of frames played so far */
-    tl_quality_governor *governor; /* NULL: no budget */
-    struct tl_quality *levels;     /* [frames] */
+    uint64_t *hashes, *position_hashes; /* [frames]: of all that is seen; of positions alone */
+    int played;                         /* number of frames played so far */
+    tl_quality_governor *governor;      /* NULL: no budget */
+    struct tl_quality *levels;          /* [frames] */
     struct tl_quality_choice choice;
     double chosen_ms, moved_ms, drawn_ms; /* wall time of this frame: governor, cloth, image */
     struct tl_cloth_monitor watch;
@@ -150,7 +150,7 @@ static bool prepare(struct check_run *run, const tl_frame *frame, tl_image image
     checked->renderer = run->headless->renderer;
     checked->image = &images[DRAWN];
     checked->hash = tl_check_hash(frame, checked->image);
-    checked->places_hash = tl_check_hash(frame, NULL);
+    checked->positions_hash = tl_check_hash(frame, NULL);
     if (!checked->is_sampled)
         return true;
     if (auxiliary->fresh && !tl_renderer_forget_scene(auxiliary->fresh, error))
@@ -201,7 +201,7 @@ static bool check_frame(struct check_run *run, int number, tl_error *error)
                                  .is_sampled = number % run->params->every == 0,
                                  .predicted_ms = run->choice.predicted_ms - run->choice.change_ms,
                                  .budget_ms = run->params->budget_ms,
-                                 .least_ms = run->choice.min_ms,
+                                 .min_ms = run->choice.min_ms,
                                  .is_reduced = run->choice.error > 0};
     if (tl_session_cloth(run->headless->session)) {
         /* A budget changes the solver's substeps, and with them its effective stiffness. */
@@ -211,7 +211,7 @@ static bool check_frame(struct check_run *run, int number, tl_error *error)
     bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
     done = done && note(run, &checked, error);
     run->hashes[number] = checked.hash;
-    run->places[number] = checked.places_hash;
+    run->position_hashes[number] = checked.positions_hash;
     run->played = number + 1;
     release_images(images, IMAGES);
     return done;
@@ -288,8 +288,8 @@ static bool play_again(struct check_run *run, int count, tl_error *error)
                                                .image = &image,
                                                .hash = tl_check_hash(&frame, &image),
                                                .first_hash = run->hashes[number],
-                                               .places_hash = tl_check_hash(&frame, NULL),
-                                               .first_places_hash = run->places[number]};
+                                               .positions_hash = tl_check_hash(&frame, NULL),
+                                               .first_positions_hash = run->position_hashes[number]};
             done = note(run, &checked, error);
             verdicts->frames--; /* the frame has been counted already */
         }
@@ -313,7 +313,7 @@ static void release(struct check_run *run)
     tl_quality_governor_destroy(&run->governor);
     free(run->levels);
     free(run->hashes);
-    free(run->places);
+    free(run->position_hashes);
     tl_cloth_monitor_release(&run->watch);
 }
 
@@ -325,7 +325,7 @@ bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *p
                             .params = params,
                             .outcome = out,
                             .hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
-                            .places = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
+                            .position_hashes = TL_NEW_ARRAY(uint64_t, (size_t)params->frames),
                             .governor =
                                 params->budget_ms > 0 ? tl_quality_governor_create(params->budget_ms) : NULL,
                             .levels = TL_NEW_ARRAY(struct tl_quality, (size_t)params->frames),

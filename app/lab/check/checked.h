@@ -17,7 +17,7 @@ struct tl_checked_cloth {
     double weight_n;     /* of the garment, newtons */
     /* Minimum of kinetic + elastic + potential energy since only gravity acts on the cloth; NaN: no such
      * frame yet. */
-    double least_energy_j;
+    double min_energy_j;
     double allowed_speed; /* m/s: what fall, wearer and wind can cause */
     bool is_driven;       /* by the hand, a clip or the wind */
     bool is_held;         /* by the hand */
@@ -42,10 +42,10 @@ struct tl_checked {
     const tl_image *white_image;    /* its image */
     const tl_image *white_shadowed; /* the same with shadows */
     const struct tl_checked_cloth *cloth;
-    uint64_t hash, first_hash;               /* of positions and image, now and in the first run; 0: none */
-    uint64_t places_hash, first_places_hash; /* of positions alone */
-    double predicted_ms, budget_ms;          /* of the plan; of the command line */
-    double least_ms;                         /* of the cheapest plan, where it exceeds the budget */
+    uint64_t hash, first_hash; /* of positions and image, now and in the first run; 0: none */
+    uint64_t positions_hash, first_positions_hash; /* of positions alone */
+    double predicted_ms, budget_ms;                /* of the plan; of the command line */
+    double min_ms;                                 /* of the cheapest plan, where it exceeds the budget */
     bool is_reduced; /* a budget reduced the image, which the reference does not model */
 };
 

@@ -16,7 +16,7 @@
 #include <math.h>
 
 #define TL_FLIGHT_WORST   6 /* frames that are shown as pictures: those that took longest ... */
-#define TL_FLIGHT_STOPS   8 /* ... and some of the way */
+#define TL_FLIGHT_STOPS   8 /* ... and some at equal intervals of the path */
 #define TL_JOB_NAME_BYTES 24
 
 struct tl_flight_frame {
@@ -44,7 +44,7 @@ struct tl_flight_picture {
     tl_image image; /* as a person would see it */
 };
 
-/* What waits for the reference. */
+/* A frame that is kept for its comparison with the reference. */
 struct tl_flight_kept {
     int frame;
     tl_image image; /* linear */

@@ -12,7 +12,7 @@
 #define LIMIT_CSV_BYTES ((size_t)256 << 20)
 #define COLUMNS_MAX     128
 
-/* Columns of one number each; beside them: frame, warm_up, image_hash, level_CONTROL, job_NAME_ms. */
+/* Columns of one number each, in addition to frame, warm_up, image_hash, level_CONTROL, job_NAME_ms. */
 static const struct {
     const char *name;
     size_t offset;

@@ -39,8 +39,8 @@ struct tl_flight_job tl_flight_measure_job(const struct tl_flight *flight, int j
 
 /* The time of one part over its time in an earlier flight along the same path: the ratio of medians
  * over frames that both have, and the interval that holds it with 95 % by a bootstrap over the same pairs, in
- * blocks of a second, because frames that follow each other are alike. It knows the noise inside of two runs,
- * not that of a machine which was busier during one of them. */
+ * blocks of a second, because successive frames are alike. It includes the noise within each run, but not a
+ * machine that was busier during one of them. */
 struct tl_flight_ratio {
     char name[TL_JOB_NAME_BYTES]; /* "frame", "cloth" or a job's */
     double this_ms, that_ms;

@@ -124,7 +124,7 @@ void tl_gallery_folded_figures(FILE *out)
         out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
         "Ambient, diffuse and gloss folded into one table, one look-up for all three, against the formula. A "
         "folded table holds one colour: cloth whose yarns and prints differ from texel to texel would need a "
-        "table for each, so the shaders keep the diffuse term beside the table, where it costs one product, "
+        "table for each, so the shaders keep the diffuse term out of the table, where it costs one product, "
         "and "
         "no option folds it.");
 }

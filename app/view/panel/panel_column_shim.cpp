@@ -32,7 +32,7 @@ uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
     return hash;
 }
 
-/* Of all that decides what a list draws. Never 0. */
+/* A hash of everything that decides what a list draws; never 0. */
 uint64_t hash_of(const ImDrawList &list)
 {
     uint64_t hash = hash_bytes(1, list.VtxBuffer.Data, static_cast<size_t>(list.VtxBuffer.size_in_bytes()));

@@ -41,9 +41,10 @@ struct tl_loaded {
 void tl_loaded_release(struct tl_loaded *loaded);
 
 /* Everything that the thread reads is copied here or immutable. `models`: those of the scene that gets
- * another look; copied, and alive until the loader has ended; NULL for the other kinds. `lights`: copied; the
- * environments that its requests name stay as they are until the loader has ended. `wake` is called,
- * on the loader's thread, when it has finished. `threads`: the number that its loops may use, 0: all. */
+ * another appearance; copied, and alive until the loader has ended; NULL for the other kinds. `lights`:
+ * copied; the environments that its requests name stay as they are until the loader has ended. `wake` is
+ * called, on the loader's thread, when it has finished. `threads`: the number that its loops may use, 0: all.
+ */
 tl_loader *tl_loader_start(enum tl_load kind, const struct tl_settings *settings,
                            const struct tl_session_models *models, const struct tl_load_lights *lights,
                            int threads, void (*wake)(void));

@@ -91,7 +91,7 @@ struct tl_review {
     double shown_s;          /* time of the last presented frame */
     tl_quality_governor *governor;
     struct tl_quality_choice quality_choice; /* of the last image */
-    bool is_paced, is_new;                   /* the last image: drawn within the budget; not presented yet */
+    bool is_budgeted, is_new;                /* the last image: drawn within the budget; not presented yet */
     bool is_exact;                           /* ...: drawn at full quality however long that took */
     tl_history *history;
 

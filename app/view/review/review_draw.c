@@ -14,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What decides the quality of an image: the budget, TL_REST_MS, or nothing but the settings. */
-enum tl_pace { TL_PACE_BUDGET, TL_PACE_REST, TL_PACE_EXACT };
+/* The time that an image may take, which limits its quality: the budget, TL_REST_MS, or any. */
+enum image_time { TIME_BUDGET, TIME_REST, TIME_UNLIMITED };
 
 static const char *base_name(const char *path)
 {
@@ -60,7 +60,7 @@ static void log_slow_image(const struct tl_review *review, double image_ms)
         return;
     const tl_plan *plan = tl_renderer_last_plan(review->renderer);
     tl_debug("view: slow image %d, %s: %.0f ms, of which cloth %.0f ms%s", review->drawn_count,
-             review->is_paced ? "in motion" : "at rest", image_ms, review->times.cloth,
+             review->is_budgeted ? "in motion" : "at rest", image_ms, review->times.cloth,
              review->wipe.renderer ? ", compared" : "");
     if (review->times.longest_ms > 0.1 * image_ms)
         tl_debug("view:   %s %.0f ms", review->times.longest, review->times.longest_ms);
@@ -79,7 +79,7 @@ static void record_time(struct tl_review *review)
     double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
     review->is_new = false;
     log_slow_image(review, frame_ms);
-    if (!review->is_paced) {
+    if (!review->is_budgeted) {
         tl_frame_times_add(&review->rest_times, frame_ms);
         return;
     }
@@ -179,22 +179,22 @@ static void choose_rest(struct tl_review *review, struct tl_settings *settings)
 
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
  * are compared. */
-static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum tl_pace pace,
+static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum image_time time,
                        tl_error *error)
 {
     struct tl_quality *levels = &review->quality_choice.levels;
     struct tl_settings smooth = *settings;
-    bool is_paced = pace == TL_PACE_BUDGET;
+    bool is_budgeted = time == TIME_BUDGET;
     review->times.lap_s = tl_clock_s();
-    if (!is_paced)
+    if (!is_budgeted)
         *levels = (struct tl_quality){{0}};
     struct tl_settings b = tl_quality_apply(
         levels, settings); /* the last frame's levels: the new camera is needed to choose the next */
     if (!tl_session_apply(review->session, &b, error))
         return false;
-    if (is_paced)
+    if (is_budgeted)
         choose_levels(review, settings);
-    if (pace == TL_PACE_REST) {
+    if (time == TIME_REST) {
         choose_rest(review, &smooth);
         settings = &smooth;
     }
@@ -217,8 +217,8 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     review->times.draw = 1e3 * (tl_clock_s() - started_s);
     review->drawn_count++;
     review->is_new = true;
-    review->is_paced = is_paced;
-    review->is_exact = pace == TL_PACE_EXACT;
+    review->is_budgeted = is_budgeted;
+    review->is_exact = time == TIME_UNLIMITED;
     tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
              tl_session_frame_number(review->session), review->times.draw);
     return true;
@@ -237,7 +237,7 @@ static void accept_settings(struct tl_review *review, const struct tl_settings *
 }
 
 /* Draws `wanted`. When that fails, reports it and draws `good` instead; false only when that fails too. */
-static bool redraw(struct tl_review *review, enum tl_pace pace, tl_error *error)
+static bool redraw(struct tl_review *review, enum image_time time, tl_error *error)
 {
     int width, height;
     bool is_another = review->changed || review->image_is_old; /* new content, rather than a refinement */
@@ -245,7 +245,7 @@ static bool redraw(struct tl_review *review, enum tl_pace pace, tl_error *error)
     review->wanted.image.width = width;
     review->wanted.image.height = height;
     struct tl_settings followed = tl_review_drawable_settings(review);
-    if (!draw_image(review, &followed, pace, error)) {
+    if (!draw_image(review, &followed, time, error)) {
         if (tl_interrupted())
             return false;
         tl_review_report_error(review, error);
@@ -253,13 +253,13 @@ static bool redraw(struct tl_review *review, enum tl_pace pace, tl_error *error)
         review->good.image.width = width;
         review->good.image.height = height;
         review->wanted = review->good;
-        if (!draw_image(review, &review->good, pace, error))
+        if (!draw_image(review, &review->good, time, error))
             return false;
     } else {
         accept_settings(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    int redraws_min = pace == TL_PACE_BUDGET || !is_another
+    int redraws_min = time == TIME_BUDGET || !is_another
                           ? 1
                           : 2; /* ImGui needs a second frame to find the size of new texts */
     review->redraws = review->redraws > redraws_min ? review->redraws : redraws_min;
@@ -268,13 +268,13 @@ static bool redraw(struct tl_review *review, enum tl_pace pace, tl_error *error)
 
 bool tl_review_is_sharp(const struct tl_review *review)
 {
-    return review->drawn_count > 0 && !review->is_paced;
+    return review->drawn_count > 0 && !review->is_budgeted;
 }
 
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
     bool is_done = review->is_exact && !review->changed && !review->image_is_old;
-    return is_done || redraw(review, TL_PACE_EXACT, error);
+    return is_done || redraw(review, TIME_UNLIMITED, error);
 }
 
 bool tl_review_is_at_rest(const struct tl_review *review)
@@ -291,6 +291,5 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error)
     bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
-    return waits || !is_due ||
-           redraw(review, tl_review_is_moving(review) ? TL_PACE_BUDGET : TL_PACE_REST, error);
+    return waits || !is_due || redraw(review, tl_review_is_moving(review) ? TIME_BUDGET : TIME_REST, error);
 }

@@ -1,6 +1,6 @@
 /* When an image of the review window is drawn, and how it gets on the screen: within the budget while
  * something moves, sharp and with smooth edges as soon as nothing does. Owns `times`, the governor, and the
- * flags changed, image_is_old, is_paced and is_new. */
+ * flags changed, image_is_old, is_budgeted and is_new. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_DRAW_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_DRAW_H
 

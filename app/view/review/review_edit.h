@@ -13,7 +13,7 @@ void tl_review_apply_names(struct tl_review *review);
 void tl_review_use_fabric(struct tl_review *review, const char *name);
 void tl_review_use_scene(struct tl_review *review, const char *path); /* a YAML file: replaces all options */
 
-/* The next (by 1) or previous (by -1) one, round and round. */
+/* Changes to the next (by 1) or previous (by -1) one, cyclically. */
 void tl_review_next_fabric(struct tl_review *review, int by);
 void tl_review_next_colourway(struct tl_review *review, int by);
 void tl_review_next_view(struct tl_review *review, int by); /* image.view */

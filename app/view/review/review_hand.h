@@ -6,7 +6,7 @@
 
 /* Starts to pull on the garment at a pixel of the view; reports why it cannot. */
 bool tl_review_hand_begin(struct tl_review *review, float x, float y);
-/* The pointer has moved to this pixel: where the hand is to get to. */
+/* Sets the target of the hand: the pointer has moved to this pixel. */
 void tl_review_hand_aim(struct tl_review *review, float x, float y);
 /* Before each simulated frame: moves the hand towards the pointer. */
 void tl_review_hand_step(struct tl_review *review);

@@ -365,7 +365,7 @@ static void faults_of_pixels_are_named(void **state)
     *bits ^= 1;
     stand->checked.hash = tl_check_hash(&stand->frame, &stand->image);
     assert_breaks(&stand->checked, "run.repeat", "in pixels only");
-    stand->checked.places_hash++;
+    stand->checked.positions_hash++;
     assert_breaks(&stand->checked, "run.repeat", "in positions");
     take_down(&stand);
 }
@@ -380,7 +380,7 @@ static void a_plan_over_budget_is_named(void **state)
     assert_clean(&checked);
     checked.predicted_ms = 35;
     assert_breaks(&checked, "plan.budget", "35.0 ms of 33.0");
-    checked.least_ms = 36; /* no plan is cheaper */
+    checked.min_ms = 36; /* no plan is cheaper */
     assert_clean(&checked);
     take_down(&stand);
 }
@@ -653,15 +653,15 @@ static void faults_of_cloth_are_named(void **state)
                                        .kept_m = 0.003,
                                        .first_strain = 0.1,
                                        .drift_m = NAN,
-                                       .least_energy_j = NAN,
+                                       .min_energy_j = NAN,
                                        .allowed_speed = 20};
     tl_frame frame;
     struct tl_checked checked = check_cloth(session, &watched, &frame);
     assert_clean(&checked);
     double moving = watched.report.kinetic_energy + watched.report.potential_energy;
-    watched.least_energy_j = moving - 0.004 * watched.weight_n; /* lifted by 4 mm out of nothing */
+    watched.min_energy_j = moving - 0.004 * watched.weight_n; /* lifted by 4 mm out of nothing */
     assert_breaks(&checked, "cloth.energy", "garment");
-    watched.least_energy_j = moving - 0.002 * watched.weight_n; /* as contacts may */
+    watched.min_energy_j = moving - 0.002 * watched.weight_n; /* as contacts may */
     watched.drift_m = 1e-6;
     assert_clean(&checked);
     watched.drift_m = 1e-3;
