@@ -6,15 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PLANE_FLOATS TL_BEHIND_PIXELS
-#define TILE_FLOATS  (3 * PLANE_FLOATS)
+enum { PLANE_FLOATS = TL_BEHIND_PIXELS, TILE_FLOATS = 3 * PLANE_FLOATS };
 
 static bool is_same(const struct tl_behind_request *a, const struct tl_behind_request *b)
 {
     return a->revision == b->revision && (a->blurred != NULL) == (b->blurred != NULL) &&
            a->width == b->width && a->height == b->height && a->environment_yaw == b->environment_yaw &&
-           memcmp(&a->forward, &b->forward, sizeof a->forward) == 0 &&
-           memcmp(&a->right, &b->right, sizeof a->right) == 0 && memcmp(&a->up, &b->up, sizeof a->up) == 0;
+           glms_vec3_eqv(a->forward, b->forward) && glms_vec3_eqv(a->right, b->right) &&
+           glms_vec3_eqv(a->up, b->up);
 }
 
 /* Whether TL_BEHIND_STEP pixels are few enough to interpolate over. Blurred light bends at the middles of its
@@ -118,7 +117,7 @@ static void interpolate_colours(const struct tl_behind *behind, int left, int lo
                 nodes[c][row][i] = colour.raw[c];
         }
     for (int c = 0; c < 3; c++)
-        interpolate(nodes[c], colours + c * PLANE_FLOATS);
+        interpolate(nodes[c], colours + (size_t)c * PLANE_FLOATS);
 }
 
 /* Interpolates places in the environment's picture. Returns false where they are not smooth: near the poles,

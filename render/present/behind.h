@@ -14,8 +14,8 @@
 
 #define TL_BEHIND_COLUMNS 32 /* pixels of a tile */
 #define TL_BEHIND_ROWS    8
-#define TL_BEHIND_PIXELS  (TL_BEHIND_COLUMNS * TL_BEHIND_ROWS)
 #define TL_BEHIND_STEP    8
+enum { TL_BEHIND_PIXELS = TL_BEHIND_COLUMNS * TL_BEHIND_ROWS };
 
 struct tl_behind_request {
     vec3s forward, right, up;          /* tl_view's */

@@ -11,13 +11,15 @@
 
 _Static_assert(1 << (23 - STEP_BITS) == TL_ENCODING_STEPS, "the index is the upper part of a float");
 
+enum { CODES = TL_ENCODING_OCTAVES * TL_ENCODING_STEPS }; /* of values below 1 */
+
 void tl_encoding_make(struct tl_encoding *out)
 {
-    for (int i = 0; i < TL_ENCODING_OCTAVES * TL_ENCODING_STEPS; i++) {
+    for (int i = 0; i < CODES; i++) {
         union tl_float_bits middle = {.bits = ((i + SMALLEST_INDEX) << STEP_BITS) + (1 << (STEP_BITS - 1))};
         out->bytes[i] = (uint8_t)(255.0f * srgb_encode(middle.value) + 0.5f);
     }
-    out->bytes[TL_ENCODING_OCTAVES * TL_ENCODING_STEPS] = 255; /* of 1 */
+    out->bytes[CODES] = 255; /* of 1 */
 }
 
 /* A row of a tile. Loops of TL_LANES would be unrolled, and not become vector code. */
@@ -31,7 +33,7 @@ struct row {
 TL_INLINE bool load(const float *texels, float exposure, struct row *out)
 {
     int32_t open = 0;
-    for (int i = 0; i < COLUMNS; i++) {
+    for (size_t i = 0; i < COLUMNS; i++) {
         out->red[i] = exposure * texels[4 * i];
         out->green[i] = exposure * texels[4 * i + 1];
         out->blue[i] = exposure * texels[4 * i + 2];
@@ -97,7 +99,7 @@ TL_INLINE void encode(const struct tl_encoding *encoding, const struct row *row,
     find_codes(row->red, red);
     find_codes(row->green, green);
     find_codes(row->blue, blue);
-    for (int i = 0; i < COLUMNS; i++) {
+    for (size_t i = 0; i < COLUMNS; i++) {
         bytes[4 * i] = encoding->bytes[red[i]];
         bytes[4 * i + 1] = encoding->bytes[green[i]];
         bytes[4 * i + 2] = encoding->bytes[blue[i]];
@@ -134,7 +136,7 @@ TL_INLINE void show_row(const struct tl_tone_map_request *request, const struct 
         const float *colours = *behind + first;
         put_under(row.red, row.open, colours, request->exposure);
         put_under(row.green, row.open, colours + TL_BEHIND_PIXELS, request->exposure);
-        put_under(row.blue, row.open, colours + 2 * TL_BEHIND_PIXELS, request->exposure);
+        put_under(row.blue, row.open, colours + (size_t)2 * TL_BEHIND_PIXELS, request->exposure);
     } else if (is_open) {
         float plain = request->is_light ? SHOWN_GREY : SHOWN_DARK;
         put_plain_under(row.red, row.open, plain);

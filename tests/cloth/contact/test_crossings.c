@@ -52,7 +52,7 @@ static void test_random_triangles(void **state)
             x[i] = vec3d_add(vec3d_add(about, scattered(&random, 0.01 + 0.4 * noise(&random))),
                              (vec3d){40, 1, -7});
         }
-        struct tl_topology topology = join(indices, 3 * TRIANGLES, 3 * TRIANGLES);
+        struct tl_topology topology = join(indices, (size_t)3 * TRIANGLES, (size_t)3 * TRIANGLES);
         check_count("scattered", &topology, x, 100);
         tl_topology_release(&topology);
     }
@@ -67,9 +67,10 @@ static void test_crumpled_sheet(void **state)
     static vec3d x[COLUMNS * COLUMNS];
     uint32_t random = 11;
     size_t count = 0;
-    for (uint32_t i = 0; i < COLUMNS * COLUMNS; i++)
-        x[i] = vec3d_add((vec3d){0.02 * (i % COLUMNS), 1 + 0.02 * (double)(i / COLUMNS), 0},
-                         scattered(&random, 0.05));
+    for (uint32_t i = 0; i < COLUMNS * COLUMNS; i++) {
+        const uint32_t column = i % COLUMNS, row = i / COLUMNS;
+        x[i] = vec3d_add((vec3d){0.02 * column, 1 + 0.02 * row, 0}, scattered(&random, 0.05));
+    }
     for (uint32_t row = 0; row < CELLS; row++)
         for (uint32_t column = 0; column < CELLS; column++) {
             uint32_t a = row * COLUMNS + column, c = a + COLUMNS + 1;
@@ -77,7 +78,7 @@ static void test_crumpled_sheet(void **state)
             for (int i = 0; i < 6; i++)
                 indices[count++] = corners[i];
         }
-    struct tl_topology topology = join(indices, count, COLUMNS * COLUMNS);
+    struct tl_topology topology = join(indices, count, (size_t)COLUMNS * COLUMNS);
     check_count("crumpled", &topology, x, 100);
     tl_topology_release(&topology);
 }

@@ -68,11 +68,12 @@ static float *random_texels(int count)
 static void expect_bytes(const struct tl_tone_map_request *request, const double *behind, bool is_each,
                          const uint8_t *bytes)
 {
-    for (int i = 0; i < request->width * request->height; i++) {
+    const size_t count = (size_t)request->width * (size_t)request->height;
+    for (size_t i = 0; i < count; i++) {
         double shown[3];
         expect(request->texels + 4 * i, is_each ? behind + 3 * i : behind, request->is_light,
                (double)request->exposure, shown);
-        for (int c = 0; c < 3; c++)
+        for (size_t c = 0; c < 3; c++)
             assert_near((double)bytes[4 * i + c], shown[c], 0.57); /* rounding, and a table's */
         assert_int_equal(bytes[4 * i + 3], 255);
     }
@@ -111,14 +112,14 @@ static void test_encoding(void **state)
     struct tl_encoding encoding;
     tl_encoding_make(&encoding);
     enum { COUNT = 1 << 16 };
-    float *texels = tl_alloc_lines(4 * COUNT, sizeof *texels);
+    float *texels = tl_alloc_lines((size_t)4 * COUNT, sizeof *texels);
     for (int i = 0; i < COUNT; i++) {
         for (int c = 0; c < 3; c++)
             texels[4 * i + c] = exp2f(1.5f - 18.0f * (float)(3 * i + c) / (3 * COUNT));
         texels[4 * i + 3] = 1;
     }
     memset(texels, 0, 3 * sizeof *texels);
-    uint8_t *bytes = TL_NEW_ARRAY(uint8_t, 4 * COUNT);
+    uint8_t *bytes = TL_NEW_ARRAY(uint8_t, (size_t)4 * COUNT);
     const struct tl_tone_map_request request = {
         .encoding = &encoding, .texels = texels, .width = 256, .height = 256, .end_column = 256};
     const double dark[] = {0.03, 0.03, 0.03};
@@ -133,7 +134,8 @@ static void fill_smooth(tl_environment *environment)
 {
     for (int y = 0; y < environment->image.height; y++)
         for (int x = 0; x < environment->image.width; x++) {
-            float *texel = tl_image_floats(&environment->image) + 3 * (y * environment->image.width + x);
+            size_t number = (size_t)y * (size_t)environment->image.width + (size_t)x;
+            float *texel = tl_image_floats(&environment->image) + 3 * number;
             texel[0] = 0.2f + 0.1f * sinf(0.2f * (float)x);
             texel[1] = 0.01f * (float)y;
             texel[2] = 0.3f;

@@ -57,8 +57,9 @@ static void make_maps(struct lanes_scene *scene)
     scene->normal = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
     scene->data = tl_image_create(TEXELS, TEXELS, 1, TL_IMAGE_U8);
     scene->normal.linear = scene->data.linear = true;
-    for (size_t i = 0; i < TEXELS * TEXELS; i++) {
-        float u = 6.2832f * (float)(i % TEXELS) / TEXELS, v = 6.2832f * (float)(i / TEXELS) / TEXELS;
+    for (size_t i = 0; i < (size_t)TEXELS * TEXELS; i++) {
+        const size_t column = i % TEXELS, row = i / TEXELS;
+        float u = 6.2832f * (float)column / TEXELS, v = 6.2832f * (float)row / TEXELS;
         vec3s n = glms_vec3_normalize((vec3s){{0.4f * sinf(u), 0.3f * cosf(v), 1}});
         const float colour[3] = {0.5f + 0.4f * sinf(u), 0.5f + 0.4f * sinf(2 * v), 0.6f + 0.3f * cosf(u + v)};
         for (size_t c = 0; c < 3; c++) {
