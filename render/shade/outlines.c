@@ -125,8 +125,8 @@ TL_INLINE bool fits(uint32_t part, float nearness, float change, uint32_t sample
     const float allowed = margin * nearness, most = SLOPE_MAX / SLOPE_MARGIN * allowed;
     const float trusted = tl_maxf(tl_minf(change, most), -most);
     const float difference = sample_nearness - nearness;
-    return (part == sample_part) & (difference >= tl_minf(trusted, 0) - allowed) &
-           (difference <= tl_maxf(trusted, 0) + allowed);
+    const float min = tl_minf(trusted, 0) - allowed, max = tl_maxf(trusted, 0) + allowed;
+    return (part == sample_part) & (difference >= min) & (difference <= max);
 }
 
 TL_INLINE int within(int i, int count)
