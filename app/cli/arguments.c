@@ -39,13 +39,13 @@ struct flag {
 
 static const struct flag flags_known[] = {
     {"--garment", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.garment", "NAME|FILE",
-     "dress, skirt, none, or a .glb, .gltf or .obj file"},
+     "dress, skirt, trousers, none, or a .glb, .gltf or .obj file"},
     {"--units", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.units", "UNITS",
      "of the garment's file: auto, m, dm, cm, mm or in"},
     {"--motion", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.motion", "FILE",
      "plays a point cache on the garment: .pc2, .mdd, or frame.####.obj"},
     {"--avatar", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.avatar", "NAME|FILE",
-     "form, none, or a .glb, .gltf or .obj file"},
+     "form, figure, none, or a .glb, .gltf or .obj file"},
     {"--env", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.environment", "NAME|FILE",
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.fabric", "NAME|FILE",

@@ -92,7 +92,10 @@ static bool load_avatar(tl_session *session, tl_error *error)
     if (strcmp(name, "none") == 0)
         return true;
     if (strcmp(name, "form") == 0)
-        loaded = tl_avatar_form();
+        loaded =
+            tl_garment_is_for_figure(session->settings.scene.garment) ? tl_avatar_figure() : tl_avatar_form();
+    else if (strcmp(name, "figure") == 0)
+        loaded = tl_avatar_figure();
     else if (strcmp(name, "ball") == 0)
         loaded = tl_specimen_ball();
     else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
@@ -166,6 +169,13 @@ static bool read_garment(const tl_session *session, tl_garment *out, tl_error *e
     return false;
 }
 
+static double distance_to_body(const void *body, const double point[3])
+{
+    const double reach_m = 0.3; /* farther points are as far as that */
+    struct tl_contact contact;
+    return tl_collider_query(body, point, reach_m, &contact) ? contact.distance_m : reach_m;
+}
+
 static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
 {
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
@@ -173,13 +183,15 @@ static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
         return true;
     if (!is_built_in_garment(name))
         return read_garment(session, out, error);
-    if (!tl_garment_cut(name, session->settings.cloth.edge_m, out, error))
-        return false;
-    bool own_body = session->avatar && strcmp(wearer, "form") != 0;
-    if (!own_body || tl_garment_fit(out, wearer, &session->avatar->model.mesh, error))
-        return true;
-    tl_garment_release(out);
-    return false;
+    const float edge_m = session->settings.cloth.edge_m;
+    if (!session->avatar || strcmp(wearer, "form") == 0)
+        return tl_garment_cut(name, edge_m, out, error);
+    const tl_mesh *mesh = &session->avatar->model.mesh;
+    tl_collider *body = tl_collider_create(mesh, false, error);
+    const struct tl_wearer worn_by = {wearer, mesh, {distance_to_body, body}};
+    bool good = body && tl_garment_cut_for(name, edge_m, &worn_by, out, error);
+    tl_collider_destroy(&body);
+    return good;
 }
 
 static bool load_garment(tl_session *session, tl_error *error)

@@ -322,12 +322,18 @@ static tl_mesh mesh_of(const struct loft *loft)
     return mesh;
 }
 
+tl_material tl_form_canvas(void)
+{
+    tl_material canvas = tl_material_default("canvas");
+    canvas.diffuse = (vec3s){{0.62f, 0.54f, 0.43f}};
+    canvas.specular = (vec3s){{0.02f, 0.02f, 0.02f}};
+    return canvas;
+}
+
 static tl_material *form_materials(void)
 {
     tl_material *materials = TL_NEW_ARRAY(tl_material, FORM_MATERIALS);
-    materials[CANVAS] = tl_material_default("canvas");
-    materials[CANVAS].diffuse = (vec3s){{0.62f, 0.54f, 0.43f}};
-    materials[CANVAS].specular = (vec3s){{0.02f, 0.02f, 0.02f}};
+    materials[CANVAS] = tl_form_canvas();
     materials[WOOD] = tl_material_default("wood");
     materials[WOOD].diffuse = (vec3s){{0.115f, 0.055f, 0.027f}};
     materials[WOOD].glossiness = 0.96f;

@@ -1,5 +1,6 @@
 /* The built-in dress form: its shape as a distance function, for cutting garments around it, and as an
- * avatar.
+ * avatar. The figure is the same torso with arms, held away from it, legs and a head:
+ * for shirts and trousers.
  *
  * The torso (with neck and shoulder stubs, without the stand) is the zero set of tl_form_distance, a smooth
  * union of lofted superellipses. Metres, +Y up, facing +Z, mirror-symmetric in x. Threads: pure. */
@@ -28,5 +29,14 @@ double tl_form_girth(double y);
 /* The built-in dress form: a tailor's torso on a stand, 1.6 m high, feet of the stand
  * at y = 0, facing +Z, closed and manifold, covered in canvas. */
 tl_avatar tl_avatar_form(void);
+
+/* What both are covered in. */
+tl_material tl_form_canvas(void);
+
+/* The same of the figure: 1.68 m high, its head an egg. Its feet stand on y = 0. */
+double tl_figure_distance(const double point[3]);
+
+/* Closed and manifold, of triangles of about 1.4 cm, which follow the distance function's zero set. */
+tl_avatar tl_avatar_figure(void);
 
 #endif

@@ -1,5 +1,6 @@
 #include "assets/builtin/form.h"
 
+#include "assets/builtin/solid.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -33,47 +34,47 @@ static const struct swelling swellings[] = {
 
 #define STUB_CUT 0.180 /* the shoulders end in flat caps at x = -+STUB_CUT */
 
-/* Derivative of a trunk column at knot i: Catmull-Rom on uneven knots; the ends are straight. */
-static double knot_slope(const double *y, const double *value, int i)
+/* A column of a table whose first column is the height. */
+struct column {
+    const double *rows;
+    size_t width, count, number;
+};
+
+static double entry(const struct column *column, size_t row, size_t number)
 {
-    if (i == 0 || i == TRUNK_COUNT - 1)
+    return column->rows[row * column->width + number];
+}
+
+/* Derivative at knot i: Catmull-Rom on uneven knots; the ends are straight. */
+static double knot_slope(const struct column *column, size_t i)
+{
+    if (i == 0 || i == column->count - 1)
         return 0;
-    return (value[i + 1] - value[i - 1]) / (y[i + 1] - y[i - 1]);
+    return (entry(column, i + 1, column->number) - entry(column, i - 1, column->number)) /
+           (entry(column, i + 1, 0) - entry(column, i - 1, 0));
 }
 
-/* The cubic Hermite spline of one trunk column, C1. */
-static double trunk_value(double height, size_t column)
+/* The cubic Hermite spline of a column, C1. */
+static double column_value(const struct column *column, double height)
 {
-    double y[TRUNK_COUNT], value[TRUNK_COUNT];
-    for (int i = 0; i < TRUNK_COUNT; i++) {
-        const double *row = &trunk[i].y;
-        y[i] = row[0];
-        value[i] = row[column];
-    }
-    if (height <= y[0])
-        return value[0];
-    if (height >= y[TRUNK_COUNT - 1])
-        return value[TRUNK_COUNT - 1];
-    int i = 0;
-    while (height > y[i + 1])
+    const size_t last = column->count - 1;
+    if (height <= entry(column, 0, 0))
+        return entry(column, 0, column->number);
+    if (height >= entry(column, last, 0))
+        return entry(column, last, column->number);
+    size_t i = 0;
+    while (height > entry(column, i + 1, 0))
         i++;
-    double h = y[i + 1] - y[i], t = (height - y[i]) / h;
-    double before = knot_slope(y, value, i) * h, after = knot_slope(y, value, i + 1) * h;
+    double h = entry(column, i + 1, 0) - entry(column, i, 0), t = (height - entry(column, i, 0)) / h;
+    double before = knot_slope(column, i) * h, after = knot_slope(column, i + 1) * h;
     double t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * value[i] + (t3 - 2 * t2 + t) * before + (3 * t2 - 2 * t3) * value[i + 1] +
-           (t3 - t2) * after;
+    return (2 * t3 - 3 * t2 + 1) * entry(column, i, column->number) + (t3 - 2 * t2 + t) * before +
+           (3 * t2 - 2 * t3) * entry(column, i + 1, column->number) + (t3 - t2) * after;
 }
 
-/* Polynomial smooth minimum (Quilez), C1; the blend is k wide. */
-static double smooth_min(double a, double b, double k)
+static double trunk_value(double height, size_t number)
 {
-    double h = fmax(k - fabs(a - b), 0) / k;
-    return fmin(a, b) - h * h * k * 0.25;
-}
-
-static double smooth_max(double a, double b, double k)
-{
-    return -smooth_min(-a, -b, k);
+    return column_value(&(struct column){&trunk[0].y, 4, TRUNK_COUNT, number}, height);
 }
 
 /* Distance along the ray from the section's centre to a superellipse with half-axes a, b. */
@@ -117,14 +118,80 @@ static double neck_distance(double x, double y, double z)
     return superellipse(x, z - lean, 0.056, 0.059, 2);
 }
 
+/* The torso without any cut. */
+static double torso_distance(double x, double y, double z)
+{
+    double body = tl_smooth_min(trunk_distance(x, y, z), shoulder_distance(x, y, z), 0.065);
+    return tl_smooth_min(body, fmax(neck_distance(x, y, z), 1.36 - y), 0.038);
+}
+
 double tl_form_distance(const double point[3])
 {
-    double x = point[0], y = point[1], z = point[2];
-    double body = smooth_min(trunk_distance(x, y, z), shoulder_distance(x, y, z), 0.065);
-    body = smooth_min(body, fmax(neck_distance(x, y, z), 1.36 - y), 0.038);
-    body = smooth_max(body, fabs(x) - STUB_CUT, 0.008);
-    body = smooth_max(body, y - TL_FORM_NECK_TOP, 0.006);
-    return smooth_max(body, TL_FORM_BOTTOM - y, 0.02);
+    double y = point[1], body = torso_distance(point[0], y, point[2]);
+    body = tl_smooth_max(body, fabs(point[0]) - STUB_CUT, 0.008);
+    body = tl_smooth_max(body, y - TL_FORM_NECK_TOP, 0.006);
+    return tl_smooth_max(body, TL_FORM_BOTTOM - y, 0.02);
+}
+
+/* A limb: the middle and the half-axes of its horizontal sections by height. */
+struct limb_section {
+    double y, x, z, side, depth;
+};
+static const struct limb_section leg[] = {
+    {0.00, 0.118, -0.014, 0.033, 0.038}, {0.04, 0.118, -0.014, 0.033, 0.040},
+    {0.10, 0.116, -0.014, 0.033, 0.036}, {0.20, 0.112, -0.014, 0.041, 0.043},
+    {0.33, 0.107, -0.014, 0.053, 0.055}, {0.46, 0.103, 0.002, 0.053, 0.056},
+    {0.58, 0.100, 0.006, 0.066, 0.070},  {0.70, 0.096, 0.005, 0.081, 0.086},
+    {0.78, 0.093, 0.002, 0.086, 0.092},  {0.90, 0.090, -0.002, 0.080, 0.090},
+};
+static const struct limb_section arm[] = {
+    {0.80, 0.392, 0.030, 0.026, 0.026},  {0.88, 0.366, 0.014, 0.028, 0.026},
+    {0.98, 0.330, -0.008, 0.038, 0.034}, {1.06, 0.299, -0.020, 0.042, 0.037},
+    {1.16, 0.251, -0.024, 0.046, 0.040}, {1.26, 0.201, -0.021, 0.054, 0.046},
+    {1.36, 0.150, -0.016, 0.060, 0.050},
+};
+
+static double limb_value(const struct limb_section *limb, size_t count, double height, size_t number)
+{
+    return column_value(&(struct column){&limb->y, 5, count, number}, height);
+}
+
+static double limb_distance(const struct limb_section *limb, size_t count, double x, double y, double z)
+{
+    double side = limb_value(limb, count, y, 3), depth = limb_value(limb, count, y, 4);
+    return superellipse(x - limb_value(limb, count, y, 1), z - limb_value(limb, count, y, 2), side, depth, 2);
+}
+
+/* The front of a foot, as a flattened ball. */
+static double foot_distance(double x, double y, double z)
+{
+    const double scale[3] = {0.040, 0.036, 0.086};
+    double u = (x - 0.121) / scale[0], v = (y - 0.026) / scale[1], w = (z - 0.055) / scale[2];
+    return (sqrt(u * u + v * v + w * w) - 1) * scale[1];
+}
+
+static double head_distance(double x, double y, double z)
+{
+    const double scale[3] = {0.070, 0.105, 0.088};
+    double u = x / scale[0], v = (y - 1.575) / scale[1], w = (z - 0.022) / scale[2];
+    return (sqrt(u * u + v * v + w * w) - 1) * scale[0];
+}
+
+double tl_figure_distance(const double point[3])
+{
+    const double shoulder_end = 0.150, crotch = 0.765, leg_end = 0.87, hand_end = 0.805, arm_end = 1.372;
+    double x = fabs(point[0]), y = point[1], z = point[2];
+    double below = fmax(1.27 - y, 0), side = shoulder_end + 4 * below * below; /* the chest is uncut */
+    double trunk_part = tl_smooth_max(torso_distance(x, y, z), x - side, 0.05);
+    double leg_part = tl_smooth_max(limb_distance(leg, TL_COUNT(leg), x, y, z), y - leg_end, 0.06);
+    double arm_part = limb_distance(arm, TL_COUNT(arm), x, y, z);
+    arm_part = tl_smooth_max(tl_smooth_max(arm_part, hand_end - y, 0.04), y - arm_end, 0.05);
+    leg_part = tl_smooth_min(leg_part, foot_distance(x, y, z), 0.03);
+    double body = tl_smooth_max(trunk_part, crotch - y, 0.15);
+    body = tl_smooth_min(tl_smooth_min(body, leg_part, 0.02), arm_part, 0.03);
+    body = tl_smooth_max(body, y - 1.53, 0.02);
+    body = tl_smooth_min(body, head_distance(x, y, z), 0.03);
+    return tl_smooth_max(body, -y, 0.004);
 }
 
 double tl_form_radius(double y, double angle)

@@ -19,7 +19,7 @@ struct tl_curve tl_curve_line(struct tl_point from, struct tl_point to)
     return curve;
 }
 
-static struct tl_point curve_point(const struct tl_curve *curve, double t)
+struct tl_point tl_curve_at(const struct tl_curve *curve, double t)
 {
     const struct tl_point *c = curve->control;
     double s = 1 - t, w[4] = {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t};
@@ -33,7 +33,7 @@ static void measure_curve(const struct tl_curve *curve, double length[CURVE_SAMP
     struct tl_point last = curve->control[0];
     length[0] = 0;
     for (int i = 1; i <= CURVE_SAMPLES; i++) {
-        struct tl_point point = curve_point(curve, (double)i / CURVE_SAMPLES);
+        struct tl_point point = tl_curve_at(curve, (double)i / CURVE_SAMPLES);
         length[i] = length[i - 1] + hypot(point.x - last.x, point.y - last.y);
         last = point;
     }
@@ -55,7 +55,7 @@ static void divide_curve(const struct tl_curve *curve, struct tl_point *out)
         double wanted = length[CURVE_SAMPLES] * n / curve->segments;
         while (i < CURVE_SAMPLES - 1 && length[i + 1] < wanted)
             i++;
-        out[n] = curve_point(curve, (i + (wanted - length[i]) / (length[i + 1] - length[i])) / CURVE_SAMPLES);
+        out[n] = tl_curve_at(curve, (i + (wanted - length[i]) / (length[i + 1] - length[i])) / CURVE_SAMPLES);
     }
 }
 

@@ -28,6 +28,7 @@ typedef struct tl_panel_mesh {
 } tl_panel_mesh;
 
 struct tl_curve tl_curve_line(struct tl_point from, struct tl_point to);
+struct tl_point tl_curve_at(const struct tl_curve *curve, double t); /* 0 to 1 */
 double tl_curve_length(const struct tl_curve *curve);
 
 /* The point of curve c's n-th division is outline point (sum of the segments before c) + n. */

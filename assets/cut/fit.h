@@ -14,6 +14,15 @@ struct tl_girth {
  * when the plane misses the mesh. */
 bool tl_mesh_girth(const tl_mesh *mesh, float y_m, struct tl_girth *out);
 
+struct tl_waist {
+    float y_m;
+    struct tl_girth girth;
+};
+
+/* The waist of a standing person: the narrowest section between 0.56 and 0.66 of the mesh's height. False
+ * when the mesh has none there. */
+bool tl_mesh_waist(const tl_mesh *mesh, struct tl_waist *out);
+
 /* Scales a garment cut for the built-in form about its waist, pattern included, by the ratio of the waist
  * girths, and moves it to the body's waist. The body stands on y = 0 in its rest pose, is upright and has
  * human proportions: the waist is the narrowest section between 0.56 and 0.66 of its height. */

@@ -1,5 +1,7 @@
 #include "assets/cut/garment_cut.h"
 
+#include "assets/builtin/form.h"
+#include "assets/cut/fit.h"
 #include "assets/cut/garment_cut_internal.h"
 #include "config/memory.h"
 
@@ -15,8 +17,18 @@
 #define REACH_M                                                                                              \
     4.0 /* relaxation reaches from neck to hem and back in the first cut, less far in finer ones */
 
-static struct tl_cut_plan (*const plans[])(void) = {tl_cut_plan_dress, tl_cut_plan_skirt, tl_cut_plan_layers};
-const char *const tl_garment_names[] = {"dress", "skirt", "layers", NULL};
+/* Garments for the form are scaled to other bodies, the others are drafted for each body. */
+static const struct cut_kind {
+    const char *name;
+    struct tl_cut_plan (*for_form)(void);
+    struct tl_cut_plan (*for_body)(const struct tl_body *);
+} kinds[] = {
+    {"dress", .for_form = tl_cut_plan_dress},
+    {"skirt", .for_form = tl_cut_plan_skirt},
+    {"layers", .for_form = tl_cut_plan_layers},
+    {"trousers", .for_body = tl_cut_plan_trousers},
+};
+const char *const tl_garment_names[] = {"dress", "skirt", "layers", "trousers", NULL};
 
 /* The pieces of a plan after cutting, and where their vertices begin in the garment. */
 struct cutting {
@@ -24,14 +36,6 @@ struct cutting {
     tl_panel_mesh panels[TL_CUT_MAX_PIECES];
     size_t first_vertex[TL_CUT_MAX_PIECES + 1];
 };
-
-static struct tl_curve mirrored(const struct tl_curve *curve)
-{
-    struct tl_curve result = {.segments = curve->segments};
-    for (int i = 0; i < 4; i++)
-        result.control[i] = (struct tl_point){-curve->control[3 - i].x, curve->control[3 - i].y};
-    return result;
-}
 
 static struct tl_curve *half_curve(struct tl_cut_piece *piece, size_t curve)
 {
@@ -60,11 +64,11 @@ static void cut_pieces(struct cutting *cutting, double edge_m)
     for (size_t p = 0; p < cutting->plan->piece_count; p++) {
         const struct tl_cut_piece *piece = &cutting->plan->pieces[p];
         struct tl_curve outline[2 * TL_CUT_MAX_HALF];
-        for (size_t c = 0; c < piece->half_count; c++) {
-            outline[c] = piece->half[c];
-            outline[tl_cut_mirror(piece, c)] = mirrored(&piece->half[c]);
-        }
-        cutting->panels[p] = tl_panel_cut(outline, 2 * piece->half_count, edge_m);
+        const size_t curves = piece->whole ? piece->half_count : 2 * piece->half_count;
+        for (size_t c = 0; c < curves; c++)
+            outline[c] = c < piece->half_count ? piece->half[c]
+                                               : tl_cut_mirrored_curve(&piece->half[tl_cut_mirror(piece, c)]);
+        cutting->panels[p] = tl_panel_cut(outline, curves, edge_m);
         cutting->first_vertex[p + 1] = cutting->first_vertex[p] + cutting->panels[p].point_count;
     }
 }
@@ -259,7 +263,8 @@ static void place(const struct cutting *cutting, const tl_garment *coarse, doubl
     for (size_t i = 0; i < garment->pin_count; i++)
         fixed[body[garment->pins[i]]] = true;
     struct tl_fit_edge *edges = fit_edges(garment, body);
-    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count, carries ? 0 : REACH_M);
+    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count, carries ? 0 : REACH_M,
+               cutting->plan->distance);
     for (size_t v = 0; v < count; v++) {
         const double *at = position[body[v]];
         garment->model.mesh.positions[v] = (vec3s){{(float)at[0], (float)at[1], (float)at[2]}};
@@ -292,17 +297,30 @@ static void fill_normals(tl_garment *garment)
     free(body);
 }
 
-static void cut(struct tl_cut_plan (*make_plan)(void), const char *name, float edge_m, tl_garment *out)
+static double form_distance(const void *context, const double point[3])
+{
+    (void)context;
+    return tl_form_distance(point);
+}
+
+static struct tl_cut_plan make_plan(const struct cut_kind *kind, const struct tl_body *body)
+{
+    struct tl_cut_plan plan = kind->for_body ? kind->for_body(body) : kind->for_form();
+    plan.distance = kind->for_body ? body->distance : (struct tl_body_distance){form_distance, NULL};
+    return plan;
+}
+
+static void cut(const struct cut_kind *kind, const struct tl_body *body, float edge_m, tl_garment *out)
 {
     const float coarse_edge_m = edge_m < EDGE_FIRST_M ? 2 * edge_m : 0;
     tl_garment coarse = {0};
     if (coarse_edge_m > 0)
-        cut(make_plan, name, coarse_edge_m, &coarse);
-    struct tl_cut_plan plan = make_plan();
+        cut(kind, body, coarse_edge_m, &coarse);
+    struct tl_cut_plan plan = make_plan(kind, body);
     struct cutting cutting = {.plan = &plan};
     choose_segments(&plan, (double)edge_m);
     cut_pieces(&cutting, (double)edge_m);
-    *out = (tl_garment){.model = {.name = tl_copy_string(name)}};
+    *out = (tl_garment){.model = {.name = tl_copy_string(kind->name)}};
     lay_out(&cutting, out);
     sew(&cutting, out);
     pin(&cutting, out);
@@ -314,30 +332,83 @@ static void cut(struct tl_cut_plan (*make_plan)(void), const char *name, float e
     tl_garment_release(&coarse);
 }
 
-static bool fail_unknown(const char *name, tl_error *error)
+/* NULL when the name is unknown or the edge is out of range. */
+static const struct cut_kind *choose(const char *name, float edge_m, tl_error *error)
 {
-    char names[256] = "";
-    for (size_t i = 0; i < TL_COUNT(plans); i++) {
-        size_t used = strlen(names);
-        snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", tl_garment_names[i]);
+    size_t chosen = 0;
+    while (chosen < TL_COUNT(kinds) && strcmp(name, kinds[chosen].name) != 0)
+        chosen++;
+    if (chosen == TL_COUNT(kinds)) {
+        char names[256] = "";
+        for (size_t i = 0; i < TL_COUNT(kinds); i++) {
+            size_t used = strlen(names);
+            snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "", kinds[i].name);
+        }
+        (void)tl_fail(error, TL_USAGE,
+                      "garment \"%s\": no built-in garment has this name: choose one of %s, or name a "
+                      ".glb or .gltf file",
+                      name, names);
+        return NULL;
     }
-    return tl_fail(error, TL_USAGE,
-                   "garment \"%s\": no built-in garment has this name: choose one of %s, or name a "
-                   ".glb or .gltf file",
-                   name, names);
+    if (!(edge_m >= EDGE_MINIMUM_M && edge_m <= EDGE_MAXIMUM_M)) {
+        (void)tl_fail(error, TL_USAGE, "garment \"%s\": an edge of %g m: choose one from %g to %g m", name,
+                      (double)edge_m, (double)EDGE_MINIMUM_M, (double)EDGE_MAXIMUM_M);
+        return NULL;
+    }
+    return &kinds[chosen];
+}
+
+static bool cut_for(const struct cut_kind *kind, float edge_m, const struct tl_wearer *wearer,
+                    tl_garment *out, tl_error *error)
+{
+    struct tl_body body;
+    if (!tl_body_measure(wearer->name, wearer->mesh, wearer->distance, &body, error))
+        return false;
+    cut(kind, &body, edge_m, out);
+    return true;
+}
+
+static double figure_distance(const void *context, const double point[3])
+{
+    (void)context;
+    return tl_figure_distance(point);
+}
+
+bool tl_garment_is_for_figure(const char *name)
+{
+    for (size_t i = 0; i < TL_COUNT(kinds); i++)
+        if (strcmp(name, kinds[i].name) == 0)
+            return kinds[i].for_body != NULL;
+    return false;
 }
 
 bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error)
 {
-    size_t chosen = 0;
-    while (chosen < TL_COUNT(plans) && strcmp(name, tl_garment_names[chosen]) != 0)
-        chosen++;
-    if (chosen == TL_COUNT(plans))
-        return fail_unknown(name, error);
-    if (!(edge_m >= EDGE_MINIMUM_M && edge_m <= EDGE_MAXIMUM_M))
-        return tl_fail(error, TL_USAGE, "garment \"%s\": an edge of %g m: choose one from %g to %g m", name,
-                       (double)edge_m, (double)EDGE_MINIMUM_M, (double)EDGE_MAXIMUM_M);
+    const struct cut_kind *kind = choose(name, edge_m, error);
+    if (!kind)
+        return false;
+    if (kind->for_form) {
+        cut(kind, NULL, edge_m, out);
+        return true;
+    }
+    tl_avatar figure = tl_avatar_figure();
+    const struct tl_wearer wearer = {"figure", &figure.model.mesh, {figure_distance, NULL}};
+    bool good = cut_for(kind, edge_m, &wearer, out, error);
+    tl_avatar_release(&figure);
+    return good;
+}
 
-    cut(plans[chosen], name, edge_m, out);
-    return true;
+bool tl_garment_cut_for(const char *name, float edge_m, const struct tl_wearer *wearer, tl_garment *out,
+                        tl_error *error)
+{
+    const struct cut_kind *kind = choose(name, edge_m, error);
+    if (!kind)
+        return false;
+    if (kind->for_body)
+        return cut_for(kind, edge_m, wearer, out, error);
+    cut(kind, NULL, edge_m, out);
+    if (tl_garment_fit(out, wearer->name, wearer->mesh, error))
+        return true;
+    tl_garment_release(out);
+    return false;
 }

@@ -3,13 +3,28 @@
 #define TOILE_ASSETS_CUT_GARMENT_CUT_H
 
 #include "assets/base/garment.h"
+#include "assets/cut/body.h"
 #include "config/error.h"
 
-/* Built-in garments, cut as flat panels around the built-in dress form (assets/builtin/form.h): "dress",
- * "skirt", and "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY. Their other
- * materials are "bodice" and "skirt". `edge_m` is the target length of an edge. False when the name is
- * unknown (the message lists the names). */
+/* Built-in garments, cut as flat panels: around the built-in dress form (assets/builtin/form.h) "dress",
+ * "skirt", and "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY; and drafted
+ * from the measures of the figure "trousers". `edge_m` is the target length of an edge. False when the name
+ * is unknown (the message lists the names). */
 bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error);
+
+/* Whether the garment needs arms or legs: it is cut for the figure instead of the form. */
+bool tl_garment_is_for_figure(const char *name);
+
+/* The same for another body, in its rest pose: drafted from its measures, or cut for the form and scaled
+ * (assets/cut/fit.h). Fails too when the body lacks what the garment hangs on. */
+struct tl_wearer {
+    const char *name; /* for messages */
+    const tl_mesh *mesh;
+    struct tl_body_distance distance;
+};
+bool tl_garment_cut_for(const char *name, float edge_m, const struct tl_wearer *wearer, tl_garment *out,
+                        tl_error *error);
+
 #define TL_GARMENT_OVERLAY "overlay"
 extern const char *const tl_garment_names[]; /* NULL-terminated */
 

@@ -204,26 +204,21 @@ static struct tl_cut_piece front_piece(const struct bodice_pattern *pattern, con
 
 enum { FRONT, BACK, SKIRT_FRONT, SKIRT_BACK, SKIRT_SIDE = 1, SKIRT_WAIST = 2 };
 
-static void add_seam(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, size_t piece_b, size_t curve_b)
-{
-    plan->seams[plan->seam_count++] = (struct tl_cut_seam){piece_a, curve_a, piece_b, curve_b};
-}
-
 /* Sews the front's right curve to the back's left one and vice versa. */
 static void sew_around(struct tl_cut_plan *plan, size_t front, size_t front_curve, size_t back,
                        size_t back_curve)
 {
-    add_seam(plan, front, front_curve, back, tl_cut_mirror(&plan->pieces[back], back_curve));
-    add_seam(plan, back, back_curve, front, tl_cut_mirror(&plan->pieces[front], front_curve));
+    tl_cut_sew(plan, front, front_curve, back, tl_cut_mirror(&plan->pieces[back], back_curve));
+    tl_cut_sew(plan, back, back_curve, front, tl_cut_mirror(&plan->pieces[front], front_curve));
 }
 
 /* Two curves on the same side of the figure, both halves. */
 static void sew_halves(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, size_t piece_b,
                        size_t curve_b)
 {
-    add_seam(plan, piece_a, curve_a, piece_b, curve_b);
-    add_seam(plan, piece_a, tl_cut_mirror(&plan->pieces[piece_a], curve_a), piece_b,
-             tl_cut_mirror(&plan->pieces[piece_b], curve_b));
+    tl_cut_sew(plan, piece_a, curve_a, piece_b, curve_b);
+    tl_cut_sew(plan, piece_a, tl_cut_mirror(&plan->pieces[piece_a], curve_a), piece_b,
+               tl_cut_mirror(&plan->pieces[piece_b], curve_b));
 }
 
 struct tl_cut_plan tl_cut_plan_dress(void)

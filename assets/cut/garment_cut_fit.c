@@ -1,12 +1,10 @@
 #include "assets/cut/garment_cut_internal.h"
 
-#include "assets/builtin/form.h"
-
 #include <math.h>
 
 enum { LEAST_PASSES = 100, PASSES_PER_PUSH = 4 };
 #define SHORT_STIFFNESS 0.15  /* weak: slack cloth buckles instead of pushing its vertices apart */
-#define CLEARANCE_M     0.006 /* kept between the cloth and the form */
+#define CLEARANCE_M     0.006 /* kept between the cloth and the body */
 
 static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double length)
 {
@@ -21,16 +19,16 @@ static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double le
 }
 
 /* One Newton step along the distance's gradient towards the clearance; the distance is approximate. */
-static void push_out(double p[3])
+static void push_out(double p[3], struct tl_body_distance body)
 {
     const double step = 1e-4;
-    double distance = tl_form_distance(p), gradient[3], norm2 = 0;
+    double distance = body.at(body.context, p), gradient[3], norm2 = 0;
     if (distance >= CLEARANCE_M)
         return;
     for (int k = 0; k < 3; k++) {
         double q[3] = {p[0], p[1], p[2]};
         q[k] += step;
-        gradient[k] = (tl_form_distance(q) - distance) / step;
+        gradient[k] = (body.at(body.context, q) - distance) / step;
         norm2 += gradient[k] * gradient[k];
     }
     for (int k = 0; k < 3; k++)
@@ -38,7 +36,7 @@ static void push_out(double p[3])
 }
 
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
-                size_t edge_count, double reach_m)
+                size_t edge_count, double reach_m, struct tl_body_distance distance)
 {
     double total = 0;
     for (size_t e = 0; e < edge_count; e++)
@@ -52,7 +50,7 @@ void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const s
             continue;
         for (size_t i = 0; i < count; i++) {
             if (!fixed[i])
-                push_out(positions[i]);
+                push_out(positions[i], distance);
         }
     }
 }

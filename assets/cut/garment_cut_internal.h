@@ -4,21 +4,24 @@
  *
  * A piece is symmetric about x = 0: `half` runs counter-clockwise along its right side from the bottom's
  * middle to the top's middle. In the whole outline, curve i < half_count is half[i] and curve
- * 2 half_count - 1 - i is its mirror image. Metres; x along the weft, y along the warp. */
+ * 2 half_count - 1 - i is its mirror image. Or it is `whole`: then `half` is all of its outline, and
+ * tl_cut_mirrored makes its counterpart. Metres; x along the weft, y along the warp. */
 #ifndef TOILE_ASSETS_CUT_GARMENT_CUT_INTERNAL_H
 #define TOILE_ASSETS_CUT_GARMENT_CUT_INTERNAL_H
 
 #include "assets/builtin/panel.h"
+#include "assets/cut/body.h"
 #include "assets/cut/garment_cut.h"
 #include "assets/cut/wrap.h"
 
 #include <stdbool.h>
 
-enum { TL_CUT_MAX_HALF = 8, TL_CUT_MAX_PIECES = 6, TL_CUT_MAX_SEAMS = 16, TL_CUT_MAX_PINS = 4 };
+enum { TL_CUT_MAX_HALF = 12, TL_CUT_MAX_PIECES = 12, TL_CUT_MAX_SEAMS = 48, TL_CUT_MAX_PINS = 4 };
 
 struct tl_cut_piece {
     struct tl_curve half[TL_CUT_MAX_HALF];
     size_t half_count;
+    bool whole;
     struct tl_point table_offset; /* where the piece lies on the cutting table: pieces do not overlap */
     void (*place)(const void *context, struct tl_point pattern, double position[3]);
     const void *context;
@@ -42,7 +45,8 @@ struct tl_cut_plan {
     size_t seam_count;
     struct tl_cut_pin pins[TL_CUT_MAX_PINS];
     size_t pin_count;
-    void *placement; /* owned: what the pieces' contexts point into; free() releases it */
+    void *placement;                  /* owned: what the pieces' contexts point into; free() releases it */
+    struct tl_body_distance distance; /* of the body; none: the dress form's */
 };
 
 /* A piece of a flared skirt: half of a sector of a ring, hung around the form. Its curves: 0 hem, 1 side, 2
@@ -58,13 +62,26 @@ struct tl_cut_plan tl_cut_plan_dress(void);
 struct tl_cut_plan tl_cut_plan_skirt(void);
 struct tl_cut_plan tl_cut_plan_layers(void);
 
+/* Drafted for a body; `body` must live as long as the plan. */
+struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body);
+
+/* The mirror image in x = 0, run through backwards: counter-clockwise again. */
+struct tl_curve tl_cut_mirrored_curve(const struct tl_curve *curve);
+
+/* The counterpart of a whole piece: curve i of the one is curve half_count - 1 - i of the other. Places and
+ * contexts are the caller's to set. */
+struct tl_cut_piece tl_cut_mirrored(const struct tl_cut_piece *piece);
+
+/* Adds one seam. */
+void tl_cut_sew(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a, size_t piece_b, size_t curve_b);
+
 /* The index of half[i]'s mirror image in the whole outline. */
 static inline size_t tl_cut_mirror(const struct tl_cut_piece *piece, size_t i)
 {
     return 2 * piece->half_count - 1 - i;
 }
 
-/* Relaxes a start shape: moves edges towards their rest lengths and vertices out of the dress form; `fixed`
+/* Relaxes a start shape: moves edges towards their rest lengths and vertices out of the body; `fixed`
  * ones stay. It is no simulation (no mass, no gravity) but removes the strain of the first guess. `reach_m`:
  * how far corrections travel, at one edge a pass; at least a hundred passes are made. */
 struct tl_fit_edge {
@@ -72,7 +89,7 @@ struct tl_fit_edge {
     double length; /* metres, at rest */
 };
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
-                size_t edge_count, double reach_m);
+                size_t edge_count, double reach_m, struct tl_body_distance distance);
 
 /* Interpolates positions [vertices of `garment`], metres, from a coarser cut of the same plan with edges of
  * about edge_m, by the place of each vertex in the flat pattern: linearly over triangles, extrapolated a

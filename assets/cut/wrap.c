@@ -29,29 +29,38 @@ static double even_out(const struct tl_point *from, int count, struct tl_point *
     return total;
 }
 
-void tl_ring_around_form(double y, double length, struct tl_ring *out)
+void tl_ring_around(const struct tl_point *section, int count, double girth, bool symmetric, double length,
+                    struct tl_ring *out)
 {
-    enum { SECTION = 256, DIRECTIONS = 1024 };
-    struct tl_point section[SECTION], hull[DIRECTIONS];
-    for (int i = 0; i < SECTION; i++) {
-        double angle = 2 * M_PI * i / SECTION, r = tl_form_radius(y, angle);
-        section[i] = (struct tl_point){-r * sin(angle), -r * cos(angle)};
-    }
+    enum { DIRECTIONS = 1024 };
+    struct tl_point hull[DIRECTIONS];
     /* The hull, moved outwards by d, is the support point of every direction moved by d; Cauchy: 2 pi d
      * longer. */
-    double off = (length - tl_form_girth(y)) / (2 * M_PI);
+    double off = (length - girth) / (2 * M_PI);
     for (int k = 0; k < DIRECTIONS; k++) {
         double angle = 2 * M_PI * k / DIRECTIONS, x = sin(angle), z = cos(angle);
         struct tl_point best = section[0];
-        for (int i = 1; i < SECTION; i++) {
+        for (int i = 1; i < count; i++) {
             if (section[i].x * x + section[i].y * z > best.x * x + best.y * z)
                 best = section[i];
         }
         hull[k] = (struct tl_point){best.x + off * x, best.y + off * z};
     }
-    hull[0].x = 0; /* where the hull is a straight line in front, begin in its middle */
-    out->y = y;
+    if (symmetric)
+        hull[0].x = 0; /* where the hull is a straight line in front, begin in its middle */
     out->length = even_out(hull, DIRECTIONS, out->points, TL_RING_STEPS);
+}
+
+void tl_ring_around_form(double y, double length, struct tl_ring *out)
+{
+    enum { SECTION = 256 };
+    struct tl_point section[SECTION];
+    for (int i = 0; i < SECTION; i++) {
+        double angle = 2 * M_PI * i / SECTION, r = tl_form_radius(y, angle);
+        section[i] = (struct tl_point){-r * sin(angle), -r * cos(angle)};
+    }
+    out->y = y;
+    tl_ring_around(section, SECTION, tl_form_girth(y), true, length, out);
 }
 
 static struct tl_point mix(struct tl_point a, struct tl_point b, double t)

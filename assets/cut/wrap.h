@@ -1,21 +1,29 @@
-/* Surfaces around the dress form that are nearly developable, for placing the flat pieces of built-in
- * garments with little strain: rings by arc length, and flares that hang from a ring. Metres. Threads: pure.
+/* Surfaces around the dress form, or a body, that are nearly developable, for placing the flat pieces of
+ * built-in garments with little strain: rings by arc length, and flares that hang from a ring. Metres.
+ * Threads: pure.
  */
 #ifndef TOILE_ASSETS_CUT_WRAP_H
 #define TOILE_ASSETS_CUT_WRAP_H
 
 #include "assets/builtin/panel.h"
 
+#include <stdbool.h>
+
 enum { TL_RING_STEPS = 256, TL_FLARE_STEPS = 512, TL_FLARE_ROWS = 33 };
 
-/* A closed convex curve around the form at one height: the section's hull, moved outwards. */
+/* A closed convex curve around the form, or a limb, at one height: the section's hull, moved outwards. */
 struct tl_ring {
     double y, length;
-    struct tl_point points[TL_RING_STEPS + 1]; /* (x, z) at equal distances, front centre over +X */
+    struct tl_point points[TL_RING_STEPS + 1]; /* (x, z) at equal distances, from the front over +X */
 };
 
 /* `length` must exceed the form's girth at that height. */
 void tl_ring_around_form(double y, double length, struct tl_ring *out);
+
+/* Around `section` [count], points (x, z) whose hull is `girth` long. `symmetric`: in x = 0. Where `length`
+ * is less than the girth, the ring is inside. */
+void tl_ring_around(const struct tl_point *section, int count, double girth, bool symmetric, double length,
+                    struct tl_ring *out);
 
 /* At `distance` along the ring from the front's middle, positive towards +X, periodic. */
 struct tl_point tl_ring_at(const struct tl_ring *ring, double distance);

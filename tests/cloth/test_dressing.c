@@ -163,13 +163,61 @@ static void test_built_in(void **state)
     (void)state;
     tl_error error = {0};
     for (const char *const *name = tl_garment_names; *name; name++) {
-        struct dressed d = {.avatar = tl_avatar_form()};
+        struct dressed d = {.avatar =
+                                tl_garment_is_for_figure(*name) ? tl_avatar_figure() : tl_avatar_form()};
         assert_ok(tl_garment_cut(*name, params_defaults().edge_m, &d.garment, &error), error);
         dress(&d);
         check_rest(&d, *name);
         if (strcmp(*name, "dress") == 0)
             check_creep(&d, *name);
         undress(&d);
+    }
+}
+
+static double distance_to(const void *collider, const double point[3])
+{
+    struct tl_contact contact;
+    return tl_collider_query(collider, point, 0.3, &contact) ? contact.distance_m : 0.3;
+}
+
+/* What is drafted from a body's measures hangs on that body: sewn, clear of it, nowhere through itself, its
+ * strain that of its weight. */
+static void check_drafted(const char *name, const char *body)
+{
+    tl_error error = {0};
+    struct dressed d = {0};
+    const char *path = body ? test_data(body) : NULL;
+    if (body)
+        assert_ok(tl_avatar_load(path, &d.avatar, &error), error);
+    else
+        d.avatar = tl_avatar_figure();
+    tl_collider *skin = tl_collider_create(&d.avatar.model.mesh, false, &error);
+    const struct tl_wearer wearer = {body ? body : "figure", &d.avatar.model.mesh, {distance_to, skin}};
+    assert_ok(tl_garment_cut_for(name, params_defaults().edge_m, &wearer, &d.garment, &error), error);
+    tl_collider_destroy(&skin);
+    dress(&d);
+    struct tl_cloth_params params = d.cloth->params;
+    params.self_contact = true;
+    assert_ok(tl_cloth_set(d.cloth, &d.cloth->fabric, &params, &error), error);
+    check_rest(&d, name);
+    struct tl_cloth_report rest = tl_cloth_measure(d.cloth, d.collider);
+    printf("%s on %s: %zu crossings, rms strain %.4f\n", name, wearer.name, rest.crossing_count,
+           rest.rms_strain);
+    assert_int_equal(rest.crossing_count, 0);
+    assert_near(rest.deepest_m, 0, 1e-6);
+    assert_true(rest.rms_strain < 0.01);
+    undress(&d);
+}
+
+static void test_drafted(void **state)
+{
+    (void)state;
+    for (const char *const *name = tl_garment_names; *name; name++) {
+        if (!tl_garment_is_for_figure(*name))
+            continue;
+        check_drafted(*name, NULL);
+        check_drafted(*name, "avatars/mh_female_body.glb");
+        check_drafted(*name, "avatars/mh_male_body.glb");
     }
 }
 
@@ -214,9 +262,9 @@ static void test_fine_rests(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_casual_suit), cmocka_unit_test(test_sports_suit),
-        cmocka_unit_test(test_built_in),    cmocka_unit_test(test_rests_by_settle),
-        cmocka_unit_test(test_fine_rests),
+        cmocka_unit_test(test_casual_suit),     cmocka_unit_test(test_sports_suit),
+        cmocka_unit_test(test_built_in),        cmocka_unit_test(test_drafted),
+        cmocka_unit_test(test_rests_by_settle), cmocka_unit_test(test_fine_rests),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

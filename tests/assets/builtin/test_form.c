@@ -64,11 +64,8 @@ static int compare_edges(const void *a, const void *b)
 
 /* Closed, manifold and consistently wound: after welding, each directed edge occurs once, and its opposite
  * once. Euler: V - E + F = 2 says one sphere-like component. */
-static void test_closed_manifold(void **state)
+static void check_closed_manifold(const tl_mesh *mesh, const uint32_t *weld)
 {
-    (void)state;
-    const tl_mesh *mesh = &form.model.mesh;
-    uint32_t *weld = weld_by_position(mesh);
     uint64_t *edges = TL_NEW_ARRAY(uint64_t, mesh->index_count);
     for (size_t i = 0; i < mesh->index_count; i++) {
         size_t next = i % 3 == 2 ? i - 2 : i + 1;
@@ -87,6 +84,13 @@ static void test_closed_manifold(void **state)
         vertices += weld[i] == i;
     assert_int_equal((long)vertices - (long)mesh->index_count / 2 + (long)mesh->index_count / 3, 2);
     free(edges);
+}
+
+static void test_closed_manifold(void **state)
+{
+    (void)state;
+    uint32_t *weld = weld_by_position(&form.model.mesh);
+    check_closed_manifold(&form.model.mesh, weld);
     free(weld);
 }
 
@@ -186,13 +190,49 @@ static void test_normals_and_uvs(void **state)
         assert_near(mesh->parts[p].uv_metres, 1, 0.2);
 }
 
+/* The figure is one closed surface on its distance function's zero set, with the form's waist, two legs below
+ * the crotch and two arms beside the chest. */
+static void test_figure(void **state)
+{
+    (void)state;
+    tl_avatar figure = tl_avatar_figure();
+    const tl_mesh *mesh = &figure.model.mesh;
+    uint32_t *alone = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    double high = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        vec3s p = mesh->positions[v];
+        const double point[3] = {(double)p.x, (double)p.y, (double)p.z};
+        alone[v] = (uint32_t)v;
+        assert_near(tl_figure_distance(point), 0, 1e-4);
+        assert_true(p.y > -1e-3f);
+        high = fmax(high, point[1]);
+    }
+    check_closed_manifold(mesh, alone);
+    assert_near(high, 1.68, 0.005);
+    for (int i = 0; i < 32; i++) {
+        double angle = 2 * M_PI * i / 32, r = tl_form_radius(TL_FORM_WAIST, angle);
+        const double point[3] = {-r * sin(angle), TL_FORM_WAIST, -r * cos(angle)};
+        assert_near(tl_figure_distance(point), 0, 0.002);
+    }
+    const struct {
+        double y, x[3];
+    } parts[] = {{0.60, {-0.1, 0, 0.1}}, {1.16, {-0.25, 0.19, 0.25}}};
+    for (size_t i = 0; i < TL_COUNT(parts); i++)
+        for (int k = 0; k < 3; k++) {
+            double distance = tl_figure_distance((double[3]){parts[i].x[k], parts[i].y, 0});
+            assert_true((distance < 0) == (k != 1));
+        }
+    tl_avatar_release(&figure);
+    free(alone);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_manifold),  cmocka_unit_test(test_volume),
         cmocka_unit_test(test_measurements),     cmocka_unit_test(test_facing),
         cmocka_unit_test(test_mesh_meets_shape), cmocka_unit_test(test_mirror_symmetry),
-        cmocka_unit_test(test_normals_and_uvs),
+        cmocka_unit_test(test_normals_and_uvs),  cmocka_unit_test(test_figure),
     };
     return cmocka_run_group_tests(tests, make_form, drop_form);
 }
