@@ -60,12 +60,12 @@ static const struct tl_technique overall[] = {
 /* The camera, the mesh and the size of the scene `review`, over the scene `dress`. */
 #define CLOSE_UP                                                                                             \
     "scene.fabric=none", "camera.distance_m=1.55", "camera.target=[0, 1.15, 0]", "cloth.edge_m=0.0108",      \
-        "image.ground=false", SIZE("512", "512")
+        "image.ground=false", "image.width=512", "image.height=512"
 
 /* Fabrics that people use, at the sizes of windows: the review window's own, and two screens'. */
 #define WORN(fabric, words, width, height)                                                                   \
     {                                                                                                        \
-        .name = fabric, .title = words, .assignments = { "scene.fabric=" fabric, SIZE(width, height) }       \
+        .name = (fabric), .title = (words), .assignments = { "scene.fabric=" fabric, SIZE(width, height) }   \
     }
 #define SATIN_900  WORN("satin", "satin and its weave", "900", "800")
 #define DENIM_1280 WORN("denim", "denim", "1280", "720")

@@ -64,9 +64,10 @@ static struct scene crumpled(uint32_t seed, double size)
     static uint32_t indices[6 * CELLS * CELLS];
     static vec3d x[COLUMNS * COLUMNS];
     size_t count = 0;
-    for (uint32_t i = 0; i < COLUMNS * COLUMNS; i++)
-        x[i] =
-            vec3d_add((vec3d){0.02 * (i % COLUMNS), 0.02 * (double)(i / COLUMNS), 0}, scattered(&seed, size));
+    for (uint32_t i = 0; i < COLUMNS * COLUMNS; i++) {
+        const uint32_t column = i % COLUMNS, row = i / COLUMNS;
+        x[i] = vec3d_add((vec3d){0.02 * column, 0.02 * row, 0}, scattered(&seed, size));
+    }
     for (uint32_t row = 0; row < CELLS; row++)
         for (uint32_t column = 0; column < CELLS; column++) {
             uint32_t a = row * COLUMNS + column, c = a + COLUMNS + 1;
@@ -74,7 +75,7 @@ static struct scene crumpled(uint32_t seed, double size)
             for (int i = 0; i < 6; i++)
                 indices[count++] = corners[i];
         }
-    return make_scene(indices, count, x, COLUMNS * COLUMNS);
+    return make_scene(indices, count, x, (size_t)COLUMNS * COLUMNS);
 }
 
 /* ---- Nearest points ---- */

@@ -423,7 +423,7 @@ static void aovs_tell_what_is_under_each_pixel(void **state)
         tl_image alone;
         assert_ok(tl_renderer_read_garment(device->renderer, &alone, &error), error);
         assert_memory_equal(alone.texels, aov_at(&aovs, TL_AOV_GARMENT, 0, 0),
-                            WIDTH * HEIGHT * sizeof(float));
+                            (size_t)WIDTH * HEIGHT * sizeof(float));
         tl_image_release(&alone);
         tl_aovs_release(&aovs);
     }
