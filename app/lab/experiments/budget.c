@@ -26,7 +26,7 @@ static const struct tl_experiment_appearance cloths[] = {
                      "weave.crimp_mm=0.2"}},
 };
 
-/* A truth whose own noise is a FLIP of about 0.01 on satin: a better one would take most of the run. */
+/* A reference whose noise is a FLIP of about 0.01 on satin: one with less noise would take most of the run. */
 #define QUICK_TRUTH                                                                                          \
     "light.method=reference", "reference.strata=256", "reference.lobe_samples=4", "reference.replicates=2"
 
@@ -81,7 +81,7 @@ static const struct tl_experiment_appearance worn[] = {
                      "material.specular=[0.5, 0.5, 0.5]"}},
 };
 
-/* ---- Levels: what each of the governor's levels costs and errs by itself (app/budget/governor.c) ---- */
+/* ---- Levels: time and error of each quality level alone (app/budget/quality.h) ---- */
 
 #define REGIONS(n, renewed)                                                                                  \
     {                                                                                                        \
