@@ -26,7 +26,8 @@ static const struct tl_experiment_appearance cloths[] = {
                      "weave.crimp_mm=0.2"}},
 };
 
-/* A reference whose noise is a FLIP of about 0.01 on satin: one with less noise would take most of the run. */
+/* A reference whose noise is a FLIP of about 0.01 on satin: one with less noise would take most of the run.
+ */
 #define QUICK_TRUTH                                                                                          \
     "light.method=reference", "reference.strata=256", "reference.lobe_samples=4", "reference.replicates=2"
 
