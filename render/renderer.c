@@ -142,6 +142,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_ids_release(&resources->pixel_ids);
     tl_shade_materials_release(&resources->shade_materials);
     tl_ratios_release(&resources->ratios);
+    tl_pixel_triangles_release(&resources->pixel_triangles);
     tl_sun_pixels_release(&resources->sun_pixels);
     tl_light_buffer_release(&resources->light);
     tl_lighting_release(&resources->lighting);
@@ -300,8 +301,8 @@ static void reload_shaders(tl_renderer *renderer)
     tl_error error = {0};
     if (!tl_shadow_maps_reload(renderer->resources.maps, &error) ||
         !tl_gbuffer_reload(&renderer->resources.gbuffer, &error) ||
-        !tl_gbuffer_reload(&renderer->resources.ids.drawn, &error) ||
-        !tl_gbuffer_reload(&renderer->resources.pixel_ids.drawn, &error) ||
+        !tl_ids_reload(&renderer->resources.ids, &error) ||
+        !tl_ids_reload(&renderer->resources.pixel_ids, &error) ||
         !tl_gbuffer_reload(&renderer->resources.transparency.behind, &error) ||
         !tl_lighting_reload(&renderer->resources.lighting, &error) ||
         !tl_envmap_reload(&renderer->resources.envmap, &error) ||

@@ -237,12 +237,15 @@
     IO(READS, shapes)                                                                                        \
     IO(READS, ground)                                                                                        \
     IO(READS, has_ground)                                                                                    \
+    IO(WRITES, pixel_triangles)                                                                              \
     IO(WRITES, sun_pixels)
 
 #define TL_SHADE_JOB(IO)                                                                                     \
     IO(READS, ids)                                                                                           \
     IO(READS, pixel_ids)                                                                                     \
     IO(READS, ratios)                                                                                        \
+    IO(READS, pixel_triangles)                                                                               \
+    IO(SEES_HANDLE, trace)                                                                                   \
     IO(READS, sun_pixels)                                                                                    \
     IO(READS, shade_materials)                                                                               \
     IO(READS, exact)                                                                                         \

@@ -63,7 +63,8 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
     case TL_MADE_RATIOS:
         return tl_ratios_bytes(&from->ratios);
     case TL_MADE_SUN_PIXELS:
-        return tl_sun_pixels_bytes(&from->sun_pixels);
+        return tl_sun_pixels_bytes(&from->sun_pixels) +
+               from->pixel_triangles.capacity * sizeof *from->pixel_triangles.items;
     case TL_MADE_SAMPLES:
         return samples_bytes(&from->samples);
     case TL_MADE_TRANSPARENCY:

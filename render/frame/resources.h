@@ -94,6 +94,7 @@ struct tl_surroundings {
     RESOURCE(pixel_ids, TL_MADE_IDS, struct tl_id_buffer) /* of every pixel, where samples are fewer */      \
     RESOURCE(shade_materials, TL_MADE_SHADE_MATERIALS, struct tl_shade_materials)                            \
     RESOURCE(ratios, TL_MADE_RATIOS, struct tl_vertex_ratios)                                                \
+    RESOURCE(pixel_triangles, TL_MADE_SUN_PIXELS, struct tl_pixel_triangles)                                 \
     RESOURCE(sun_pixels, TL_MADE_SUN_PIXELS, struct tl_sun_pixels)                                           \
     RESOURCE(samples, TL_MADE_SAMPLES, struct tl_samples)                                                    \
     RESOURCE(transparency, TL_MADE_TRANSPARENCY, struct tl_transparency)                                     \

@@ -98,17 +98,17 @@ bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
 bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
 {
     (void)error;
-    struct tl_pixel_triangle *triangles =
-        tl_pixel_triangles_make(job->ids, &job->camera->view, &job->shapes->ranges, job->shade_materials);
+    tl_pixel_triangles_make(job->pixel_triangles, job->ids, &job->camera->view, &job->shapes->ranges,
+                            job->shade_materials);
     const struct tl_sun_pixels_request request = {.ids = job->ids,
-                                                  .triangles = triangles,
+                                                  .triangles = job->pixel_triangles,
                                                   .ranges = &job->shapes->ranges,
                                                   .suns = job->suns,
                                                   .trace = job->trace,
+                                                  .openness = job->shade_materials->openness,
                                                   .ground = *job->has_ground ? job->ground : NULL,
                                                   .environment_yaw = *job->yaw};
     tl_sun_pixels_update(job->sun_pixels, &request);
-    free(triangles);
     return true;
 }
 
@@ -138,32 +138,28 @@ static void enlarge(const struct tl_shade_job *job, const float *shaded)
 bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
 {
     (void)error;
-    struct tl_pixel_triangle *triangles =
-        tl_pixel_triangles_make(job->ids, &job->camera->view, &job->shapes->ranges, job->shade_materials);
-    struct tl_pixels_request request = {.ids = job->ids,
-                                        .triangles = triangles,
-                                        .ranges = &job->shapes->ranges,
-                                        .materials = job->shade_materials,
-                                        .ratios = job->ratios,
-                                        .lobes = job->exact->lobes,
-                                        .suns = job->suns,
-                                        .ground = *job->has_ground ? job->ground : NULL,
-                                        .view = &job->camera->view,
-                                        .environment_yaw = *job->yaw};
-    for (int i = 0; i < job->suns->count; i++)
-        request.sun_visibility[i] = job->sun_pixels->visible[i];
+    const struct tl_pixels_request request = {.ids = job->ids,
+                                              .triangles = job->pixel_triangles,
+                                              .ranges = &job->shapes->ranges,
+                                              .materials = job->shade_materials,
+                                              .ratios = job->ratios,
+                                              .lobes = job->exact->lobes,
+                                              .suns = job->suns,
+                                              .sun_pixels = job->sun_pixels,
+                                              .cover_m = tl_points_cover_m(job->trace),
+                                              .ground = *job->has_ground ? job->ground : NULL,
+                                              .view = &job->camera->view,
+                                              .environment_yaw = *job->yaw};
     const struct tl_size_input *size = job->size;
     int side = size->columns / size->width;
     if (side * size->width == size->columns && side * size->height == size->rows) {
         tl_pixels_shade(&request, side, tl_present_begin_cpu_image(job->present, size->width, size->height));
-        free(triangles);
         return true;
     }
     float *shaded = tl_resize(NULL, 4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
     tl_pixels_shade(&request, 1, shaded);
     enlarge(job, shaded);
     free(shaded);
-    free(triangles);
     return true;
 }
 

@@ -84,7 +84,7 @@ bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
     request.width = size->width;
     request.height = size->height;
     return !tl_size_has_outlines(size) ||
-           tl_ids_draw(job->pixel_ids, *job->gpu, &request, &job->shapes->ranges, error);
+           tl_ids_draw_nearest(job->pixel_ids, *job->gpu, &request, &job->shapes->ranges, error);
 }
 
 bool tl_run_shade_materials(const struct tl_shade_materials_job *job, tl_error *error)

@@ -193,6 +193,17 @@ static bool draw_triangles(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct
     return true;
 }
 
+void tl_gbuffer_keep_depth(const struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_texture *kept)
+{
+    const tl_texture *depth = &gbuffer->target.depth;
+    if (kept->width != depth->width || kept->height != depth->height) {
+        tl_texture_destroy(kept);
+        *kept = tl_texture_create(gpu, GL_TEXTURE_2D, depth->format, depth->width, depth->height, 1, 1);
+    }
+    glCopyImageSubData(depth->id, GL_TEXTURE_2D, 0, 0, 0, 0, kept->id, GL_TEXTURE_2D, 0, 0, 0, 0,
+                       depth->width, depth->height, 1);
+}
+
 bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
                      tl_error *error)
 {

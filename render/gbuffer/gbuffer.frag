@@ -29,6 +29,11 @@ layout(location = 5) out vec4 out_tangent; // world, along u, not yet at right a
 layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
 
 const float DEPTH_ROUNDING = 1.2e-7;
+
+bool is_passed()
+{
+    return gl_FragCoord.z <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING;
+}
 #endif
 
 const uint TRIANGLE_BACK = 0x80000000u;
@@ -50,6 +55,10 @@ uint with_side(uint place)
 #ifdef ONLY_TRIANGLE
 void main()
 {
+#ifdef BEHIND
+    if (is_passed())
+        discard;
+#endif
 #ifdef MASKED
     if (surface_cut_away(surface_colour(uv).a))
         discard;
@@ -60,7 +69,7 @@ void main()
 void main()
 {
 #ifdef BEHIND
-    if (gl_FragCoord.z <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING)
+    if (is_passed())
         discard;
 #endif
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));

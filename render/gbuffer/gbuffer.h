@@ -61,6 +61,8 @@ struct tl_gbuffer_request {
 void tl_gbuffer_release(struct tl_gbuffer *gbuffer);
 size_t tl_gbuffer_bytes(const struct tl_gbuffer *gbuffer);
 bool tl_gbuffer_reload(struct tl_gbuffer *gbuffer, tl_error *error);
+/* Copies the depth of what was drawn, for a request that passes it. */
+void tl_gbuffer_keep_depth(const struct tl_gbuffer *gbuffer, tl_gpu *gpu, tl_texture *kept);
 bool tl_gbuffer_draw(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request,
                      tl_error *error);
 

@@ -18,6 +18,10 @@
 /* Rows whose spans are computed together, and pixels that are filled together. */
 #define SPAN_LANES 4
 #define FILL_LANES 8
+/* What lies behind an open triangle is deeper than it by more than this, as in gbuffer.frag. */
+#define DEPTH_ROUNDING 1.2e-7f
+/* Bit of an id while its band is filled: the triangle is open. */
+#define OPEN 0x40000000u
 /* Triangles of the surfaces that one thread prepares at a time, and vertices. */
 #define CHUNK_TRIANGLES 1024
 #define CHUNK_VERTICES  2048
@@ -43,6 +47,7 @@ struct raster_chunk {
     const struct raster_vertex *vertices; /* the surface's */
     uint32_t begin, end;                  /* triangles of the surface */
     uint32_t first;                       /* number of the surface's first triangle */
+    uint32_t bits;                        /* OPEN, or 0 */
     struct raster_triangle *triangles;
     size_t count, capacity;
     uint32_t *bands; /* [band_count + 1]: where the list of a band begins, and where the last one ends */
@@ -213,9 +218,9 @@ TL_CLONES static void prepare_triangles(const struct raster_frame *frame, struct
         reserve_triangles(chunk, TL_CLIP_CORNERS_MAX);
         unsigned planes = a->outside | b->outside | c->outside;
         if (planes)
-            add_clipped(frame, chunk, indices, planes, chunk->first + t);
+            add_clipped(frame, chunk, indices, planes, (chunk->first + t) | chunk->bits);
         else
-            add_triangle(frame, chunk, a, b, c, chunk->first + t);
+            add_triangle(frame, chunk, a, b, c, (chunk->first + t) | chunk->bits);
     }
 }
 
@@ -264,9 +269,11 @@ static void prepare_chunks(const struct tl_raster *raster, const struct raster_f
 /* A band while it is filled. Rows are longer than the picture's, so that spans are filled by whole lanes. */
 struct raster_band {
     int first, last; /* rows of the picture */
+    int begin, end;  /* columns that are looked at */
     size_t stride;
     float *depths; /* [BAND_ROWS][stride] */
     uint32_t *ids; /* the same */
+    float *passed; /* the same: only what is deeper is drawn; where this is 1 nothing is */
 };
 
 /* The part of each row that a triangle covers: first pixel and the one after the last. */
@@ -306,8 +313,9 @@ TL_INLINE void cut_spans(const struct raster_triangle *triangle, int edge, int f
                 spans->end[k] = spans->begin[k];
 }
 
+/* `passed`: NULL in the nearest layer. */
 TL_INLINE void fill_span(const struct raster_triangle *triangle, int row, int begin, int end,
-                         float *restrict depths, uint32_t *restrict ids)
+                         float *restrict depths, uint32_t *restrict ids, const float *restrict passed)
 {
     const float y = (float)row, start = triangle->depth, across = triangle->depth_x, up = triangle->depth_y;
     const uint32_t id = triangle->id;
@@ -317,13 +325,18 @@ TL_INLINE void fill_span(const struct raster_triangle *triangle, int row, int be
             int x = from + k;
             float depth = fmaf(up, y, fmaf(across, (float)x, start));
             bool is_nearer = (x < end) & (depth < depths[x]);
+            if (passed)
+                is_nearer &= depth > passed[x];
             depths[x] = is_nearer ? depth : depths[x];
             ids[x] = is_nearer ? id : ids[x];
         }
 }
 
-TL_INLINE void fill_triangle(const struct raster_triangle *triangle, const struct raster_band *band)
+TL_INLINE void fill_triangle(const struct raster_triangle *triangle, const struct raster_band *band,
+                             const float *passed)
 {
+    if (triangle->left >= band->end || triangle->right < band->begin)
+        return;
     int from = triangle->bottom > band->first ? triangle->bottom : band->first;
     int count = (triangle->top < band->last ? triangle->top : band->last) - from + 1;
     struct raster_spans spans;
@@ -337,11 +350,12 @@ TL_INLINE void fill_triangle(const struct raster_triangle *triangle, const struc
         size_t row = (size_t)(from + k - band->first) * band->stride;
         if (spans.begin[k] < spans.end[k])
             fill_span(triangle, from + k, (int)spans.begin[k], (int)spans.end[k], band->depths + row,
-                      band->ids + row);
+                      band->ids + row, passed ? passed + row : NULL);
     }
 }
 
-TL_CLONES static void fill_band(const struct tl_raster *raster, int number, const struct raster_band *band)
+TL_INLINE void fill_triangles(const struct tl_raster *raster, int number, const struct raster_band *band,
+                              const float *passed)
 {
     for (size_t i = 0; i < BAND_ROWS * band->stride; i++) {
         band->depths[i] = 1;
@@ -350,29 +364,109 @@ TL_CLONES static void fill_band(const struct tl_raster *raster, int number, cons
     for (size_t c = 0; c < raster->chunk_count; c++) {
         const struct raster_chunk *chunk = &raster->chunks[c];
         for (uint32_t i = chunk->bands[number]; i < chunk->bands[number + 1]; i++)
-            fill_triangle(&chunk->triangles[chunk->lists[i]], band);
+            fill_triangle(&chunk->triangles[chunk->lists[i]], band, passed);
     }
 }
 
-static void fill_bands(const struct tl_raster *raster, const struct raster_frame *frame, uint32_t *ids)
+TL_CLONES static void fill_nearest(const struct tl_raster *raster, int number, const struct raster_band *band)
 {
-    const int width = frame->request->width, height = frame->request->height;
+    fill_triangles(raster, number, band, NULL);
+}
+
+TL_CLONES static void fill_behind(const struct tl_raster *raster, int number, const struct raster_band *band)
+{
+    fill_triangles(raster, number, band, band->passed);
+}
+
+/* Prepares for what lies behind the open triangles of the band. Returns whether there are some. */
+static bool pass_open(struct raster_band *band, int width)
+{
+    int begin = width, end = 0;
+    for (int y = 0; y <= band->last - band->first; y++) {
+        const size_t row = (size_t)y * band->stride;
+        for (int x = 0; x < width; x++) {
+            bool is_open = band->ids[row + (size_t)x] & OPEN;
+            band->passed[row + (size_t)x] = is_open ? band->depths[row + (size_t)x] + DEPTH_ROUNDING : 1;
+            begin = is_open && x < begin ? x : begin;
+            end = is_open && x >= end ? x + 1 : end;
+        }
+    }
+    band->begin = begin;
+    band->end = end;
+    return begin < end;
+}
+
+/* Copies a band's row without the bit that only the band has. Returns whether something is there. */
+TL_CLONES static bool copy_row(const uint32_t *restrict from, int width, uint32_t *restrict to)
+{
+    uint32_t any = 0;
+    for (int x = 0; x < width; x++) {
+        to[x] = from[x] & ~OPEN;
+        any |= from[x];
+    }
+    return any;
+}
+
+static void copy_behind(const struct raster_band *band, int width, int layer,
+                        const struct tl_raster_layers *to)
+{
+    for (int y = band->first; y <= band->last; y++)
+        if (copy_row(band->ids + (size_t)(y - band->first) * band->stride, width,
+                     to->behind[layer] + (size_t)y * (size_t)width))
+            to->depths[y] = (uint8_t)(layer + 1);
+}
+
+static void clear_behind(const struct raster_band *band, int width, const struct tl_raster_layers *to)
+{
+    for (int y = band->first; y <= band->last; y++) {
+        for (int layer = 0; layer < to->depths[y]; layer++)
+            memset(to->behind[layer] + (size_t)y * (size_t)width, 0, (size_t)width * sizeof(uint32_t));
+        to->depths[y] = 0;
+    }
+}
+
+static void fill_layers(const struct tl_raster *raster, const struct raster_frame *frame, int number,
+                        struct raster_band *band, const struct tl_raster_layers *to)
+{
+    const int width = frame->request->width;
+    band->begin = 0;
+    band->end = width;
+    fill_nearest(raster, number, band);
+    for (int y = band->first; y <= band->last; y++)
+        copy_row(band->ids + (size_t)(y - band->first) * band->stride, width,
+                 to->nearest + (size_t)y * (size_t)width);
+    if (!frame->request->is_layered)
+        return;
+    clear_behind(band, width, to);
+    for (int layer = 0; layer < TL_TRANSPARENCY_LAYERS && pass_open(band, width); layer++) {
+        fill_behind(raster, number, band);
+        copy_behind(band, width, layer, to);
+    }
+}
+
+static void fill_bands(const struct tl_raster *raster, const struct raster_frame *frame,
+                       const struct tl_raster_layers *layers)
+{
+    const int height = frame->request->height;
 #pragma omp parallel
     {
-        struct raster_band band = {.stride = (size_t)(width + FILL_LANES)};
-        band.depths = tl_alloc_lines(BAND_ROWS * band.stride, sizeof *band.depths);
-        band.ids = tl_alloc_lines(BAND_ROWS * band.stride, sizeof *band.ids);
+        struct raster_band band = {.stride = (size_t)(frame->request->width + FILL_LANES)};
+        const size_t size = BAND_ROWS * band.stride;
+        band.depths = tl_alloc_lines(size, sizeof *band.depths);
+        band.ids = tl_alloc_lines(size, sizeof *band.ids);
+        if (frame->request->is_layered) {
+            band.passed = tl_alloc_lines(size, sizeof *band.passed);
+            memset(band.passed, 0, size * sizeof *band.passed); /* beyond the picture, where spans end */
+        }
 #pragma omp for schedule(dynamic, 1)
         for (int i = 0; i < frame->band_count; i++) {
             band.first = i * BAND_ROWS;
             band.last = band.first + BAND_ROWS < height ? band.first + BAND_ROWS - 1 : height - 1;
-            fill_band(raster, i, &band);
-            for (int y = band.first; y <= band.last; y++)
-                memcpy(ids + (size_t)y * (size_t)width, band.ids + (size_t)(y - band.first) * band.stride,
-                       (size_t)width * sizeof *ids);
+            fill_layers(raster, frame, i, &band, layers);
         }
         free(band.depths);
         free(band.ids);
+        free(band.passed);
     }
 }
 
@@ -413,6 +507,9 @@ static void cut_into_chunks(struct tl_raster *raster, const struct tl_raster_req
                 chunk->begin = t;
                 chunk->end = end - t < CHUNK_TRIANGLES ? end : t + CHUNK_TRIANGLES;
                 chunk->first = number;
+                chunk->bits =
+                    request->is_layered && surface->materials[surface->parts[p].material].openness > 0 ? OPEN
+                                                                                                       : 0;
             }
         }
         vertices += surface->vertex_count;
@@ -420,7 +517,8 @@ static void cut_into_chunks(struct tl_raster *raster, const struct tl_raster_req
     }
 }
 
-void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *request, uint32_t *ids)
+void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *request,
+                    const struct tl_raster_layers *layers)
 {
     const struct raster_frame frame = {.request = request,
                                        .half_width = 0.5f * (float)request->width,
@@ -430,7 +528,7 @@ void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *re
     cut_into_chunks(raster, request);
     transform_surfaces(raster, &frame);
     prepare_chunks(raster, &frame);
-    fill_bands(raster, &frame, ids);
+    fill_bands(raster, &frame, layers);
 }
 
 void tl_raster_release(struct tl_raster *raster)

@@ -9,15 +9,26 @@
 #define TOILE_RENDER_GBUFFER_RASTER_H
 
 #include "assets/base/surface.h"
+#include "render/scene/view.h"
 
 struct tl_raster_request {
     const tl_surface *const *surfaces; /* all their parts are drawn, both sides, in order; none has holes */
     size_t surface_count;
     mat4s view_projection; /* as GL has it: the frustum is -w .. w */
     int width, height;     /* pixels, at most TL_RASTER_SIDE_MAX each */
+    bool is_layered;       /* what lies behind parts of an open material is wanted, too */
 };
 
 #define TL_RASTER_SIDE_MAX 16384
+
+/* Where the pixels are written: [height][width] each, rows upwards. */
+struct tl_raster_layers {
+    uint32_t *nearest;
+    /* Of a layered request: what is seen behind open triangles, layer by layer, and the number of these
+     * layers that hold something in each row. Rows of further layers hold 0, before the call and after it. */
+    uint32_t *behind[TL_TRANSPARENCY_LAYERS];
+    uint8_t *depths; /* [height] */
+};
 
 /* Working memory, used again from frame to frame. Threads: one at a time. */
 struct tl_raster {
@@ -26,10 +37,11 @@ struct tl_raster {
     size_t vertex_capacity, chunk_count, chunk_capacity;
 };
 
-/* Writes `ids` [height][width], rows upwards: 0 where nothing is seen; else 1 + the number of the nearest
- * triangle, counted through all surfaces, and TL_SAMPLE_BACK where its back is seen. Of triangles at the same
- * depth the first one counts. Vertices that are not finite make their triangles disappear. */
-void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *request, uint32_t *ids);
+/* Writes 0 where nothing is seen; else 1 + the number of the triangle, counted through all surfaces, and
+ * TL_SAMPLE_BACK where its back is seen. Of triangles at the same depth the first one counts, and no other is
+ * seen behind it. Vertices that are not finite make their triangles disappear. */
+void tl_raster_draw(struct tl_raster *raster, const struct tl_raster_request *request,
+                    const struct tl_raster_layers *layers);
 void tl_raster_release(struct tl_raster *raster);
 size_t tl_raster_bytes(const struct tl_raster *raster);
 

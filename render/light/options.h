@@ -52,9 +52,7 @@ struct tl_light_params { /* table "light" */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;
-/* The number of transparency layers behind open cloth; the layer after them counts as closed. */
-#define TL_TRANSPARENCY_LAYERS 4
-#define TL_MIRROR_EXPONENT     199.0f /* a glossiness of 0.995, however it is rounded */
+#define TL_MIRROR_EXPONENT 199.0f /* a glossiness of 0.995, however it is rounded */
 
 /* The options of the back-end of rays among these. */
 struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light);

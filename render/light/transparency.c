@@ -2,10 +2,6 @@
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
-#include "render/light/options.h"
-
-#include <epoxy/gl.h>
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,20 +85,6 @@ static bool append_behind(struct tl_transparency *transparency, const struct tl_
     return more;
 }
 
-/* Keeps the depth that the next layer must lie behind. */
-static const tl_texture *pass(struct tl_transparency *transparency, tl_gpu *gpu)
-{
-    const tl_texture *depth = &transparency->behind.target.depth;
-    if (transparency->passed.width != depth->width || transparency->passed.height != depth->height) {
-        tl_texture_destroy(&transparency->passed);
-        transparency->passed =
-            tl_texture_create(gpu, GL_TEXTURE_2D, depth->format, depth->width, depth->height, 1, 1);
-    }
-    glCopyImageSubData(depth->id, GL_TEXTURE_2D, 0, 0, 0, 0, transparency->passed.id, GL_TEXTURE_2D, 0, 0, 0,
-                       0, depth->width, depth->height, 1);
-    return &transparency->passed;
-}
-
 static bool look_behind(struct tl_transparency *transparency, tl_gpu *gpu,
                         const struct tl_transparency_request *request, struct tl_samples *samples,
                         tl_error *error)
@@ -115,8 +97,10 @@ static bool look_behind(struct tl_transparency *transparency, tl_gpu *gpu,
             return false;
         tl_samples_read(&transparency->behind, request->ranges, draw.view->eye, &transparency->nearer);
         more = append_behind(transparency, request, layer == TL_TRANSPARENCY_LAYERS, samples);
-        if (more)
-            draw.passed = pass(transparency, gpu);
+        if (more) {
+            tl_gbuffer_keep_depth(&transparency->behind, gpu, &transparency->passed);
+            draw.passed = &transparency->passed;
+        }
     }
     return true;
 }

@@ -5,6 +5,9 @@
 
 #include "render/scene/camera.h"
 
+/* Layers that the camera sees behind open cloth; the last of them counts as closed. */
+#define TL_TRANSPARENCY_LAYERS 4
+
 struct tl_view {
     mat4s view_projection;
     vec3s eye;

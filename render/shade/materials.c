@@ -27,8 +27,7 @@ struct tl_shade_fan {
 
 static bool fits(const tl_material *material, const struct tl_detail_params *detail)
 {
-    return !(material->coat > 0) && !(material->openness > 0) && !tl_material_transmits(material) &&
-           !(tl_detail_has_own_normals(material) && material->height_map.image) &&
+    return !(material->coat > 0) && !(tl_detail_has_own_normals(material) && material->height_map.image) &&
            (detail->mode == TL_DETAIL_NORMAL || !tl_detail_wants_maps(detail, material)) &&
            (detail->shadow == TL_DETAIL_SHADOW_NONE || !tl_detail_wants_maps(detail, material));
 }
@@ -194,6 +193,8 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     part.has_maps |= woven || part.own_moments;
     part.has_bumps = woven || part.own_moments || part.maps[TL_MAP_NORMAL].texels;
     part.is_glossy = glms_vec3_max(material->specular) > 0;
+    part.transmits = tl_material_transmits(material);
+    materials->openness = fmaxf(materials->openness, material->openness);
     if (material->gloss.model != TL_REFLECT_PHONG)
         part.fan = find_fan(materials, &part, fan);
     return part;
@@ -212,6 +213,7 @@ void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surf
     materials->shapes_revision = shapes_revision;
     materials->detail = *detail;
     materials->surface_count = count;
+    materials->openness = 0;
     materials->first_parts = TL_NEW_ARRAY(size_t, count + 1);
     for (size_t s = 0; s < count; s++)
         materials->first_parts[s + 1] = materials->first_parts[s] + surfaces[s]->part_count;

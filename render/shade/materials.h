@@ -32,6 +32,7 @@ struct tl_shade_part {
     bool has_maps;                  /* UV is read */
     bool has_bumps;                 /* the tangent is read */
     bool is_glossy;                 /* something is reflected */
+    bool transmits;                 /* light comes through from the other side */
     const struct tl_fan_table *fan; /* NULL: two cosine lobes */
 };
 
@@ -43,6 +44,7 @@ struct tl_shade_materials {
     size_t surface_count;
     size_t *first_parts; /* [surface_count + 1] */
     struct tl_shade_part *parts;
+    float openness; /* the greatest; 0: no part can be looked through */
     size_t image_count, fan_count;
     struct tl_shade_image **images; /* each image is packed once */
     struct tl_shade_fan **fans;

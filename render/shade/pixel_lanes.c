@@ -102,6 +102,21 @@ TL_INLINE void add_diffuse(const struct tl_pixel_scene *scene, const struct tl_p
         light[i] = lanes->look.diffuse[i] * fetch_lane(map, &fetch, i) * lanes->diffuse_ratio[i];
 }
 
+/* The light that comes through from the other side. */
+TL_INLINE void add_transmitted(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                               tl_quad light[TL_LANES])
+{
+    const struct tl_lobe_map *map = &scene->request->lobes->maps[0];
+    const tl_quad colour = tl_pixel_quad(lanes->look.part->material->transmission);
+    struct fetch_lanes fetch;
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s d = tl_pixel_turned(scene, glms_vec3_negate(tl_lane_vector(lanes->look.shown, i)));
+        place_fetch(&fetch, i, map->side, tl_octahedral_place(d.x, d.y, d.z));
+    }
+    for (int i = 0; i < lanes->look.count; i++)
+        light[i] += colour * fetch_lane(map, &fetch, i) * lanes->other_ratio[i];
+}
+
 /* ---- Gloss ---- */
 
 /* The gloss, which depends on the viewer. */
@@ -344,15 +359,20 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
     const struct tl_look_lanes *look = &lanes->look;
     const struct tl_shade_part *part = look->part;
     const vec3s direction = scene->suns[sun];
-    float seen[TL_LANES], lobe[TL_LANES], any = 0;
+    float seen[TL_LANES], through[TL_LANES], lobe[TL_LANES], other_lobe[TL_LANES], any = 0;
     for (int i = 0; i < TL_LANES; i++) {
-        float cosine = glms_vec3_dot(direction, tl_lane_vector(look->smooth, i));
-        seen[i] = tl_pixel_sun_above(item, look->side[i] * cosine);
-        lobe[i] = tl_pixel_diffuse_lobe(glms_vec3_dot(direction, tl_lane_vector(look->shown, i)));
+        float cosine = look->side[i] * glms_vec3_dot(direction, tl_lane_vector(look->smooth, i));
+        float shown = glms_vec3_dot(direction, tl_lane_vector(look->shown, i));
+        seen[i] = tl_pixel_sun_above(item, cosine);
+        through[i] = part->transmits ? tl_pixel_sun_above(item, -cosine) : 0;
+        lobe[i] = tl_pixel_diffuse_lobe(shown);
+        other_lobe[i] = tl_pixel_diffuse_lobe(-shown);
     }
     for (int i = 0; i < look->count; i++) {
-        seen[i] *= tl_pixel_sun_seen(request, sun, lanes->pixel[i]);
-        any = tl_maxf(any, seen[i]);
+        float visible = tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
+        seen[i] *= visible;
+        through[i] *= visible;
+        any = tl_maxf(any, tl_maxf(seen[i], through[i]));
     }
     if (!(any > 0))
         return;
@@ -368,6 +388,11 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
     for (int i = 0; i < look->count; i++)
         if (seen[i] > 0)
             light[i] += seen[i] * tl_pixel_quad(item->power) * lit[i];
+    if (!part->transmits)
+        return;
+    const tl_quad coming_through = tl_pixel_quad(item->power) * tl_pixel_quad(part->material->transmission);
+    for (int i = 0; i < look->count; i++)
+        light[i] += (through[i] * other_lobe[i]) * coming_through;
 }
 
 /* ---- All of it ---- */
@@ -388,6 +413,8 @@ TL_CLONES static void light_lanes(const struct tl_pixel_scene *scene, const stru
     const struct tl_shade_part *part = lanes->look.part;
     struct gloss_lanes gloss;
     add_diffuse(scene, lanes, light);
+    if (part->transmits)
+        add_transmitted(scene, lanes, light);
     if (part->fan)
         add_facets(scene, lanes, &gloss, light);
     else if (part->is_glossy)

@@ -17,6 +17,7 @@ struct pixel_run {
     const struct tl_pixel_triangle *triangle;
     const struct tl_shade_part *part;
     tl_quad diffuse[3], glossy[3]; /* ratios at the corners; where the run is flat `diffuse` is the light */
+    tl_quad other[3];              /* ... of the diffuse light of the other side */
     tl_quad normals[3], tangents[3];
     tl_quad uvs[3];                /* u, v, u, v */
     tl_quad slopes[3], slope;      /* of the weights, not normalised: across twice, up twice; their sum */
@@ -81,6 +82,10 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
         run->diffuse[i] = *(const tl_quad *)ratio->diffuse;
         run->glossy[i] = *(const tl_quad *)ratio->glossy;
         covered += run->glossy[i][3];
+        if (run->part->transmits) {
+            ratio = tl_ratio_at(request->ratios, triangle->surface_index, vertex, !triangle->back);
+            run->other[i] = *(const tl_quad *)ratio->diffuse;
+        }
         run->normals[i] = tl_pixel_quad(surface->normals[vertex]);
         const vec4s tangent = surface->tangents ? surface->tangents[vertex] : (vec4s){{0, 0, 0, 0}};
         run->tangents[i] = (tl_quad){tangent.x, tangent.y, tangent.z, tangent.w};
@@ -92,17 +97,47 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
     run->slope = run->slopes[0] + run->slopes[1] + run->slopes[2];
     run->is_mixed = covered > 0 && covered < 3;
     run->is_fading = fades(request, triangle);
-    run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->fan && has_one_normal(run);
+    run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->fan &&
+                   !run->part->transmits && has_one_normal(run);
     if (run->is_flat)
         flatten(scene, run);
 }
 
-/* What is seen is rarely covered: corners that are do not count beside others that are not. */
-TL_INLINE void uncover(const struct pixel_run *run, float weights[3])
+static vec3s point_of(const struct tl_pixel_triangle *triangle, const float weights[3])
+{
+    vec3s point = {{0, 0, 0}};
+    for (int i = 0; i < 3; i++)
+        point = glms_vec3_add(
+            point, glms_vec3_scale(triangle->surface->positions[triangle->corners[i]], weights[i]));
+    return point;
+}
+
+/* Whether the layer that a pixel is seen through lies close above it. What the viewer sees first is rarely
+ * covered. */
+static bool is_covered(const struct tl_pixel_scene *scene, const struct pixel_run *run,
+                       const float weights[3], int x, int y)
+{
+    const struct tl_id_buffer *ids = scene->request->ids;
+    if (!scene->nearer)
+        return false;
+    const uint32_t id = scene->nearer[(size_t)y * (size_t)ids->width + (size_t)x];
+    const struct tl_pixel_triangle *above = &scene->request->triangles->items[tl_ids_place(ids, id)];
+    const struct tl_pixel_weights at = tl_pixel_weigh(above, (float)x + 0.5f, (float)y + 0.5f);
+    const vec3s up = glms_vec3_sub(point_of(above, at.at), point_of(run->triangle, weights));
+    vec3s normal = {{0, 0, 0}};
+    for (int i = 0; i < 3; i++)
+        normal =
+            glms_vec3_add(normal, glms_vec3_scale(run->triangle->surface->normals[run->triangle->corners[i]],
+                                                  run->triangle->back ? -weights[i] : weights[i]));
+    return glms_vec3_dot(up, glms_vec3_normalize(normal)) < scene->request->cover_m;
+}
+
+/* Corners that are covered do not count where a pixel is not, nor those that are not where it is. */
+TL_INLINE void match_cover(const struct pixel_run *run, bool is_covered, float weights[3])
 {
     float sum = 0;
     for (int i = 0; i < 3; i++) {
-        weights[i] = (weights[i] + 1e-6f) * (1 - run->glossy[i][3]);
+        weights[i] = (weights[i] + 1e-6f) * (is_covered ? run->glossy[i][3] : 1 - run->glossy[i][3]);
         sum += weights[i];
     }
     for (int i = 0; i < 3; i++)
@@ -118,24 +153,17 @@ TL_INLINE tl_quad weighted_quad(const tl_quad v[3], const float w[3])
 
 static float cover_of(const struct tl_pixel_scene *scene, const struct pixel_run *run, const float weights[3])
 {
-    const vec3s *p = run->triangle->surface->positions;
-    const uint32_t *corners = run->triangle->corners;
-    float x = 0, z = 0;
-    for (int i = 0; i < 3; i++) {
-        x += weights[i] * p[corners[i]].x;
-        z += weights[i] * p[corners[i]].z;
-    }
-    return tl_ground_cover(scene->request->ground, x, z);
+    const vec3s point = point_of(run->triangle, weights);
+    return tl_ground_cover(scene->request->ground, point.x, point.z);
 }
 
 /* A pixel of a flat run. */
 TL_INLINE tl_quad flat_pixel(const struct tl_pixel_scene *scene, const struct pixel_run *run,
                              const float ratio_weights[3], size_t pixel)
 {
-    const struct tl_pixels_request *request = scene->request;
     tl_quad colour = weighted_quad(run->diffuse, ratio_weights);
-    for (int i = 0; i < request->suns->count; i++)
-        colour += tl_pixel_sun_seen(request, i, pixel) * run->sunlight[i];
+    for (int i = 0; i < scene->request->suns->count; i++)
+        colour += tl_pixel_sun_seen(scene, i, pixel) * run->sunlight[i];
     return colour;
 }
 
@@ -180,7 +208,7 @@ TL_INLINE void shade_pixel(const struct tl_pixel_scene *scene, const struct pixe
     const struct tl_pixel_weights weights = tl_pixel_weigh(run->triangle, (float)x + 0.5f, (float)y + 0.5f);
     float ratio_weights[3] = {weights.at[0], weights.at[1], weights.at[2]};
     if (run->is_mixed)
-        uncover(run, ratio_weights);
+        match_cover(run, is_covered(scene, run, weights.at, x, y), ratio_weights);
     float cover = run->is_fading ? cover_of(scene, run, weights.at) : 1;
     if (run->is_flat) {
         tl_quad colour = cover * flat_pixel(scene, run, ratio_weights, pixel);
@@ -199,6 +227,8 @@ TL_INLINE void shade_pixel(const struct tl_pixel_scene *scene, const struct pixe
     lanes->to[lane] = to;
     lanes->diffuse_ratio[lane] = weighted_quad(run->diffuse, ratio_weights);
     lanes->glossy_ratio[lane] = weighted_quad(run->glossy, ratio_weights);
+    if (run->part->transmits) /* what is not seen itself may well be covered: by the body, for one */
+        lanes->other_ratio[lane] = weighted_quad(run->other, weights.at);
     fill_lane(run, &weights, &lanes->look, lane);
     if (lanes->look.count == TL_LANES)
         flush(scene, lanes);
@@ -225,21 +255,21 @@ TL_INLINE int shade_flat(const struct tl_pixel_scene *scene, const struct pixel_
         tl_quad colour = (a * run->diffuse[0] + b * run->diffuse[1] + c * run->diffuse[2]) *
                          (1 / tl_maxf(a + b + c, 1e-30f));
         for (int i = 0; i < suns; i++)
-            colour += tl_pixel_sun_seen(request, i, first + (size_t)x) * run->sunlight[i];
+            colour += tl_pixel_sun_seen(scene, i, first + (size_t)x) * run->sunlight[i];
         colour[3] = 1;
         out[x] = colour;
     }
     return x;
 }
 
-/* Rows first .. last - 1 of the ID buffer to `to`. */
-TL_CLONES static void shade_rows(const struct tl_pixel_scene *scene, int first, int last, float *to)
+/* Rows first .. last - 1 of a layer to `to`. */
+TL_CLONES static void shade_layer(const struct tl_pixel_scene *scene, int first, int last, float *to)
 {
     const struct tl_id_buffer *ids = scene->request->ids;
     const int width = ids->width;
     struct tl_pixel_lanes lanes = {0};
     for (int y = first; y < last; y++) {
-        const uint32_t *row = ids->ids + (size_t)y * (size_t)width;
+        const uint32_t *row = scene->ids + (size_t)y * (size_t)width;
         tl_quad *out = (tl_quad *)to + (size_t)(y - first) * (size_t)width;
         uint32_t before = 0;
         struct pixel_run run = {0};
@@ -249,7 +279,7 @@ TL_CLONES static void shade_rows(const struct tl_pixel_scene *scene, int first, 
                 continue;
             }
             if (row[x] != before) {
-                begin_run(scene, &scene->request->triangles[tl_ids_place(ids, row[x])], &run);
+                begin_run(scene, &scene->request->triangles->items[tl_ids_place(ids, row[x])], &run);
                 before = row[x];
             }
             assert(run.triangle && run.part); /* of the first covered pixel */
@@ -262,6 +292,61 @@ TL_CLONES static void shade_rows(const struct tl_pixel_scene *scene, int first, 
         }
     }
     flush(scene, &lanes);
+}
+
+/* ---- Layers ---- */
+
+/* Gives the light of a layer's row the share of it that the viewer sees, and keeps in `through` what the
+ * layer lets through. Adds it to `sum`, or replaces that by it in the nearest layer. */
+static void blend_row(const struct tl_pixel_scene *scene, int y, const tl_quad *light, float *through,
+                      tl_quad *sum)
+{
+    const struct tl_pixels_request *request = scene->request;
+    const struct tl_id_buffer *ids = request->ids;
+    const uint32_t *row = scene->ids + (size_t)y * (size_t)ids->width;
+    uint32_t before = 0;
+    float openness = 0;
+    for (int x = 0; x < ids->width; x++) {
+        if (row[x] == 0)
+            continue; /* `light` is 0 there */
+        if (row[x] != before) {
+            before = row[x];
+            const size_t part = request->triangles->items[tl_ids_place(ids, before)].part;
+            const bool is_last = scene->layer == TL_TRANSPARENCY_LAYERS;
+            openness = is_last ? 0 : request->materials->parts[part].material->openness;
+        }
+        const tl_quad seen = light[x] * (through[x] * (1 - openness));
+        sum[x] = scene->layer > 0 ? sum[x] + seen : seen;
+        through[x] *= openness;
+    }
+}
+
+/* Rows first .. last - 1 of the ID buffer to `to`, with what is seen behind open triangles. */
+static void shade_rows(const struct tl_pixel_scene *nearest, int first, int last, float *to)
+{
+    const struct tl_id_buffer *ids = nearest->request->ids;
+    const size_t width = (size_t)ids->width;
+    shade_layer(nearest, first, last, to);
+    if (!(nearest->request->materials->openness > 0))
+        return;
+    float *through = tl_alloc(width, sizeof *through);
+    tl_quad *behind = tl_alloc_lines(width, sizeof *behind);
+    for (int y = first; y < last; y++) {
+        tl_quad *sum = (tl_quad *)to + (size_t)(y - first) * width;
+        for (size_t x = 0; x < width; x++)
+            through[x] = 1;
+        blend_row(nearest, y, sum, through, sum);
+        struct tl_pixel_scene layer = *nearest;
+        for (int k = 0; ids->layer_count > 1 && k < ids->depths[y]; k++) {
+            layer.layer = k + 1;
+            layer.nearer = layer.ids;
+            layer.ids = ids->layers[k];
+            shade_layer(&layer, y, y + 1, (float *)behind);
+            blend_row(&layer, y, behind, through, sum);
+        }
+    }
+    free(through);
+    free(behind);
 }
 
 /* ---- All pixels ---- */
@@ -319,6 +404,7 @@ void tl_pixels_shade(const struct tl_pixels_request *request, int side, float *i
 {
     struct tl_pixel_blends *blends = tl_pixel_blends_make();
     struct tl_pixel_scene scene = {.request = request,
+                                   .ids = request->ids->ids,
                                    .blends = blends,
                                    .turn_cosine = cosf(request->environment_yaw),
                                    .turn_sine = sinf(request->environment_yaw)};

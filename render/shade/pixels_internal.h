@@ -9,9 +9,12 @@
 
 struct tl_pixel_blends;
 
-/* What all pixels share. */
+/* What all pixels of a layer share. */
 struct tl_pixel_scene {
     const struct tl_pixels_request *request;
+    int layer;
+    const uint32_t *ids;    /* of the layer */
+    const uint32_t *nearer; /* of the one before it; NULL: none */
     const struct tl_pixel_blends *blends;
     float turn_cosine, turn_sine; /* of the environment's yaw */
     vec3s first, across, up;      /* the ray through pixel (0, 0), and its changes */
@@ -24,6 +27,7 @@ struct tl_pixel_lanes {
     float x[TL_LANES], y[TL_LANES];
     size_t pixel[TL_LANES];
     tl_quad diffuse_ratio[TL_LANES], glossy_ratio[TL_LANES];
+    tl_quad other_ratio[TL_LANES]; /* diffuse, of the other side; where the part transmits */
     float cover[TL_LANES];
     tl_quad *to[TL_LANES]; /* where the colour is written */
 };
@@ -47,9 +51,9 @@ TL_INLINE float tl_pixel_sun_above(const struct tl_sun *sun, float cosine)
 }
 
 /* What of a sun is seen at a pixel. */
-TL_INLINE float tl_pixel_sun_seen(const struct tl_pixels_request *request, int sun, size_t pixel)
+TL_INLINE float tl_pixel_sun_seen(const struct tl_pixel_scene *scene, int sun, size_t pixel)
 {
-    const float *visible = request->sun_visibility[sun];
+    const float *visible = scene->request->sun_pixels->visible[scene->layer][sun];
     return visible ? visible[pixel] : 1;
 }
 

@@ -22,7 +22,7 @@ bool tl_sun_start(const struct tl_sun_bundle *bundle, uint32_t pixel, vec3s *sta
 {
     const struct tl_id_buffer *ids = bundle->request->ids;
     const struct tl_pixel_triangle *triangle =
-        &bundle->request->triangles[tl_ids_place(ids, ids->ids[pixel])];
+        &bundle->request->triangles->items[tl_ids_place(ids, ids->ids[pixel])];
     const uint32_t x = pixel % (uint32_t)ids->width, y = pixel / (uint32_t)ids->width;
     const struct tl_pixel_weights weights = tl_pixel_weigh(triangle, (float)x + 0.5f, (float)y + 0.5f);
     vec3s corners[3], normals[3];
@@ -32,7 +32,14 @@ bool tl_sun_start(const struct tl_sun_bundle *bundle, uint32_t pixel, vec3s *sta
             glms_vec3_scale(triangle->surface->normals[triangle->corners[i]], triangle->back ? -1.0f : 1.0f);
     }
     vec3s smooth = glms_vec3_normalize(weighted(normals, weights.at));
-    if (!(glms_vec3_dot(smooth, bundle->direction) > 0))
+    float cosine = glms_vec3_dot(smooth, bundle->direction);
+    if (cosine < 0 && triangle->transmits) { /* its other side faces the sun, and shines through */
+        for (int i = 0; i < 3; i++)
+            normals[i] = glms_vec3_negate(normals[i]);
+        smooth = glms_vec3_negate(smooth);
+        cosine = -cosine;
+    }
+    if (!(cosine > 0))
         return false;
     vec3s point = tl_smooth_point(weighted(corners, weights.at), corners, normals, weights.at);
     *start = glms_vec3_add(point, glms_vec3_scale(smooth, bundle->offset_m));

@@ -4,21 +4,37 @@
 
 #include "render/shade/sun_pixels.h"
 
+#include <math.h>
+
 #define TL_SUN_BUNDLE 16 /* rays */
 
-/* What a pixel sees of the sun. DARK and LIT are bits. LISTED: it has been asked for more. */
+/* What a pixel sees of the sun. From FACED on: how much of it reaches a surface that faces it, in steps of
+ * the root, because every open sheet on the way multiplies it. LISTED, a bit: it has been asked for more. */
 enum tl_sun_state {
     TL_SUN_UNKNOWN = 0,
-    TL_SUN_DARK = 1,
-    TL_SUN_LIT = 2,
-    TL_SUN_AWAY = 4,
-    TL_SUN_EMPTY = 8,
-    TL_SUN_LISTED = 16
+    TL_SUN_AWAY = 1,
+    TL_SUN_EMPTY = 2,
+    TL_SUN_FACED = 64,
+    TL_SUN_LISTED = 128
 };
+#define TL_SUN_STEPS 63
 
 static inline bool tl_sun_is_faced(uint8_t state)
 {
-    return state == TL_SUN_DARK || state == TL_SUN_LIT;
+    return state >= TL_SUN_FACED && state < TL_SUN_LISTED;
+}
+
+/* `share` in 0 .. 1. */
+static inline uint8_t tl_sun_state_of(float share)
+{
+    return (uint8_t)(TL_SUN_FACED + (int)(sqrtf(share) * TL_SUN_STEPS + 0.5f));
+}
+
+/* Of a state that is, or was before it was listed, that of a pixel which faces the sun; 0 of any other. */
+static inline float tl_sun_share_of(uint8_t state)
+{
+    const float root = (float)(state & (TL_SUN_FACED - 1)) / TL_SUN_STEPS; /* 1 of all of it */
+    return state & TL_SUN_FACED ? root * root : 0;
 }
 
 struct tl_sun_bundle {

@@ -8,38 +8,56 @@
 #define ROWS  16 /* that a thread takes at a time */
 #define MORE  8  /* rays for a pixel in a penumbra */
 #define CHUNK 64 /* pixels whose rays are gathered together */
+#define FAINT 5  /* times the contrast that is softened: less than that takes half of the rays */
 /* Neighbours of a pixel that sees a part of the sun are looked at, too, so far away each way and so often: of
  * a penumbra at most REACH * GROWTHS pixels to either side of the shadow's edge are found. */
 #define REACH   1
 #define GROWTHS 24
 
-#define BOTH (TL_SUN_DARK | TL_SUN_LIT)
-
 /* ---- Pixels beside the edge of a shadow ---- */
 
-/* What is seen in the rows about row y. */
-static void join_rows(const uint8_t *states, int width, int height, int y, uint8_t *joined)
+static uint8_t lesser(uint8_t a, uint8_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint8_t greater(uint8_t a, uint8_t b)
+{
+    return a > b ? a : b;
+}
+
+/* The least and the most that is seen in the rows about row y by what faces the sun. */
+TL_CLONES static void join_rows(const uint8_t *states, int width, int height, int y, uint8_t *restrict least,
+                                uint8_t *restrict most)
 {
     const uint8_t *row = states + (size_t)y * (size_t)width;
     const uint8_t *below = y > 0 ? row - width : row, *above = y + 1 < height ? row + width : row;
-    for (int x = 0; x < width; x++)
-        joined[x] = below[x] | row[x] | above[x];
+    for (int x = 0; x < width; x++) {
+        /* Others count as the greatest number among the least: they wrap. */
+        uint8_t a = (uint8_t)(below[x] - TL_SUN_FACED), b = (uint8_t)(row[x] - TL_SUN_FACED),
+                c = (uint8_t)(above[x] - TL_SUN_FACED);
+        least[x] = lesser(lesser(a, b), c);
+        most[x] = greater(greater(below[x], row[x]), above[x]);
+    }
 }
 
-/* Marks the pixels of a row that see the sun or do not, where another of the 3 x 3 about them differs.
- * `joined` goes on for a pixel before and after the row. */
-static void mark_edges(const uint8_t *states, const uint8_t *joined, int width, uint8_t *marks)
+/* Marks the pixels of a row that face the sun where the 3 x 3 about them see shares of it that differ by more
+ * than `contrast`. `least` and `most` go on for a pixel before and after the row. */
+TL_CLONES static void mark_edges(const uint8_t *states, const uint8_t *least, const uint8_t *most, int width,
+                                 float contrast, uint8_t *restrict marks)
 {
+    const int limit = (int)(contrast * (TL_SUN_STEPS * TL_SUN_STEPS));
     for (int x = 0; x < width; x++) {
-        const uint8_t about = joined[x - 1] | joined[x] | joined[x + 1], own = states[x] & BOTH;
-        marks[x] = (uint8_t)((about & BOTH) == BOTH) & (uint8_t)(own != 0);
+        const uint8_t low = lesser(lesser(least[x - 1], least[x]), least[x + 1]);
+        const uint8_t high = (uint8_t)(greater(greater(most[x - 1], most[x]), most[x + 1]) - TL_SUN_FACED);
+        marks[x] = (uint8_t)(states[x] >= TL_SUN_FACED) & (uint8_t)(high * high - low * low > limit);
     }
 }
 
 static void show_row(const uint8_t *states, int width, float *visible)
 {
     for (int x = 0; x < width; x++)
-        visible[x] = states[x] == TL_SUN_LIT ? 1.0f : 0.0f;
+        visible[x] = tl_sun_share_of(states[x]);
 }
 
 /* Shows some rows without penumbrae, and lists their pixels that lie beside an edge. Returns how many. */
@@ -49,11 +67,13 @@ static size_t list_edges(const struct tl_sun_pixels *pixels, int width, int heig
     size_t count = 0;
     for (int y = first_row; y < end_row; y++) {
         const size_t row = (size_t)y * (size_t)width;
-        uint8_t *joined = pixels->joined + row + 2 * (size_t)y + 1, *marks = pixels->marks + row;
+        uint8_t *least = pixels->least + row + 2 * (size_t)y + 1,
+                *most = pixels->most + row + 2 * (size_t)y + 1, *marks = pixels->marks + row;
         show_row(pixels->states + row, width, visible + row);
-        join_rows(pixels->states, width, height, y, joined);
-        joined[-1] = joined[width] = 0;
-        mark_edges(pixels->states + row, joined, width, marks);
+        join_rows(pixels->states, width, height, y, least, most);
+        least[-1] = least[width] = UINT8_MAX;
+        most[-1] = most[width] = 0;
+        mark_edges(pixels->states + row, least, most, width, pixels->contrast, marks);
         for (const uint8_t *at = marks; (at = memchr(at, 1, (size_t)(marks + width - at))) != NULL; at++)
             list[count++] = (uint32_t)(row + (size_t)(at - marks));
     }
@@ -110,6 +130,8 @@ struct chunk {
     uint32_t pixels[CHUNK];
     vec3s starts[CHUNK];
     float sums[CHUNK];
+    float first[CHUNK];     /* by the first ray */
+    float spans[CHUNK];     /* the greatest difference of a later one from it */
     bool is_settled[CHUNK]; /* no more rays */
 };
 
@@ -117,8 +139,11 @@ static void add_seen(struct tl_sun_bundle *bundle, struct chunk *chunk)
 {
     float seen[TL_SUN_BUNDLE];
     int count = tl_sun_bundle_trace(bundle, seen);
-    for (int i = 0; i < count; i++)
-        chunk->sums[bundle->pixels[i]] += seen[i];
+    for (int i = 0; i < count; i++) {
+        const uint32_t k = bundle->pixels[i];
+        chunk->sums[k] += seen[i];
+        chunk->spans[k] = tl_maxf(chunk->spans[k], fabsf(seen[i] - chunk->first[k]));
+    }
 }
 
 /* Adds what the pixels see of places [first, last] of the sun. */
@@ -141,45 +166,49 @@ static size_t look_at_places(struct chunk *chunk, const struct tl_sun_pixels_req
     return rays;
 }
 
-/* Means over all rays of a pixel; where the first ones agree there are no others. Listed pixels first .. end
+/* Means over all rays of a pixel; where the first ones differ little there are no others. Listed pixels first
+ * .. end
  * - 1. */
 static size_t soften_chunk(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
-                           int sun, size_t first, size_t end)
+                           int sun, float *visible, size_t first, size_t end)
 {
     const struct tl_sun *item = &request->suns->items[sun];
     const struct tl_sun_bundle towards =
         tl_sun_bundle_begin(request, tl_turn_direction(item->direction, request->environment_yaw));
     const int more = item->sample_count - 1 < MORE ? item->sample_count - 1 : MORE, half = more / 2;
-    float *visible = pixels->visible[sun];
+    uint8_t *is_partial = pixels->is_partial + first;
     struct chunk chunk = {.count = (int)(end - first)};
     for (int i = 0; i < chunk.count; i++) {
         chunk.pixels[i] = pixels->pixels[first + (size_t)i];
         chunk.is_settled[i] = !tl_sun_start(&towards, chunk.pixels[i], &chunk.starts[i]);
-        bool is_lit = pixels->states[chunk.pixels[i]] & TL_SUN_LIT;
-        visible[chunk.pixels[i]] = chunk.sums[i] = is_lit ? 1 : 0;
+        chunk.first[i] = tl_sun_share_of(pixels->states[chunk.pixels[i]]);
+        visible[chunk.pixels[i]] = chunk.sums[i] = chunk.first[i];
     }
     size_t rays = look_at_places(&chunk, request, item, 1, half);
-    for (int i = 0; i < chunk.count; i++)
-        chunk.is_settled[i] |= chunk.sums[i] <= 0 || chunk.sums[i] >= (float)(1 + half);
-    rays += look_at_places(&chunk, request, item, half + 1, more);
     for (int i = 0; i < chunk.count; i++) {
-        pixels->is_partial[first + (size_t)i] = !chunk.is_settled[i];
+        is_partial[i] = !chunk.is_settled[i] && chunk.spans[i] > pixels->contrast;
+        if (is_partial[i])
+            visible[chunk.pixels[i]] = chunk.sums[i] / (float)(1 + half);
+        chunk.is_settled[i] |= chunk.spans[i] < FAINT * pixels->contrast;
+    }
+    rays += look_at_places(&chunk, request, item, half + 1, more);
+    for (int i = 0; i < chunk.count; i++)
         if (!chunk.is_settled[i])
             visible[chunk.pixels[i]] = chunk.sums[i] / (float)(1 + more);
-    }
     return rays;
 }
 
-size_t tl_sun_soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun)
+size_t tl_sun_soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun,
+                     float *visible)
 {
     const int width = request->ids->width, height = request->ids->height;
-    size_t first = 0, count = begin_list(pixels, width, height, pixels->visible[sun]), rays = 0;
+    size_t first = 0, count = begin_list(pixels, width, height, visible), rays = 0;
     if (request->suns->items[sun].sample_count < 2)
         return 0;
     for (int growth = 0; first < count; growth++) {
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)
         for (size_t i = first; i < count; i += CHUNK)
-            rays += soften_chunk(pixels, request, sun, i, i + CHUNK < count ? i + CHUNK : count);
+            rays += soften_chunk(pixels, request, sun, visible, i, i + CHUNK < count ? i + CHUNK : count);
         const size_t end = growth < GROWTHS ? grow_list(pixels, width, height, first, count) : count;
         first = count;
         count = end;

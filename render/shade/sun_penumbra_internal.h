@@ -4,9 +4,9 @@
 
 #include "render/shade/sun_pixels.h"
 
-/* Fills `visible` of a sun from the states of its pixels; those that may lie in a penumbra get more rays.
- * Returns their number. */
-size_t tl_sun_soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
-                     int sun);
+/* Fills `visible` [height][width] of a sun from the states of its pixels; those that may lie in a penumbra
+ * get more rays. Returns their number. */
+size_t tl_sun_soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun,
+                     float *visible);
 
 #endif

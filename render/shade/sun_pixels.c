@@ -8,16 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELL         4  /* pixels a side */
-#define GROUND_CELL  8  /* ... of those on the ground, whose corners are looked at first */
-#define CELLS_A_TIME 16 /* of those that are traced late, by a thread */
+#define CELL         4     /* pixels a side */
+#define GROUND_CELL  8     /* ... of those on the ground, whose corners are looked at first */
+#define CELLS_A_TIME 16    /* of those that are traced late, by a thread */
+#define CONTRAST     0.06f /* differences of the sun's share in a pixel that are softened */
 
 static int cells_along(int size)
 {
     return (size + CELL - 1) / CELL;
 }
 
-static void reserve(struct tl_sun_pixels *pixels, int width, int height, int suns)
+static void reserve(struct tl_sun_pixels *pixels, int width, int height, int layers, int suns)
 {
     const size_t count = (size_t)width * (size_t)height;
     const size_t cells = (size_t)cells_along(width) * (size_t)cells_along(height);
@@ -34,14 +35,17 @@ static void reserve(struct tl_sun_pixels *pixels, int width, int height, int sun
     }
     if (height > pixels->row_capacity) {
         free(pixels->block_counts);
-        free(pixels->joined);
+        free(pixels->least);
+        free(pixels->most);
         pixels->row_capacity = height;
-        pixels->joined = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
+        pixels->least = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
+        pixels->most = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
         pixels->block_counts = TL_NEW_ARRAY(size_t, (size_t)height);
     }
-    for (int i = 0; i < suns; i++)
-        if (!pixels->visible[i])
-            pixels->visible[i] = TL_NEW_ARRAY(float, pixels->capacity);
+    for (int layer = 0; layer < layers; layer++)
+        for (int i = 0; i < suns; i++)
+            if (!pixels->visible[layer][i])
+                pixels->visible[layer][i] = TL_NEW_ARRAY(float, pixels->capacity);
 }
 
 /* ---- Single pixels ---- */
@@ -51,7 +55,7 @@ static void mark_bundle(struct tl_sun_bundle *bundle, uint8_t *states)
     float seen[TL_SUN_BUNDLE];
     int count = tl_sun_bundle_trace(bundle, seen);
     for (int i = 0; i < count; i++)
-        states[bundle->pixels[i]] = seen[i] > 0.5f ? TL_SUN_LIT : TL_SUN_DARK;
+        states[bundle->pixels[i]] = tl_sun_state_of(seen[i]);
 }
 
 /* Decides one pixel that nothing is known of, now or with its bundle. */
@@ -229,6 +233,10 @@ static size_t fill_cells(const struct tl_sun_pixels *pixels, const struct tl_sun
     for (int y = 0; y < height; y += CELL) {
         struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
         uint8_t *cells = pixels->cells + (size_t)(y / CELL) * (size_t)columns;
+        if (y + CELL < pixels->first_row || y >= pixels->end_row) {
+            memset(cells, BARE, (size_t)columns);
+            continue;
+        }
         for (int x = 0; x < width; x += CELL) {
             struct cell cell = cell_at(request, pixels->states, x, y, CELL);
             cells[x / CELL] = (uint8_t)fill_cell(&bundle, &cell, pixels->states);
@@ -320,29 +328,55 @@ static size_t follow_shadows(const struct tl_sun_pixels *pixels, const struct tl
     return rays;
 }
 
+static void find_rows(struct tl_sun_pixels *pixels, const struct tl_id_buffer *ids, int layer)
+{
+    pixels->first_row = 0;
+    pixels->end_row = ids->height;
+    while (layer > 0 && pixels->first_row < pixels->end_row && ids->depths[pixels->first_row] < layer)
+        pixels->first_row++;
+    while (layer > 0 && pixels->first_row < pixels->end_row && ids->depths[pixels->end_row - 1] < layer)
+        pixels->end_row--;
+}
+
+/* Of one layer. */
+static void look_at_sun(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun,
+                        float *visible)
+{
+    const struct tl_sun *item = &request->suns->items[sun];
+    vec3s direction = tl_turn_direction(item->sample_count > 0 ? item->samples[0] : item->direction,
+                                        request->environment_yaw);
+    memset(pixels->states, TL_SUN_UNKNOWN, (size_t)request->ids->width * (size_t)request->ids->height);
+    pixels->rays += look_at_grid(request, direction, pixels->states);
+    pixels->rays += fill_cells(pixels, request, direction);
+    pixels->rays += follow_shadows(pixels, request, direction);
+    pixels->rays += tl_sun_soften(pixels, request, sun, visible);
+}
+
 void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request)
 {
-    const int width = request->ids->width, height = request->ids->height;
-    reserve(pixels, width, height, request->suns->count);
+    const struct tl_id_buffer *ids = request->ids;
+    reserve(pixels, ids->width, ids->height, ids->layer_count, request->suns->count);
     pixels->rays = 0;
-    for (int sun = 0; sun < request->suns->count; sun++) {
-        const struct tl_sun *item = &request->suns->items[sun];
-        vec3s direction = tl_turn_direction(item->sample_count > 0 ? item->samples[0] : item->direction,
-                                            request->environment_yaw);
-        memset(pixels->states, TL_SUN_UNKNOWN, (size_t)width * (size_t)height);
-        pixels->rays += look_at_grid(request, direction, pixels->states);
-        pixels->rays += fill_cells(pixels, request, direction);
-        pixels->rays += follow_shadows(pixels, request, direction);
-        pixels->rays += tl_sun_soften(pixels, request, sun);
+    float weight = 1;
+    for (int layer = 0; layer < ids->layer_count; layer++, weight *= request->openness) {
+        const struct tl_id_buffer ids_of_layer = tl_ids_layer(ids, layer);
+        struct tl_sun_pixels_request of_layer = *request;
+        of_layer.ids = &ids_of_layer;
+        find_rows(pixels, ids, layer);
+        pixels->contrast = CONTRAST / weight;
+        for (int sun = 0; sun < request->suns->count; sun++)
+            look_at_sun(pixels, &of_layer, sun, pixels->visible[layer][sun]);
     }
 }
 
 void tl_sun_pixels_release(struct tl_sun_pixels *pixels)
 {
-    for (int i = 0; i < TL_SUNS_MAX; i++)
-        free(pixels->visible[i]);
+    for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS; layer++)
+        for (int i = 0; i < TL_SUNS_MAX; i++)
+            free(pixels->visible[layer][i]);
     free(pixels->states);
-    free(pixels->joined);
+    free(pixels->least);
+    free(pixels->most);
     free(pixels->marks);
     free(pixels->pixels);
     free(pixels->is_partial);
@@ -354,9 +388,10 @@ void tl_sun_pixels_release(struct tl_sun_pixels *pixels)
 
 size_t tl_sun_pixels_bytes(const struct tl_sun_pixels *pixels)
 {
-    size_t each = 4 + sizeof(uint32_t);
-    for (int i = 0; i < TL_SUNS_MAX; i++)
-        each += pixels->visible[i] ? sizeof(float) : 0;
+    size_t each = 5 + sizeof(uint32_t);
+    for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS; layer++)
+        for (int i = 0; i < TL_SUNS_MAX; i++)
+            each += pixels->visible[layer][i] ? sizeof(float) : 0;
     return each * pixels->capacity + (1 + sizeof(uint32_t)) * pixels->cell_capacity +
            sizeof(size_t) * (size_t)pixels->row_capacity;
 }

@@ -3,6 +3,7 @@
 #include "config/memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* A clip-space corner in pixels, times w. */
 struct corner {
@@ -41,6 +42,7 @@ static struct tl_pixel_triangle make_triangle(const struct tl_view *view, int wi
     triangle.surface = tl_triangle_find(ranges, number, triangle.corners, &triangle.surface_index);
     triangle.part = tl_shade_part_at(materials, triangle.surface, triangle.surface_index,
                                      number - ranges->first[triangle.surface_index]);
+    triangle.transmits = tl_material_transmits(materials->parts[triangle.part].material);
     struct corner at[3];
     for (int i = 0; i < 3; i++)
         at[i] = corner_of(view, width, height, triangle.surface->positions[triangle.corners[i]]);
@@ -66,13 +68,22 @@ static struct tl_pixel_triangle make_triangle(const struct tl_view *view, int wi
     return triangle;
 }
 
-struct tl_pixel_triangle *tl_pixel_triangles_make(const struct tl_id_buffer *ids, const struct tl_view *view,
-                                                  const struct tl_triangle_ranges *ranges,
-                                                  const struct tl_shade_materials *materials)
+void tl_pixel_triangles_make(struct tl_pixel_triangles *triangles, const struct tl_id_buffer *ids,
+                             const struct tl_view *view, const struct tl_triangle_ranges *ranges,
+                             const struct tl_shade_materials *materials)
 {
-    struct tl_pixel_triangle *triangles = TL_NEW_ARRAY(struct tl_pixel_triangle, ids->seen_count);
+    if (ids->seen_count > triangles->capacity) {
+        free(triangles->items);
+        triangles->capacity = ids->seen_count + ids->seen_count / 4;
+        triangles->items = tl_alloc(triangles->capacity, sizeof *triangles->items);
+    }
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < ids->seen_count; i++)
-        triangles[i] = make_triangle(view, ids->width, ids->height, ranges, materials, ids->seen[i]);
-    return triangles;
+        triangles->items[i] = make_triangle(view, ids->width, ids->height, ranges, materials, ids->seen[i]);
+}
+
+void tl_pixel_triangles_release(struct tl_pixel_triangles *triangles)
+{
+    free(triangles->items);
+    *triangles = (struct tl_pixel_triangles){0};
 }

@@ -16,12 +16,20 @@ struct tl_pixel_triangle {
     uint32_t corners[3];
     size_t surface_index, part; /* part: index into the materials' parts */
     bool back;
+    bool transmits; /* light comes through it from its other side */
 };
 
-/* Prepares the triangles that are seen, in the order of `ids->seen`. The caller frees the array. */
-struct tl_pixel_triangle *tl_pixel_triangles_make(const struct tl_id_buffer *ids, const struct tl_view *view,
-                                                  const struct tl_triangle_ranges *ranges,
-                                                  const struct tl_shade_materials *materials);
+/* Of all layers, in the order of `ids->seen`. Owns its array, which is used again from frame to frame. */
+struct tl_pixel_triangles {
+    struct tl_pixel_triangle *items;
+    size_t capacity;
+};
+
+/* Prepares the triangles that are seen. */
+void tl_pixel_triangles_make(struct tl_pixel_triangles *triangles, const struct tl_id_buffer *ids,
+                             const struct tl_view *view, const struct tl_triangle_ranges *ranges,
+                             const struct tl_shade_materials *materials);
+void tl_pixel_triangles_release(struct tl_pixel_triangles *triangles);
 
 /* Of a pixel: weights of the corners, which sum to 1. With e the edge functions' slopes their changes to the
  * next pixel are scale (e[i] - at[i] (e[0] + e[1] + e[2])). */

@@ -563,6 +563,11 @@ uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t v
     return points->slots[probe / TL_CLUSTER] * TL_CLUSTER + probe % TL_CLUSTER;
 }
 
+float tl_points_cover_m(const tl_trace *trace)
+{
+    return TL_COVER_OFFSETS * tl_trace_offset(trace);
+}
+
 bool tl_points_is_covered(const tl_points *points, uint32_t point)
 {
     return points->covered[point / TL_CLUSTER] >> point % TL_CLUSTER & 1;

@@ -27,6 +27,7 @@ const struct tl_taps *tl_points_taps(const tl_points *points);
 /* The point of a vertex of a triangle that was seen in the last update, from the side that was seen; and
  * whether something lies close above it, so that its values do not hold for neighbours that are not covered.
  */
+float tl_points_cover_m(const tl_trace *trace); /* so close */
 uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t vertex, bool back);
 bool tl_points_is_covered(const tl_points *points, uint32_t point);
 /* Visibility of the sun by sample, [sun][sample], in [0, 1]; NULL when no sun stands apart. */

@@ -21,6 +21,7 @@
 struct oracle {
     void *device;
     struct tl_id_buffer gl, cpu;
+    size_t behind; /* pixels of further layers compared so far */
 };
 
 static int open_oracle(void **state)
@@ -47,6 +48,15 @@ struct picture {
     int width, height;
 };
 
+static uint32_t id_at(const struct tl_id_buffer *ids, int layer, size_t pixel)
+{
+    return layer < ids->layer_count ? tl_ids_layer(ids, layer).ids[pixel] : 0;
+}
+
+/* Pixels that may differ behind the nearest layer: the depth that GL's program compares with what was passed
+ * is rounded otherwise than the one that GL keeps. Measured: 3e-6. */
+#define BEHIND_SHARE 1e-5
+
 /* Draws a picture both ways and compares them. Returns how many pixels are covered. */
 static size_t check(struct oracle *oracle, const struct picture *picture)
 {
@@ -68,22 +78,32 @@ static size_t check(struct oracle *oracle, const struct picture *picture)
                                                .surface_count = picture->count,
                                                .only_triangle = true};
     struct tl_id_buffer *gl = &oracle->gl, *cpu = &oracle->cpu;
-    assert_ok(tl_ids_draw_by_gl(gl, device->gpu, &request, &ranges, &error), error);
-    tl_ids_draw_on_cpu(cpu, &request, &ranges);
-    size_t coverage = 0, ids = 0, pixels = (size_t)picture->width * (size_t)picture->height;
+    assert_ok(tl_ids_draw_by_gl(gl, device->gpu, &request, &ranges, true, &error), error);
+    tl_ids_draw_on_cpu(cpu, &request, &ranges, true);
+    size_t coverage = 0, ids = 0, behind = 0, pixels = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < pixels; i++) {
         coverage += (gl->ids[i] != 0) != (cpu->ids[i] != 0);
         ids += gl->ids[i] != cpu->ids[i];
+        bool differs = false;
+        for (int layer = 1; layer < gl->layer_count || layer < cpu->layer_count; layer++) {
+            differs |= id_at(gl, layer, i) != id_at(cpu, layer, i);
+            oracle->behind += id_at(cpu, layer, i) != 0;
+        }
+        behind += differs;
     }
-    if (ids > 0)
+    if (ids + behind > 0)
         print_error(
-            "%zu of %zu pixels are covered in one of the pictures only, %zu show different triangles\n",
-            coverage, pixels, ids);
+            "%zu of %zu pixels are covered in one of the pictures only, %zu show different triangles, "
+            "%zu behind the nearest\n",
+            coverage, pixels, ids, behind);
     assert_int_equal(coverage, 0);
     assert_int_equal(ids, 0);
-    assert_int_equal(gl->covered, cpu->covered);
-    assert_int_equal(gl->seen_count, cpu->seen_count);
-    assert_memory_equal(gl->seen, cpu->seen, gl->seen_count * sizeof *gl->seen);
+    assert_true((double)behind <= BEHIND_SHARE * (double)pixels);
+    if (behind == 0) {
+        assert_int_equal(gl->covered, cpu->covered);
+        assert_int_equal(gl->seen_count, cpu->seen_count);
+        assert_memory_equal(gl->seen, cpu->seen, gl->seen_count * sizeof *gl->seen);
+    }
     tl_triangle_ranges_release(&ranges);
     tl_surfaces_destroy(&surfaces);
     return cpu->covered;
@@ -141,6 +161,19 @@ static void test_random_triangles(void **state)
         check_from_all_sides(*state, &soup.surface);
         soup_release(&soup);
     }
+}
+
+/* What lies behind open triangles is the same, layer by layer. */
+static void test_open_triangles(void **state)
+{
+    struct soup soup;
+    soup_create(&soup, 1000, 4);
+    soup.materials[0].openness = 0.4f;
+    check_from_all_sides(*state, &soup.surface);
+    const struct oracle *oracle = *state;
+    printf("%zu pixels behind others\n", oracle->behind);
+    assert_true(oracle->behind > 500000);
+    soup_release(&soup);
 }
 
 /* Corners nearly on a line, from 1 mm down to nothing, and two corners in one place. */
@@ -226,7 +259,7 @@ static void draw_alone(struct tl_raster *raster, const struct picture *picture, 
                                               .view_projection = picture->view.view_projection,
                                               .width = SIDE,
                                               .height = SIDE};
-    tl_raster_draw(raster, &request, ids);
+    tl_raster_draw(raster, &request, &(struct tl_raster_layers){.nearest = ids});
 }
 
 /* Neighbours leave no gap and share no pixel: each triangle is drawn alone, and each pixel counted. */
@@ -388,16 +421,16 @@ static void test_threads(void **state)
     uint32_t *one = tl_alloc(bytes, 1), *more = tl_alloc(bytes, 1);
     struct tl_raster raster = {0};
     omp_set_num_threads(1);
-    tl_raster_draw(&raster, &request, one);
+    tl_raster_draw(&raster, &request, &(struct tl_raster_layers){.nearest = one});
     const int counts[] = {2, 5};
     for (size_t i = 0; i < TL_COUNT(counts); i++) {
         omp_set_num_threads(counts[i]);
         request.height = height / 3;
         request.surface_count = 1;
-        tl_raster_draw(&raster, &request, more);
+        tl_raster_draw(&raster, &request, &(struct tl_raster_layers){.nearest = more});
         request.height = height;
         request.surface_count = picture.count;
-        tl_raster_draw(&raster, &request, more);
+        tl_raster_draw(&raster, &request, &(struct tl_raster_layers){.nearest = more});
         assert_memory_equal(one, more, bytes);
     }
     omp_set_num_threads(threads);
@@ -424,7 +457,7 @@ static void test_corners_that_are_not_finite(void **state)
                                                   .view_projection = picture.view.view_projection,
                                                   .width = SIDE,
                                                   .height = SIDE};
-        tl_raster_draw(&raster, &request, ids);
+        tl_raster_draw(&raster, &request, &(struct tl_raster_layers){.nearest = ids});
         size_t covered = 0;
         for (int i = 0; i < SIDE * SIDE; i++) {
             assert_true((ids[i] & ~TL_SAMPLE_BACK) != 3 || isfinite(bad[k]));
@@ -439,15 +472,11 @@ static void test_corners_that_are_not_finite(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_triangles),
-        cmocka_unit_test(test_slivers),
-        cmocka_unit_test(test_huge_triangles),
-        cmocka_unit_test(test_tiles_cover_once),
-        cmocka_unit_test(test_on_pixel_centres),
-        cmocka_unit_test(test_equal_depths),
-        cmocka_unit_test(test_dressed_figure),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_corners_that_are_not_finite),
+        cmocka_unit_test(test_random_triangles), cmocka_unit_test(test_open_triangles),
+        cmocka_unit_test(test_slivers),          cmocka_unit_test(test_huge_triangles),
+        cmocka_unit_test(test_tiles_cover_once), cmocka_unit_test(test_on_pixel_centres),
+        cmocka_unit_test(test_equal_depths),     cmocka_unit_test(test_dressed_figure),
+        cmocka_unit_test(test_threads),          cmocka_unit_test(test_corners_that_are_not_finite),
     };
     return cmocka_run_group_tests(tests, open_oracle, close_oracle);
 }

@@ -93,8 +93,9 @@ static struct tl_id_buffer ids_of(struct layers *scene, int width, int height)
 {
     struct tl_id_buffer ids = {
         .width = width, .height = height, .ids = TL_NEW_ARRAY(uint32_t, (size_t)width * (size_t)height)};
-    const struct tl_raster_request request = {scene->listed, 2, scene->view.view_projection, width, height};
-    tl_raster_draw(&scene->raster, &request, ids.ids);
+    const struct tl_raster_request request = {scene->listed, 2,      scene->view.view_projection,
+                                              width,         height, false};
+    tl_raster_draw(&scene->raster, &request, &(struct tl_raster_layers){.nearest = ids.ids});
     return ids;
 }
 

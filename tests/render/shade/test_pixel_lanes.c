@@ -1,6 +1,7 @@
 /* The light of pixels that are evaluated together against the light of each by itself, from the reference
- * renderer's shading point and the functions that define gloss, environment and suns one direction at a time;
- * and the same bits whatever pixels fill the other lanes. */
+ * renderer's shading point and the functions that define gloss, environment and suns one direction at a time,
+ * added up along the pixel's ray where surfaces are open; and the same bits whatever pixels fill the other
+ * lanes. */
 #include "render/shade/pixels.h"
 
 #include "tests/render/scenes.h"
@@ -26,6 +27,8 @@
 #define CUBE      16
 #define EXPONENTS 21 /* to 102 */
 #define PARTS     5  /* pictures that a picture is divided into, pixel by pixel */
+#define LAYERS    (1 + TL_TRANSPARENCY_LAYERS)
+#define COVER_M   0.06f /* what is closer covers; in the sheet's and the ball's scene both happens */
 
 struct lanes_scene {
     struct test_shape shapes[SHAPES];
@@ -42,7 +45,7 @@ struct lanes_scene {
     struct tl_lobes lobes;
     struct tl_vertex_ratios ratios;
     struct tl_suns suns;
-    float *visible; /* of the first sun; the second is seen from everywhere */
+    float *visible; /* [LAYERS][PIXELS] of the first sun; the second is seen from everywhere */
     tl_frame frame;
 };
 
@@ -111,8 +114,8 @@ static void make_ratios(struct lanes_scene *scene)
         }
         ratios->items[i].glossy[3] = tl_random_unit(&random) < 0.2 ? 1 : 0;
     }
-    scene->visible = TL_NEW_ARRAY(float, PIXELS);
-    for (size_t i = 0; i < PIXELS; i++)
+    scene->visible = TL_NEW_ARRAY(float, LAYERS *PIXELS);
+    for (size_t i = 0; i < LAYERS * PIXELS; i++)
         scene->visible[i] = (float)tl_random_unit(&random);
 }
 
@@ -133,7 +136,7 @@ static void open_scene(struct lanes_scene *scene)
     scene->trace = tl_trace_create(&error);
     assert_ok(scene->trace && tl_trace_update(scene->trace, scene->surfaces, SHAPES, &error), error);
     tl_triangle_ranges_make(scene->listed, SHAPES, &scene->ranges);
-    scene->hits = TL_NEW_ARRAY(struct tl_trace_hit, PIXELS);
+    scene->hits = TL_NEW_ARRAY(struct tl_trace_hit, LAYERS * PIXELS);
     make_ratios(scene);
 }
 
@@ -180,9 +183,10 @@ static vec3s exact_light(const struct one_pixel *one, vec3s direction, float exp
                           tl_exponent_blend(exp2f(step / 64)));
 }
 
-/* The ratios at a point of a triangle: covered corners do not count beside others that are not. */
-static void mix_ratios(const struct lanes_scene *scene, const struct tl_trace_hit *hit, vec3s *diffuse,
-                       vec3s *glossy)
+/* The ratios at a point of a triangle: covered corners count beside others that are not where the point is
+ * covered, and else these. */
+static void mix_ratios(const struct lanes_scene *scene, const struct tl_trace_hit *hit, bool is_covered,
+                       vec3s *diffuse, vec3s *glossy)
 {
     const float at[3] = {1 - hit->u - hit->v, hit->u, hit->v};
     const struct tl_vertex_ratio *corners[3];
@@ -194,7 +198,7 @@ static void mix_ratios(const struct lanes_scene *scene, const struct tl_trace_hi
         covered += corners[i]->glossy[3];
     }
     for (int i = 0; i < 3; i++) {
-        bool counts = covered == 0 || covered == 3 || corners[i]->glossy[3] == 0;
+        bool counts = covered == 0 || covered == 3 || (corners[i]->glossy[3] > 0) == is_covered;
         weights[i] = counts ? at[i] + (covered > 0 && covered < 3 ? 1e-6f : 0) : 0;
         sum += weights[i];
     }
@@ -236,15 +240,42 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     }
 }
 
-static vec3s evaluate(const struct one_pixel *one, size_t pixel)
+/* Light that comes through from the other side, of the second kind of K_1(-n). */
+static vec3s transmitted(const struct one_pixel *one, const struct tl_trace_hit *hit,
+                         const struct tl_shading_point *point, float visible)
 {
     const struct lanes_scene *scene = one->scene;
-    const struct tl_trace_hit *hit = &scene->hits[pixel];
-    int x = (int)(pixel % WIDTH), y = (int)(pixel / WIDTH);
-    struct tl_ray_differential ray = tl_camera_ray(&scene->view, WIDTH, HEIGHT, x, HEIGHT - 1 - y);
-    struct tl_shading_point point = tl_shading_point_find(one->reference, &ray);
+    const float at[3] = {1 - hit->u - hit->v, hit->u, hit->v};
+    vec3s ratio = {{0, 0, 0}}, behind = glms_vec3_negate(point->normal), light;
+    for (int i = 0; i < 3; i++) {
+        uint32_t vertex = scene->surfaces[hit->surface].indices[3 * hit->triangle + (uint32_t)i];
+        size_t place = 2 * (scene->ratios.first_vertex[hit->surface] + vertex) + !hit->back;
+        for (int c = 0; c < 3; c++)
+            ratio.raw[c] += at[i] * scene->ratios.items[place].diffuse[c];
+    }
+    light = glms_vec3_mul(exact_light(one, behind, 1), ratio);
+    for (int i = 0; i < 2; i++) {
+        const struct tl_sun *sun = &scene->suns.items[i];
+        vec3s direction = tl_turn_direction(sun->direction, one->yaw);
+        float seen =
+            disc_share(-glms_vec3_dot(direction, point->horizon) / sun->radius) * (i == 0 ? visible : 1);
+        float cosine = fmaxf(glms_vec3_dot(direction, behind), 0);
+        light = glms_vec3_add(light, glms_vec3_scale(sun->power, seen * cosine / (float)M_PI));
+    }
+    return glms_vec3_mul(point->material->transmission, light);
+}
+
+/* One layer, by the hit there: what `ray` meets first. `above` is that of the layer before, NULL: none. */
+static vec3s evaluate_layer(const struct one_pixel *one, const struct tl_ray_differential *ray,
+                            const struct tl_trace_hit *hit, const struct tl_trace_hit *above, float visible)
+{
+    const struct lanes_scene *scene = one->scene;
+    struct tl_shading_point point = tl_shading_point_find(one->reference, ray);
     vec3s diffuse_ratio, glossy_ratio, gloss, glints[2];
-    mix_ratios(scene, hit, &diffuse_ratio, &glossy_ratio);
+    float height = above
+                       ? (above->distance_m - hit->distance_m) * glms_vec3_dot(ray->direction, point.horizon)
+                       : INFINITY;
+    mix_ratios(scene, hit, height < COVER_M, &diffuse_ratio, &glossy_ratio);
     evaluate_gloss(one, hit, &point, &gloss, glints);
     vec3s colour =
         glms_vec3_mul(glms_vec3_mul(point.albedo, exact_light(one, point.normal, 1)), diffuse_ratio);
@@ -252,13 +283,38 @@ static vec3s evaluate(const struct one_pixel *one, size_t pixel)
     for (int i = 0; i < 2; i++) {
         const struct tl_sun *sun = &scene->suns.items[i];
         vec3s direction = tl_turn_direction(sun->direction, one->yaw);
-        float seen = disc_share(glms_vec3_dot(direction, point.horizon) / sun->radius) *
-                     (i == 0 ? scene->visible[pixel] : 1);
+        float seen =
+            disc_share(glms_vec3_dot(direction, point.horizon) / sun->radius) * (i == 0 ? visible : 1);
         float cosine = fmaxf(glms_vec3_dot(direction, point.normal), 0);
         vec3s light = glms_vec3_add(glms_vec3_scale(point.albedo, cosine / (float)M_PI), glints[i]);
         colour = glms_vec3_add(colour, glms_vec3_scale(glms_vec3_mul(sun->power, light), seen));
     }
-    return colour;
+    return glms_vec3_add(colour, transmitted(one, hit, &point, visible));
+}
+
+/* The sum of the layers: colour, and cover. The last one counts as closed. */
+static vec4s evaluate(const struct one_pixel *one, size_t pixel)
+{
+    const struct lanes_scene *scene = one->scene;
+    const int x = (int)(pixel % WIDTH), y = (int)(pixel / WIDTH);
+    const struct tl_trace_hit *above = NULL;
+    struct tl_ray_differential ray = tl_camera_ray(&scene->view, WIDTH, HEIGHT, x, HEIGHT - 1 - y);
+    vec4s sum = {{0, 0, 0, 0}};
+    float through = 1;
+    for (size_t k = 0; k < LAYERS && through > 0; k++) {
+        const struct tl_trace_hit *hit = &scene->hits[k * PIXELS + pixel];
+        if (hit->surface == TL_TRACE_NONE)
+            break;
+        float openness = k + 1 < LAYERS ? scene->surfaces[hit->surface].materials[0].openness : 0;
+        vec3s colour = evaluate_layer(one, &ray, hit, above, scene->visible[k * PIXELS + pixel]);
+        for (int c = 0; c < 3; c++)
+            sum.raw[c] += through * (1 - openness) * colour.raw[c];
+        sum.w += through * (1 - openness);
+        through *= openness;
+        ray.from_m = hit->distance_m + 1e-4f;
+        above = hit;
+    }
+    return sum;
 }
 
 /* ---- Pictures ---- */
@@ -329,6 +385,29 @@ static void be_mapped(struct lanes_scene *scene)
     }
 }
 
+static void be_sheer(struct lanes_scene *scene)
+{
+    be_mapped(scene);
+    for (int i = 0; i < SHAPES; i++) {
+        scene->shapes[i].material.openness = 0.35f + 0.1f * (float)i;
+        scene->shapes[i].material.transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
+    }
+}
+
+/* Of one colour and without gloss: all that is left is what comes through. */
+static void be_voile(struct lanes_scene *scene)
+{
+    scene->shapes[1].material.openness = 0.4f;
+    scene->shapes[1].material.transmission = (vec3s){{0.4f, 0.4f, 0.3f}};
+}
+
+/* Open, but nothing shines through it. */
+static void be_net(struct lanes_scene *scene)
+{
+    be_satin(scene);
+    scene->shapes[1].material.openness = 0.6f;
+}
+
 struct lanes_case {
     const char *name;
     editor *edit;
@@ -348,25 +427,33 @@ static const struct lanes_case cases[] = {
     {"woven satin, from below", be_woven, TL_DETAIL_MINIFY_NONE, 0, true},
     {"maps", be_mapped, TL_DETAIL_MINIFY_LEAN, 0, false},
     {"maps, turned, from below", be_mapped, TL_DETAIL_MINIFY_TOKSVIG, 1, true},
+    {"sheer, all of it", be_sheer, TL_DETAIL_MINIFY_LEAN, 0.5f, false},
+    {"voile", be_voile, TL_DETAIL_MINIFY_NONE, 0, false},
+    {"voile from below", be_voile, TL_DETAIL_MINIFY_NONE, 0, true},
+    {"net of satin", be_net, TL_DETAIL_MINIFY_NONE, 0, false},
 };
 
 static void draw(const struct lanes_scene *scene, const struct tl_shade_materials *materials,
                  const struct tl_id_buffer *ids, float yaw, float *image)
 {
-    struct tl_pixel_triangle *triangles =
-        tl_pixel_triangles_make(ids, &scene->view, &scene->ranges, materials);
+    struct tl_pixel_triangles triangles = {0};
+    struct tl_sun_pixels sun_pixels = {0};
+    for (size_t k = 0; k < LAYERS; k++)
+        sun_pixels.visible[k][0] = scene->visible + k * PIXELS;
+    tl_pixel_triangles_make(&triangles, ids, &scene->view, &scene->ranges, materials);
     const struct tl_pixels_request request = {.ids = ids,
-                                              .triangles = triangles,
+                                              .triangles = &triangles,
                                               .ranges = &scene->ranges,
                                               .materials = materials,
                                               .ratios = &scene->ratios,
                                               .lobes = &scene->lobes,
                                               .suns = &scene->suns,
-                                              .sun_visibility = {scene->visible},
+                                              .sun_pixels = &sun_pixels,
                                               .view = &scene->view,
-                                              .environment_yaw = yaw};
+                                              .environment_yaw = yaw,
+                                              .cover_m = COVER_M};
     tl_pixels_shade(&request, 1, image);
-    free(triangles);
+    tl_pixel_triangles_release(&triangles);
 }
 
 /* Every pixel is drawn again beside every fifth of the others only, so that lanes are filled with others. */
@@ -376,15 +463,23 @@ static void check_other_lanes(const struct lanes_scene *scene, const struct tl_s
     struct tl_id_buffer some = scene->ids;
     float *image = TL_NEW_ARRAY(float, 4 * PIXELS);
     some.ids = TL_NEW_ARRAY(uint32_t, PIXELS);
+    for (int k = 0; k < TL_TRANSPARENCY_LAYERS; k++)
+        some.layers[k] = TL_NEW_ARRAY(uint32_t, PIXELS);
     for (size_t part = 0; part < PARTS; part++) {
-        for (size_t i = 0; i < PIXELS; i++)
-            some.ids[i] = (i * 2654435761u >> 7) % PARTS == part ? scene->ids.ids[i] : 0;
+        for (size_t i = 0; i < PIXELS; i++) {
+            bool is_there = (i * 2654435761u >> 7) % PARTS == part;
+            some.ids[i] = is_there ? scene->ids.ids[i] : 0;
+            for (int k = 0; k < TL_TRANSPARENCY_LAYERS; k++)
+                some.layers[k][i] = is_there ? scene->ids.layers[k][i] : 0;
+        }
         draw(scene, materials, &some, yaw, image);
         for (size_t i = 0; i < PIXELS; i++)
             if (some.ids[i])
                 assert_memory_equal(&image[4 * i], &whole[4 * i], 4 * sizeof(float));
     }
     free(some.ids);
+    for (int k = 0; k < TL_TRANSPARENCY_LAYERS; k++)
+        free(some.layers[k]);
     free(image);
 }
 
@@ -404,9 +499,9 @@ static void compare(const struct lanes_case *item, const struct one_pixel *one, 
             assert_true(image[4 * i] == 0 && image[4 * i + 3] == 0);
             continue;
         }
-        vec3s expected = evaluate(one, i);
+        vec4s expected = evaluate(one, i);
         double difference = 0;
-        assert_true(image[4 * i + 3] == 1);
+        assert_near((double)image[4 * i + 3], (double)expected.w, 1e-6);
         for (size_t c = 0; c < 3; c++) {
             difference = fmax(difference, fabs((double)(image[4 * i + c] - expected.raw[c])));
             mean += (double)expected.raw[c] / 3;

@@ -191,6 +191,27 @@ static void be_holed(struct drawn_scene *drawn)
     cloth_of(drawn)->alpha_cutoff = 0.5f;
 }
 
+/* A sheet of voile above the ball. */
+static void be_voile(struct drawn_scene *drawn)
+{
+    cloth_of(drawn)->diffuse = (vec3s){{0.46f, 0.46f, 0.45f}};
+    cloth_of(drawn)->openness = 0.41f;
+    cloth_of(drawn)->transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
+}
+
+static void be_open_all(struct drawn_scene *drawn)
+{
+    be_voile(drawn);
+    be_glossy(drawn);
+    drawn->scene.shapes[0].material.openness = 0.5f;
+}
+
+static void be_half_as_fine_voile(struct drawn_scene *drawn)
+{
+    be_voile(drawn);
+    drawn->scene.settings.image.scale = 0.5f;
+}
+
 static void be_mapped_and_turned(struct drawn_scene *drawn)
 {
     be_mapped(drawn);
@@ -218,6 +239,12 @@ static void be_mapped_from_below(struct drawn_scene *drawn)
 static void be_satin_from_below(struct drawn_scene *drawn)
 {
     be_satin(drawn);
+    look_up(drawn);
+}
+
+static void be_voile_from_below(struct drawn_scene *drawn)
+{
+    be_voile(drawn);
     look_up(drawn);
 }
 
@@ -264,23 +291,30 @@ struct picture_case {
     const char *name;
     editor *edit;
     double all, cloth, worst; /* FLIP, means: of covered pixels, of the shapes', of the worst 5 % of these */
+    double cover;             /* largest difference */
 };
 
 /* Bounds: measured, and a third of it; they detect a fault. What is largest is the normal map, whose normals
- * lean by up to 17 degrees: the ratio at a vertex is that of the smooth normal. */
+ * lean by up to 17 degrees: the ratio at a vertex is that of the smooth normal. Of fewer samples what lies
+ * behind sheer cloth has their resolution, and so has the cover there: it may be off by what the cloth lets
+ * through. */
 static const struct picture_case pictures[] = {
-    {"matt", be_matt, 0.004, 0.0064, 0.0226},
-    {"glossy", be_glossy, 0.0052, 0.0103, 0.0398},
-    {"satin", be_satin, 0.0042, 0.0069, 0.0277},
-    {"torrance-sparrow", be_torrance_sparrow, 0.0051, 0.0099, 0.0401},
-    {"woven satin", be_woven, 0.0042, 0.0069, 0.0282},
-    {"maps", be_mapped, 0.0185, 0.0493, 0.2082},
-    {"cut-outs", be_holed, 0.0082, 0.0106, 0.0898},
-    {"maps, light turned", be_mapped_and_turned, 0.0179, 0.048, 0.1996},
-    {"satin, light turned", be_satin_and_turned, 0.0038, 0.006, 0.0234},
-    {"maps from below", be_mapped_from_below, 0.0755, 0.0755, 0.2767},
-    {"satin from below", be_satin_from_below, 0.0086, 0.0086, 0.0423},
-    {"maps, scale 0.5", be_half_as_fine, 0.026, 0.069, 0.266},
+    {"matt", be_matt, 0.004, 0.0064, 0.0226, COVER_TOLERANCE},
+    {"glossy", be_glossy, 0.0052, 0.0103, 0.0398, COVER_TOLERANCE},
+    {"satin", be_satin, 0.0042, 0.0069, 0.0277, COVER_TOLERANCE},
+    {"torrance-sparrow", be_torrance_sparrow, 0.0051, 0.0099, 0.0401, COVER_TOLERANCE},
+    {"woven satin", be_woven, 0.0042, 0.0069, 0.0282, COVER_TOLERANCE},
+    {"maps", be_mapped, 0.0185, 0.0493, 0.2082, COVER_TOLERANCE},
+    {"cut-outs", be_holed, 0.0082, 0.0106, 0.0898, COVER_TOLERANCE},
+    {"maps, light turned", be_mapped_and_turned, 0.0179, 0.048, 0.1996, COVER_TOLERANCE},
+    {"satin, light turned", be_satin_and_turned, 0.0038, 0.006, 0.0234, COVER_TOLERANCE},
+    {"maps from below", be_mapped_from_below, 0.0755, 0.0755, 0.2767, COVER_TOLERANCE},
+    {"satin from below", be_satin_from_below, 0.0086, 0.0086, 0.0423, COVER_TOLERANCE},
+    {"maps, scale 0.5", be_half_as_fine, 0.026, 0.069, 0.266, COVER_TOLERANCE},
+    {"voile", be_voile, 0.0058, 0.009, 0.032, COVER_TOLERANCE},
+    {"voile from below", be_voile_from_below, 0.0062, 0.0062, 0.0314, COVER_TOLERANCE},
+    {"open, all of it", be_open_all, 0.0068, 0.0107, 0.0374, COVER_TOLERANCE},
+    {"voile, scale 0.5", be_half_as_fine_voile, 0.0088, 0.0155, 0.076, 0.411},
 };
 
 static void check_picture(const struct test_device *device, struct drawn_scene *drawn,
@@ -301,7 +335,7 @@ static void check_picture(const struct test_device *device, struct drawn_scene *
            all.flip_mean, cloth.flip_mean, cloth.flip_worst, all.rel_rmse, cover);
     assert_true(memcmp(interpolated.texels, sampled.texels, 16 * (size_t)WIDTH * HEIGHT) != 0);
     assert_true(cloth.pixels > WIDTH * HEIGHT / 10);
-    assert_near(cover, 0, COVER_TOLERANCE);
+    assert_near(cover, 0, item->cover);
     assert_near(all.flip_mean, 0, item->all);
     assert_near(cloth.flip_mean, 0, item->cloth);
     assert_near(cloth.flip_worst, 0, item->worst);
@@ -436,8 +470,8 @@ static const struct {
     {"matt", be_matt, false},
     {"a lamp", have_a_lamp, true},
     {"a coat", have_a_coat, true},
-    {"openness", have_openness, true},
-    {"transmission", have_transmission, true},
+    {"openness", have_openness, false},
+    {"transmission", have_transmission, false},
     {"a mirror", have_a_mirror, true},
     {"relief", have_relief, true},
     {"parallax", have_parallax, true},
