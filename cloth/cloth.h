@@ -48,6 +48,7 @@ struct tl_cloth_params {
     double gust;            /* 0 to 1: amplitude of the wind's speed, relative to it */
     double settle_s;        /* longest simulated time of settling before the first frame */
     double settle_speed;    /* m/s: the cloth is settled when no vertex moves faster over a frame */
+    bool cages;             /* settling begins on coarser versions of a fine cloth: cloth/coarser.h */
     float edge_m;           /* target edge length of built-in garments */
     float longest_edge_m;   /* longer edges of garments from files are halved; 0: never */
 };

@@ -6,7 +6,7 @@
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
     .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81,                \
-    .settle_s = 10, .settle_speed = 0.003, .edge_m = 0.02f, .longest_edge_m = 0.1f
+    .settle_s = 10, .settle_speed = 0.003, .cages = true, .edge_m = 0.02f, .longest_edge_m = 0.1f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 
@@ -50,6 +50,8 @@ static const struct tl_option cloth_rows[] = {
                      "maximum simulated time for coming to rest before the first frame"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, AFFECTS, 0, 10, "m/s",
                      "settled when no vertex moves faster than this over a frame; larger: settles sooner"),
+    TL_OPTION_BOOL(struct tl_cloth_params, cages, AFFECTS,
+                   "settles coarser versions of a fine cloth first, from which it comes to rest sooner"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, TL_AFFECTS_SCENE | AFFECTS | TL_AFFECTS_WORK, 0.001f, 1,
                     "m", "target edge length of built-in garments; larger: coarser, faster"),
     TL_OPTION_FLOAT(struct tl_cloth_params, longest_edge_m, TL_AFFECTS_SCENE | AFFECTS, 0, 1000, "m",

@@ -1,6 +1,8 @@
 /* Settling: simulating until rest, before the first frame. */
 #include "cloth/advance.h"
 #include "cloth/build.h"
+#include "cloth/coarser.h"
+#include "cloth/measure.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -13,6 +15,10 @@
 static const struct phase {
     double drag, min_s;
 } phases[] = {{5, 0.25}, {1, 0.5}};
+
+/* The duration of the last phase for cloth that was carried: its forces are out of balance, so that it has
+ * speed from the first frame on. */
+#define CARRIED_MIN_S 0.25
 
 /* Far from rest, contact changes with every step, so that exact stick and slip states are wasted work. Near
  * rest, solves are so short that MIN_CONTACT_ITERATIONS of implicit.c suffices for all contact rounds anyway.
@@ -46,15 +52,55 @@ void tl_cloth_log_unsettled(const tl_cloth *cloth)
             cloth->unsettled_speed, cloth->params.settle_s);
 }
 
+/* Kinetic damping (Barnes 1999, "Form Finding and Analysis of Tension Structures by Dynamic Relaxation"): all
+ * cloth stops when its kinetic energy has passed a peak. Folds that rearrange swing slowly; under drag alone
+ * a dress that was carried comes to rest in two to three times the time. */
+struct stops {
+    double kinetic; /* J, at the last frame's end */
+    int frames;     /* since the last stop */
+};
+
+/* Speeds say nothing about rest within so many frames after a stop. */
+#define FRAMES_TO_GATHER_SPEED 3
+
+static void stop_at_peak(tl_cloth *cloth, struct stops *stops)
+{
+    double kinetic = tl_cloth_energies(cloth).kinetic;
+    bool stop = kinetic < stops->kinetic && stops->frames >= FRAMES_TO_GATHER_SPEED;
+    if (stop)
+        memset(cloth->particles.v, 0, cloth->particles.count * sizeof *cloth->particles.v);
+    stops->kinetic = stop ? 0 : kinetic;
+    stops->frames = stop ? 0 : stops->frames + 1;
+}
+
+/* Settles a coarser version of the cloth, if it has one, and carries the cloth to where that has come to. */
+static bool settle_coarser(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    tl_coarser *coarser = cloth->params.cages ? tl_coarser_create(cloth) : NULL;
+    bool carried = coarser && tl_cloth_settle(tl_coarser_cloth(coarser), collider, error);
+    if (carried)
+        tl_coarser_carry(coarser, cloth);
+    tl_coarser_destroy(&coarser);
+    return carried;
+}
+
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
     struct tl_progress progress = tl_progress_begin("settling the cloth");
     double frame_s = 1 / params->frame_rate, settled_s = 0, phase_s = 0;
     size_t phase = 0;
-    bool good = true;
+    bool good = true, tried = false, carried = false;
+    struct stops stops = {0};
     cloth->settled = false;
     while (good && !cloth->settled && settled_s < params->settle_s) {
+        if (!tried && !tl_seams_are_closing(&cloth->seams)) {
+            tried = true;
+            tl_cloth_use_solver(cloth, params);
+            carried = settle_coarser(cloth, collider, error);
+            phase = carried ? TL_COUNT(phases) - 1 : phase;
+            progress = tl_progress_begin("settling the cloth");
+        }
         /* Slower slip than settle_speed counts as rest, so such contacts stick. */
         const struct tl_advance_params advance = {.drag = phases[phase].drag,
                                                   .contact_budget = CONTACT_BUDGET,
@@ -66,7 +112,11 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
         double elapsed_s = tl_seams_are_closing(&cloth->seams) ? 0 : frame_s;
         settled_s += elapsed_s;
         phase_s += elapsed_s;
-        bool at_rest = phase_s > phases[phase].min_s && max_displacement_speed(cloth) < params->settle_speed;
+        double min_s = carried ? CARRIED_MIN_S : phases[phase].min_s;
+        bool at_rest = phase_s > min_s && max_displacement_speed(cloth) < params->settle_speed &&
+                       (!carried || stops.frames >= FRAMES_TO_GATHER_SPEED);
+        if (carried)
+            stop_at_peak(cloth, &stops);
         if (at_rest) {
             phase_s = 0;
             cloth->settled = good && ++phase == TL_COUNT(phases);

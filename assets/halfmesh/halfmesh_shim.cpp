@@ -3,7 +3,8 @@ extern "C" {
 #include "assets/halfmesh/sector.h"
 }
 
-#ifndef __clang__                                      /* which has no such warning */
+#define NDEBUG    /* OpenMesh's assertions look up the type of every property, which takes most of the time */
+#ifndef __clang__ /* which has no such warning */
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* in OpenMesh's properties, which are inlined */
 #endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -27,6 +28,9 @@ using Weights = std::array<double, 3>;
 
 /* New edges may be this many times as long as the sides of equal triangles of the cage's number. */
 constexpr double LONGEST = 3;
+
+/* Edges are flipped each time that so many vertices are left. */
+constexpr double STAGE = 0.5;
 
 /* A face of the mesh by its number there, which it keeps while its neighbours vanish. */
 struct Face {
@@ -52,18 +56,40 @@ struct Work {
     size_t refused = 0;
 };
 
-/* A sector around the vertex that a collapse removes, in terms of the mesh. */
+/* A sector around a vertex of the mesh, the hub. */
 struct Around {
     tl_sector sector;
-    size_t target;
+    size_t target; /* the spoke whose end the hub moves to */
     std::array<int, TL_SECTOR_FACES> faces;
     std::array<size_t, TL_SECTOR_FACES> slots; /* of the hub among each face's corners */
+    std::array<int, TL_SECTOR_FACES + 1> ends; /* the spokes' other vertices */
+};
+
+/* All faces around a vertex, laid out: one sector within a piece, up to two on a line that leads through. */
+struct Neighbourhood {
+    int hub = -1; /* -1: to be found again */
+    bool usable;  /* false: the vertex stays */
+    size_t count;
+    Around sectors[2];
 };
 
 bool is_line(const Mesh &mesh, OpenMesh::HalfedgeHandle half)
 {
     OpenMesh::EdgeHandle edge = mesh.edge_handle(half);
     return mesh.is_boundary(edge) || mesh.status(edge).feature();
+}
+
+/* Adds a face to a sector. */
+void add_face(const Work &work, OpenMesh::FaceHandle handle, int hub, Around &around)
+{
+    const Face &face = work.faces[static_cast<size_t>(handle.idx())];
+    size_t n = around.sector.face_count++, slot = face.corners[0] == hub ? 0 : face.corners[1] == hub ? 1 : 2;
+    around.faces[n] = handle.idx();
+    around.slots[n] = slot;
+    for (size_t k = 0; k < 3; k++)
+        std::memcpy(around.sector.rest[n][k], face.rest[(slot + k) % 3], sizeof face.rest[0]);
+    around.ends[n] = face.corners[(slot + 1) % 3];
+    around.ends[n + 1] = face.corners[(slot + 2) % 3];
 }
 
 /* Collects the faces counter-clockwise from an outgoing half-edge to the next line, or once around. False
@@ -75,55 +101,64 @@ bool collect(const Work &work, OpenMesh::HalfedgeHandle start, Around &around)
     int hub = mesh.from_vertex_handle(start).idx();
     around.sector.face_count = 0;
     do {
-        OpenMesh::FaceHandle handle = mesh.face_handle(half);
-        if (!handle.is_valid())
+        OpenMesh::FaceHandle face = mesh.face_handle(half);
+        if (!face.is_valid())
             break;
-        size_t n = around.sector.face_count++;
-        if (n == TL_SECTOR_FACES)
+        if (around.sector.face_count == TL_SECTOR_FACES)
             return false;
-        const Face &face = work.faces[static_cast<size_t>(handle.idx())];
-        size_t slot = face.corners[0] == hub ? 0 : face.corners[1] == hub ? 1 : 2;
-        around.faces[n] = handle.idx();
-        around.slots[n] = slot;
-        for (size_t k = 0; k < 3; k++)
-            std::memcpy(around.sector.rest[n][k], face.rest[(slot + k) % 3], sizeof face.rest[0]);
+        add_face(work, face, hub, around);
         half = mesh.ccw_rotated_halfedge_handle(half);
     } while (half != start && !is_line(mesh, half));
     return true;
 }
 
-/* Finds the sectors around the start of `collapsed`, laid out: one within a piece; on a line up to two, if it
- * leads on at the other end. False where the collapse is not allowed. */
-bool find_sectors(const Work &work, OpenMesh::HalfedgeHandle collapsed, std::vector<Around> &out)
+/* False where the vertex must stay: where lines end, cross, or bend too many ways to be laid out. */
+bool find_sectors(const Work &work, OpenMesh::VertexHandle hub, Neighbourhood &out)
 {
     const Mesh &mesh = work.mesh;
-    OpenMesh::HalfedgeHandle other;
-    int lines = 0;
-    out.clear();
-    for (OpenMesh::HalfedgeHandle half : mesh.voh_range(mesh.from_vertex_handle(collapsed))) {
-        lines += is_line(mesh, half);
-        if (is_line(mesh, half) && half != collapsed)
-            other = half;
+    OpenMesh::HalfedgeHandle starts[2];
+    size_t lines = 0;
+    for (OpenMesh::HalfedgeHandle half : mesh.voh_range(hub)) {
+        if (is_line(mesh, half)) {
+            if (lines == 2)
+                return false;
+            starts[lines++] = half;
+        } else if (lines == 0) {
+            starts[0] = half;
+        }
     }
-    if (lines != 0 && (lines != 2 || !is_line(mesh, collapsed)))
+    if (lines == 1)
         return false;
-    for (OpenMesh::HalfedgeHandle start : {collapsed, other}) {
+    out.count = 0;
+    for (OpenMesh::HalfedgeHandle start : starts) {
         if (!start.is_valid())
             continue;
-        out.emplace_back();
-        Around &around = out.back();
+        Around &around = out.sectors[out.count];
+        around.sector.closed = lines == 0;
         if (!collect(work, start, around))
             return false;
-        if (around.sector.face_count == 0) {
-            out.pop_back();
+        if (around.sector.face_count == 0)
             continue;
-        }
-        around.sector.closed = lines == 0;
-        around.target = start == collapsed ? 0 : around.sector.face_count;
+        out.count++;
         if (!tl_sector_lay_out(&around.sector))
             return false;
     }
-    return !out.empty();
+    return out.count > 0;
+}
+
+/* Sets the sectors' targets. False when the hub is on a line that does not lead to the target. */
+bool aim(Neighbourhood &around, int target)
+{
+    for (size_t i = 0; i < around.count; i++) {
+        Around &sector = around.sectors[i];
+        size_t last = sector.sector.face_count, spoke = 0, step = sector.sector.closed ? 1 : last;
+        while (spoke <= last && sector.ends[spoke] != target)
+            spoke += step;
+        if (spoke > last)
+            return false;
+        sector.target = spoke;
+    }
+    return true;
 }
 
 /* Orders weights of a face's corners as a sector does, the hub first, and back. */
@@ -148,12 +183,13 @@ Located locate(const Around &around, size_t n, size_t point, const Weights &weig
 }
 
 /* Applies a collapse to the faces: their shapes, corners and points. */
-void collapse(Work &work, const std::vector<Around> &sectors, int hub, int target)
+void collapse(Work &work, const Neighbourhood &neighbourhood, int target)
 {
     std::vector<Located> moved;
     Located of_hub{};
     double best = -INFINITY, inside;
-    for (const Around &around : sectors) {
+    for (size_t i = 0; i < neighbourhood.count; i++) {
+        const Around &around = neighbourhood.sectors[i];
         for (size_t n = 0; n < around.sector.face_count; n++) {
             Face &face = work.faces[static_cast<size_t>(around.faces[n])];
             for (size_t point : face.points)
@@ -161,7 +197,8 @@ void collapse(Work &work, const std::vector<Around> &sectors, int hub, int targe
                     locate(around, n, point, from_hub(work.weights[point], around.slots[n]), inside));
             face.points.clear();
         }
-        Located here = locate(around, 0, work.source[static_cast<size_t>(hub)], {1, 0, 0}, inside);
+        Located here =
+            locate(around, 0, work.source[static_cast<size_t>(neighbourhood.hub)], {1, 0, 0}, inside);
         if (inside > best) {
             best = inside;
             of_hub = here;
@@ -172,7 +209,8 @@ void collapse(Work &work, const std::vector<Around> &sectors, int hub, int targe
         work.weights[located.point] = located.weights;
         work.faces[static_cast<size_t>(located.face)].points.push_back(located.point);
     }
-    for (const Around &around : sectors)
+    for (size_t i = 0; i < neighbourhood.count; i++) {
+        const Around &around = neighbourhood.sectors[i];
         for (size_t n = 0; n < around.sector.face_count; n++) {
             if (!tl_sector_keeps(&around.sector, around.target, n))
                 continue;
@@ -184,6 +222,81 @@ void collapse(Work &work, const std::vector<Around> &sectors, int hub, int targe
             for (size_t k = 0; k < 3; k++)
                 std::memcpy(face.rest[(slot + k) % 3], rest[k], sizeof rest[k]);
         }
+    }
+}
+
+/* Sets a face's corner and its rest. */
+void set_corners(Face &face, const int corners[3], const double rest[3][2])
+{
+    for (size_t k = 0; k < 3; k++) {
+        face.corners[k] = corners[k];
+        std::memcpy(face.rest[k], rest[k], sizeof face.rest[k]);
+    }
+}
+
+/* Collects the quadrilateral around an edge within a piece, as a sector around the edge's first end. */
+bool collect_pair(const Work &work, OpenMesh::EdgeHandle edge, Around &around)
+{
+    const Mesh &mesh = work.mesh;
+    OpenMesh::HalfedgeHandle half = mesh.halfedge_handle(edge, 0);
+    if (is_line(mesh, half) || !mesh.is_flip_ok(edge))
+        return false;
+    int hub = mesh.from_vertex_handle(half).idx();
+    OpenMesh::FaceHandle faces[2] = {mesh.face_handle(mesh.opposite_halfedge_handle(half)),
+                                     mesh.face_handle(half)};
+    around.sector.face_count = 0;
+    around.sector.closed = false;
+    for (OpenMesh::FaceHandle face : faces)
+        add_face(work, face, hub, around);
+    return tl_sector_lay_out(&around.sector);
+}
+
+/* Flips an edge if that makes its triangles better. */
+bool flip(Work &work, OpenMesh::EdgeHandle edge)
+{
+    Around around;
+    if (!collect_pair(work, edge, around) || !tl_sector_should_flip(&around.sector))
+        return false;
+    Face *pair[2] = {&work.faces[static_cast<size_t>(around.faces[0])],
+                     &work.faces[static_cast<size_t>(around.faces[1])]};
+    const int hub = pair[0]->corners[around.slots[0]], *ends = around.ends.data();
+    const int corners[2][3] = {{hub, ends[0], ends[2]}, {ends[1], ends[2], ends[0]}};
+    work.mesh.flip(edge);
+    /* OpenMesh keeps both faces, in an order of its own: the one with the hub is found by its corners. */
+    bool swapped = true;
+    for (OpenMesh::VertexHandle v : work.mesh.fv_range(OpenMesh::FaceHandle(around.faces[0])))
+        swapped = swapped && v.idx() != hub;
+    std::vector<size_t> points[2];
+    for (size_t n = 0; n < 2; n++)
+        for (size_t point : pair[n]->points) {
+            double found[3];
+            size_t to = tl_sector_flipped_locate(
+                &around.sector, n, from_hub(work.weights[point], around.slots[n]).data(), found);
+            work.weights[point] = {found[0], found[1], found[2]};
+            points[to].push_back(point);
+        }
+    for (size_t to = 0; to < 2; to++) {
+        double rest[3][2];
+        tl_sector_flipped_rest(&around.sector, to, rest);
+        set_corners(*pair[swapped ? 1 - to : to], corners[to], rest);
+        pair[swapped ? 1 - to : to]->points = std::move(points[to]);
+    }
+    return true;
+}
+
+/* Flips edges until all are Delaunay's, or for a few passes. */
+void improve(Work &work)
+{
+    const int passes = 8;
+    bool flipped = true;
+    for (int pass = 0; flipped && pass < passes; pass++) {
+        flipped = false;
+        for (size_t e = 0; e < work.mesh.n_edges(); e++) {
+            OpenMesh::EdgeHandle edge(static_cast<int>(e));
+            if (!work.mesh.status(edge).deleted())
+                flipped = flip(work, edge) || flipped;
+        }
+    }
 }
 
 /* The decimater's only module: it judges collapses, and follows them. A line along a face that vanishes stays
@@ -198,13 +311,14 @@ template <class MeshT> class CageModule : public OpenMesh::Decimater::ModBaseT<M
 
     float collapse_priority(const CollapseInfo &info) override
     {
-        if (work_->held[at(info.v0)] && !work_->held[at(info.v1)])
+        if (work_->held[static_cast<size_t>(info.v0.idx())] &&
+            !work_->held[static_cast<size_t>(info.v1.idx())])
             return Base::ILLEGAL_COLLAPSE;
-        if (!find_sectors(*work_, info.v0v1, sectors_))
+        if (!look_at(info.v0) || !aim(around_, info.v1.idx()))
             return Base::ILLEGAL_COLLAPSE;
         double worst = 0;
-        for (const Around &around : sectors_) {
-            double length = tl_sector_judge(&around.sector, around.target);
+        for (size_t i = 0; i < around_.count; i++) {
+            double length = tl_sector_judge(&around_.sectors[i].sector, around_.sectors[i].target);
             if (!(length >= 0 && length <= work_->longest))
                 return Base::ILLEGAL_COLLAPSE;
             worst = std::max(worst, length);
@@ -212,17 +326,27 @@ template <class MeshT> class CageModule : public OpenMesh::Decimater::ModBaseT<M
         return static_cast<float>(worst);
     }
 
+    /* Of collapses that were judged, and so look at the vertex without fail. */
     void preprocess_collapse(const CollapseInfo &info) override
     {
-        find_sectors(*work_, info.v0v1, sectors_); /* allowed, or the decimater would not ask */
-        collapse(*work_, sectors_, info.v0.idx(), info.v1.idx());
+        if (look_at(info.v0) && aim(around_, info.v1.idx()))
+            collapse(*work_, around_, info.v1.idx());
+        around_.hub = -1;
     }
 
   private:
-    static size_t at(OpenMesh::VertexHandle vertex) { return static_cast<size_t>(vertex.idx()); }
+    /* The decimater judges all collapses of one vertex before those of the next. */
+    bool look_at(OpenMesh::VertexHandle hub)
+    {
+        if (around_.hub != hub.idx()) {
+            around_.usable = find_sectors(*work_, hub, around_);
+            around_.hub = hub.idx();
+        }
+        return around_.usable;
+    }
 
     Work *work_ = nullptr;
-    std::vector<Around> sectors_;
+    Neighbourhood around_;
 };
 
 OpenMesh::VertexHandle add_vertex(Work &work, const tl_cage_source &source, size_t vertex)
@@ -316,7 +440,15 @@ void decimate(Work &work, size_t used, size_t vertex_target)
     work.longest =
         LONGEST * std::sqrt(2 / std::sqrt(3.0) * area_of(work) / static_cast<double>(vertex_target));
     decimater.initialize();
-    decimater.decimate(used - vertex_target);
+    for (size_t left = used; left > vertex_target;) {
+        size_t next = std::max(vertex_target, static_cast<size_t>(STAGE * static_cast<double>(left)));
+        improve(work);
+        size_t collapses = left > next ? decimater.decimate(left - next) : 0;
+        if (collapses == 0)
+            break;
+        left -= collapses;
+    }
+    improve(work);
 }
 
 template <typename T> T *new_array(size_t count)

@@ -10,6 +10,8 @@
 /* Radians by which the angles of a closed sector may differ from a full turn. */
 #define CURVED 1.0
 
+static const double hub[2] = {0, 0}; /* as laid out */
+
 static double cross(const double a[2], const double b[2])
 {
     return a[0] * b[1] - a[1] * b[0];
@@ -21,9 +23,17 @@ static void subtract(const double a[2], const double b[2], double out[2])
     out[1] = a[1] - b[1];
 }
 
+static double length_of(const double a[2])
+{
+    return sqrt(a[0] * a[0] +
+                a[1] * a[1]); /* lengths of cloth: hypot's care for overflow takes half the time */
+}
+
 static double distance(const double a[2], const double b[2])
 {
-    return hypot(a[0] - b[0], a[1] - b[1]);
+    double side[2];
+    subtract(b, a, side);
+    return length_of(side);
 }
 
 /* Twice the area; positive when a, b, c run counter-clockwise. */
@@ -78,11 +88,11 @@ static void find_turn(struct tl_sector *sector)
         const double *spoke = sector->spokes[i];
         side_of(sector, i, 1, a);
         side_of(sector, i, 2, b);
-        double weight = cross(a, b) / (hypot(a[0], a[1]) * hypot(spoke[0], spoke[1]));
+        double weight = cross(a, b) / (length_of(a) * length_of(spoke));
         sum[0] += weight * (a[0] * spoke[0] + a[1] * spoke[1]);
         sum[1] += weight * cross(a, spoke);
     }
-    double length = hypot(sum[0], sum[1]);
+    double length = length_of(sum);
     sector->turn[0] = length > 0 ? sum[0] / length : 1;
     sector->turn[1] = length > 0 ? sum[1] / length : 0;
 }
@@ -109,11 +119,11 @@ bool tl_sector_lay_out(struct tl_sector *sector)
         double length = 0, side[2];
         if (has_after) {
             side_of(sector, i, 1, side);
-            length += hypot(side[0], side[1]);
+            length += length_of(side);
         }
         if (has_before) {
             side_of(sector, before, 2, side);
-            length += hypot(side[0], side[1]);
+            length += length_of(side);
         }
         length /= has_before + has_after;
         sector->spokes[i][0] = length * cos(angle);
@@ -139,7 +149,7 @@ static bool outline_stays(const struct tl_sector *sector, size_t target)
 
 double tl_sector_judge(const struct tl_sector *sector, size_t target)
 {
-    const double *to = sector->spokes[target], hub[2] = {0, 0};
+    const double *to = sector->spokes[target];
     double longest = 0, shape = BEST, shape_before = BEST;
     size_t kept = 0;
     for (size_t i = 0; i < sector->face_count; i++) {
@@ -157,10 +167,9 @@ double tl_sector_judge(const struct tl_sector *sector, size_t target)
     return longest * sqrt(BEST / shape);
 }
 
-void tl_sector_rest(const struct tl_sector *sector, size_t target, size_t face, double rest[3][2])
+/* A laid-out triangle in the faces' frames. */
+static void turn_back(const struct tl_sector *sector, const double *const corners[3], double rest[3][2])
 {
-    const double *corners[3] = {sector->spokes[target], sector->spokes[face],
-                                sector->spokes[spoke_after(sector, face)]};
     const double cosine = sector->turn[0], sine = sector->turn[1];
     for (int i = 0; i < 3; i++) { /* turned back */
         rest[i][0] = cosine * corners[i][0] + sine * corners[i][1];
@@ -170,24 +179,45 @@ void tl_sector_rest(const struct tl_sector *sector, size_t target, size_t face, 
     }
 }
 
+void tl_sector_rest(const struct tl_sector *sector, size_t target, size_t face, double rest[3][2])
+{
+    const double *const corners[3] = {sector->spokes[target], sector->spokes[face],
+                                      sector->spokes[spoke_after(sector, face)]};
+    turn_back(sector, corners, rest);
+}
+
+/* Where the point with these weights in face `from` is laid out. */
+static void lay_point(const struct tl_sector *sector, size_t from, const double weights[3], double point[2])
+{
+    const double *first = sector->spokes[from], *second = sector->spokes[spoke_after(sector, from)];
+    for (int c = 0; c < 2; c++)
+        point[c] = weights[1] * first[c] + weights[2] * second[c];
+}
+
+/* The weights of a point in a triangle; returns the smallest. */
+static double weigh(const double *const corners[3], const double point[2], double weights[3])
+{
+    const double *a = corners[0], *b = corners[1], *c = corners[2];
+    double area = area_of(a, b, c);
+    weights[0] = area_of(point, b, c) / area;
+    weights[1] = area_of(a, point, c) / area;
+    weights[2] = area_of(a, b, point) / area;
+    return fmin(weights[0], fmin(weights[1], weights[2]));
+}
+
 size_t tl_sector_locate(const struct tl_sector *sector, size_t target, size_t from, const double weights[3],
                         double found[3], double *inside)
 {
-    const double *to = sector->spokes[target], *first = sector->spokes[from],
-                 *second = sector->spokes[spoke_after(sector, from)];
-    double point[2];
+    double point[2], here[3];
     size_t best = 0;
-    for (int c = 0; c < 2; c++)
-        point[c] = weights[1] * first[c] + weights[2] * second[c];
+    lay_point(sector, from, weights, point);
     *inside = -INFINITY;
     for (size_t i = 0; i < sector->face_count; i++) {
         if (!tl_sector_keeps(sector, target, i))
             continue;
-        const double *a = sector->spokes[i], *b = sector->spokes[spoke_after(sector, i)];
-        double area = area_of(to, a, b);
-        double here[3] = {area_of(point, a, b) / area, area_of(to, point, b) / area,
-                          area_of(to, a, point) / area};
-        double least = fmin(here[0], fmin(here[1], here[2]));
+        const double *const corners[3] = {sector->spokes[target], sector->spokes[i],
+                                          sector->spokes[spoke_after(sector, i)]};
+        double least = weigh(corners, point, here);
         if (!(least > *inside))
             continue;
         *inside = least;
@@ -196,4 +226,57 @@ size_t tl_sector_locate(const struct tl_sector *sector, size_t target, size_t fr
             found[k] = here[k];
     }
     return best;
+}
+
+/* ---- Flips ---- */
+
+struct flipped {
+    const double *corners[3];
+};
+
+static struct flipped flipped_face(const struct tl_sector *sector, size_t face)
+{
+    const double(*s)[2] = sector->spokes;
+    return face == TL_FLIPPED_HUB ? (struct flipped){{hub, s[0], s[2]}}
+                                  : (struct flipped){{s[1], s[2], s[0]}};
+}
+
+/* The angle at a of the triangle a b c. */
+static double corner_angle(const double a[2], const double b[2], const double c[2])
+{
+    double side[2], other[2];
+    subtract(b, a, side);
+    subtract(c, a, other);
+    return atan2(cross(side, other), side[0] * other[0] + side[1] * other[1]);
+}
+
+bool tl_sector_should_flip(const struct tl_sector *sector)
+{
+    const double rounding = 1e-6;
+    const double(*s)[2] = sector->spokes;
+    for (size_t face = 0; face < 2; face++) {
+        const struct flipped flipped = flipped_face(sector, face);
+        if (!(shape_of(flipped.corners[0], flipped.corners[1], flipped.corners[2]) > NEEDLE))
+            return false;
+    }
+    return corner_angle(s[0], s[1], hub) + corner_angle(s[2], hub, s[1]) > M_PI + rounding;
+}
+
+void tl_sector_flipped_rest(const struct tl_sector *sector, size_t face, double rest[3][2])
+{
+    const struct flipped flipped = flipped_face(sector, face);
+    turn_back(sector, flipped.corners, rest);
+}
+
+size_t tl_sector_flipped_locate(const struct tl_sector *sector, size_t from, const double weights[3],
+                                double found[3])
+{
+    double point[2], other[3];
+    lay_point(sector, from, weights, point);
+    double inside = weigh(flipped_face(sector, TL_FLIPPED_HUB).corners, point, found);
+    if (weigh(flipped_face(sector, TL_FLIPPED_FAR).corners, point, other) <= inside)
+        return TL_FLIPPED_HUB;
+    for (int k = 0; k < 3; k++)
+        found[k] = other[k];
+    return TL_FLIPPED_FAR;
 }

@@ -55,6 +55,19 @@ void tl_sector_rest(const struct tl_sector *sector, size_t target, size_t face, 
 size_t tl_sector_locate(const struct tl_sector *sector, size_t target, size_t from, const double weights[3],
                         double found[3], double *inside);
 
+/* Flips, for open sectors of two faces, a quadrilateral: the hub, and the ends of spokes 0, 1 and 2. Flipped,
+ * its faces are TL_FLIPPED_HUB (hub, ends 0 and 2) and TL_FLIPPED_FAR (end 1, ends 2 and 0), corners in this
+ * order. */
+enum { TL_FLIPPED_HUB, TL_FLIPPED_FAR };
+
+/* Whether the flipped diagonal is Delaunay's: the smallest angle grows, and no triangle turns over. */
+bool tl_sector_should_flip(const struct tl_sector *sector);
+
+/* As tl_sector_rest and tl_sector_locate, for the flipped faces. */
+void tl_sector_flipped_rest(const struct tl_sector *sector, size_t face, double rest[3][2]);
+size_t tl_sector_flipped_locate(const struct tl_sector *sector, size_t from, const double weights[3],
+                                double found[3]);
+
 #ifdef __cplusplus
 }
 #endif

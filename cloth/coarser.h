@@ -1,0 +1,31 @@
+/* A coarser cloth of the same garment, on which settling begins: long waves, which a fine mesh takes
+ * thousands of substeps to pass on, travel far over few triangles. The cage (assets/halfmesh) has the rest
+ * lengths, the grain, the pins and the weight of the cloth; its vertices are some of the cloth's.
+ *
+ * Carrying: every vertex has a place on the cage and an offset from it, both taken where the coarser cloth
+ * was made. Where the cage has moved to, the offset is turned as the cage's corners have turned around that
+ * place (the best rotation of each corner's neighbours), so that folds finer than the cage are carried along
+ * and not sheared. A smooth surface through the cage's corners (Phong tessellation) in place of its triangles
+ * was tried: where folds are sharp it bulges, which doubled the strain after carrying and made crossings.
+ *
+ * Metres. Threads: one at a time per cloth; carrying uses all. */
+#ifndef TOILE_CLOTH_COARSER_H
+#define TOILE_CLOTH_COARSER_H
+
+#include "cloth/state.h"
+
+typedef struct tl_coarser tl_coarser;
+
+/* Makes a coarser cloth at the cloth's present positions, at rest, with all its params. NULL when the cloth
+ * is too small to gain by one, when it cannot be made much coarser, or has seams that are open. */
+tl_coarser *tl_coarser_create(const tl_cloth *cloth);
+void tl_coarser_destroy(tl_coarser **coarser);
+
+/* The coarser cloth, to be settled. Lifetime: until tl_coarser_destroy. */
+tl_cloth *tl_coarser_cloth(tl_coarser *coarser);
+
+/* Moves the free vertices of the cloth that the coarser one was made of to where that has come to; they are
+ * at rest then. Forgets contacts. */
+void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth);
+
+#endif
