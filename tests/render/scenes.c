@@ -299,21 +299,21 @@ void test_scene_open_lamplit(struct test_scene *scene, struct test_shape shape, 
     test_scene_add(scene, shape);
 }
 
-/* `point` lies on the triangle; the spot's own is where rays start, on the smooth surface. */
-static vec3s light_of(const struct tl_shading_point *spot, vec3s point, const struct tl_lamp *lamp)
+/* `point` lies on the triangle; that of `shaded` is the origin of its rays, on the smooth surface. */
+static vec3s light_of(const struct tl_shading_point *shaded, vec3s point, const struct tl_lamp *lamp)
 {
-    const struct tl_brdf brdf = tl_brdf_of(spot->material, spot->f0, spot->glossiness);
-    const struct tl_brdf_frame frame = tl_brdf_frame_make(spot->normal, spot->tangent, spot->handedness,
-                                                          spot->side * spot->material->gloss.rotation);
+    const struct tl_brdf brdf = tl_brdf_of(shaded->material, shaded->f0, shaded->glossiness);
+    const struct tl_brdf_frame frame = tl_brdf_frame_make(shaded->normal, shaded->tangent, shaded->handedness,
+                                                          shaded->side * shaded->material->gloss.rotation);
     bool is_point = lamp->kind == TL_LAMP_POINT;
-    vec3s way = is_point ? glms_vec3_sub(lamp->position, point) : lamp->direction;
-    float fall = is_point ? 1 / glms_vec3_norm2(way) : 1;
-    vec3s l = glms_vec3_normalize(way), gloss = tl_brdf_gloss(&brdf, &frame, l, spot->viewer), sent;
-    float cosine = fmaxf(glms_vec3_dot(spot->normal, l), 0);
-    float ramp = fminf(fmaxf(32 * glms_vec3_dot(spot->horizon, l), 0), 1);
+    vec3s to_lamp = is_point ? glms_vec3_sub(lamp->position, point) : lamp->direction;
+    float fall = is_point ? 1 / glms_vec3_norm2(to_lamp) : 1;
+    vec3s l = glms_vec3_normalize(to_lamp), gloss = tl_brdf_gloss(&brdf, &frame, l, shaded->viewer), sent;
+    float cosine = fmaxf(glms_vec3_dot(shaded->normal, l), 0);
+    float ramp = fminf(fmaxf(32 * glms_vec3_dot(shaded->horizon, l), 0), 1);
     for (int c = 0; c < 3; c++)
         sent.raw[c] = ramp * fall * lamp->irradiance.raw[c] *
-                      (spot->albedo.raw[c] * cosine / (float)M_PI + gloss.raw[c]);
+                      (shaded->albedo.raw[c] * cosine / (float)M_PI + gloss.raw[c]);
     return sent;
 }
 
@@ -330,14 +330,14 @@ tl_image test_scene_evaluate(const struct test_scene *scene)
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x++) {
             struct tl_ray_differential ray = tl_camera_ray(&view, image->width, image->height, x, y);
-            struct tl_shading_point spot = tl_shading_point_find(&traced, &ray);
+            struct tl_shading_point shaded = tl_shading_point_find(&traced, &ray);
             struct tl_trace_hit hit =
                 tl_trace_nearest(traced.trace, ray.origin, ray.direction, ray.from_m, ray.to_m);
             vec3s point = glms_vec3_add(ray.origin, glms_vec3_scale(ray.direction, hit.distance_m));
             float *pixel = tl_image_floats(&out) + 4 * ((size_t)y * (size_t)image->width + (size_t)x);
-            pixel[3] = spot.cover;
-            for (size_t i = 0; spot.cover > 0 && i < scene->frame.lamp_count; i++) {
-                vec3s light = light_of(&spot, point, &scene->frame.lamps[i]);
+            pixel[3] = shaded.cover;
+            for (size_t i = 0; shaded.cover > 0 && i < scene->frame.lamp_count; i++) {
+                vec3s light = light_of(&shaded, point, &scene->frame.lamps[i]);
                 for (int c = 0; c < 3; c++)
                     pixel[c] += light.raw[c];
             }

@@ -193,9 +193,9 @@ static void a_mirror_shows_the_scene(void **state)
     scene.settings.maps.size = 64;
     vec3s to_ball = glms_vec3_normalize(centre), to_eye = glms_vec3_normalize((vec3s){{1, 0.2f, 0.1f}});
     vec3s normal = glms_vec3_normalize(glms_vec3_add(to_ball, to_eye));
-    vec3s spot = glms_vec3_scale(normal, 0.05f);
-    scene.frame.camera.eye = glms_vec3_add(spot, to_eye);
-    scene.frame.camera.target = spot;
+    vec3s target = glms_vec3_scale(normal, 0.05f);
+    scene.frame.camera.eye = glms_vec3_add(target, to_eye);
+    scene.frame.camera.target = target;
     scene.frame.camera.fov_y = 0.001f;
     tl_image image = test_scene_draw(&scene, device->renderer);
     vec3s expected = seen(&truth, to_ball);

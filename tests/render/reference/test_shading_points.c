@@ -140,23 +140,23 @@ struct tally {
     int samples, cover, point, normal, diffuse, specular, gloss;
 };
 
-static void compare(struct tally *tally, const struct tl_shading_point *spot, const struct layers *layers,
+static void compare(struct tally *tally, const struct tl_shading_point *found, const struct layers *layers,
                     int i)
 {
     tally->samples++;
-    if (fabsf(spot->cover - layers->point[i][3]) > 1e-4f) {
+    if (fabsf(found->cover - layers->point[i][3]) > 1e-4f) {
         tally->cover++;
         return;
     }
-    if (!(spot->cover > 0))
+    if (!(found->cover > 0))
         return;
-    tally->point += largest_difference(spot->point.raw, layers->point[i]) > 2e-4f;
-    tally->normal += largest_difference(spot->normal.raw, layers->normal[i]) > 0.03f;
-    tally->gloss += fabsf(1 / spot->exponent - layers->normal[i][3]) > 0.01f;
-    tally->diffuse += largest_difference(spot->diffuse.raw, layers->diffuse[i]) > 0.01f;
+    tally->point += largest_difference(found->point.raw, layers->point[i]) > 2e-4f;
+    tally->normal += largest_difference(found->normal.raw, layers->normal[i]) > 0.03f;
+    tally->gloss += fabsf(1 / found->exponent - layers->normal[i][3]) > 0.01f;
+    tally->diffuse += largest_difference(found->diffuse.raw, layers->diffuse[i]) > 0.01f;
     /* At grazing angles Schlick's term magnifies what the normals differ by. */
-    bool grazing = glms_vec3_dot(spot->normal, spot->axis) < 0.5f;
-    tally->specular += !grazing && largest_difference(spot->glossy.raw, layers->specular[i]) > 0.01f;
+    bool grazing = glms_vec3_dot(found->normal, found->axis) < 0.5f;
+    tally->specular += !grazing && largest_difference(found->glossy.raw, layers->specular[i]) > 0.01f;
 }
 
 /* Edges may fall to either side, and software GL chooses mip levels and mixes them roughly: one sample in a
@@ -215,8 +215,8 @@ static void compare_all(struct test_device *device, const struct maps *maps, con
     struct tl_view view = tl_view_make(&frame.camera, WIDTH, HEIGHT);
     struct tally tally = {0};
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
-        struct tl_shading_point spot = look(&scene, &view, i % WIDTH, i / WIDTH);
-        compare(&tally, &spot, layers, i);
+        struct tl_shading_point found = look(&scene, &view, i % WIDTH, i / WIDTH);
+        compare(&tally, &found, layers, i);
     }
     check(&tally);
 
