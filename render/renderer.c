@@ -342,15 +342,16 @@ static bool check_envmap_size(const tl_frame *frame, const struct tl_render_sett
 }
 
 /* Releases resources that the scene does not need any more; jobs make them again on demand. A view other than
- * light releases nothing that light needs, so that switching back is quick. The height of bumps follows the
- * options even where there are no detail maps. */
+ * light releases nothing that light needs, and ratios at vertices release nothing that samples need, so that
+ * switching back, as at the end of a motion, is quick. The height of bumps follows the options even where
+ * there are no detail maps. */
 static void release_unused(struct tl_resources *resources, const struct tl_detail_params *detail)
 {
     tl_bits facts = resources->facts;
-    if (!(facts & TL_BIT(TL_SCENE_DETAIL)))
+    if (!(facts & (TL_BIT(TL_SCENE_DETAIL) | TL_BIT(TL_SCENE_RATIOS))))
         tl_detail_maps_release(&resources->detail);
     resources->detail.params = *detail;
-    if (facts & TL_BIT(TL_SCENE_INSPECT))
+    if (facts & (TL_BIT(TL_SCENE_INSPECT) | TL_BIT(TL_SCENE_RATIOS)))
         return;
     if (!(facts & TL_BIT(TL_SCENE_LAMPS))) {
         tl_local_release(&resources->local);

@@ -9,6 +9,7 @@
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_memory.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/rhythm.h"
 #include "app/view/review_begin.h"
 #include "app/view/review_input.h"
 #include "app/view/review_panel.h"
@@ -49,17 +50,14 @@ static bool is_minimised(const struct tl_review *review)
     return width < 1 || height < 1;
 }
 
-/* In motion the panel's figures need not be new in every frame, unless the pointer or the keyboard is at it.
- */
 static bool panel_is_due(const struct tl_review *review)
 {
-    const double every_s = 0.25;
     int width, height;
     tl_review_size(review, &width, &height);
     bool is_used = review->drag == TL_DRAG_WIPE || review->editing || tl_panel_wants_pointer(review->panel) ||
                    tl_panel_wants_keys(review->panel) ||
                    (review->drag == TL_DRAG_NONE && review->pointer_x >= (float)width);
-    return is_used || !review->is_budgeted || tl_clock_s() >= review->times.panel_s + every_s;
+    return tl_panel_is_due(tl_clock_s(), review->times.panel_s, is_used, review->is_budgeted);
 }
 
 /* The work between two checks for events. */

@@ -4,6 +4,7 @@
 #include "app/view/review/review_keep.h"
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_wipe.h"
+#include "app/view/review/rhythm.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -135,9 +136,8 @@ static void step(struct tl_review *review)
     tl_review_hand_step(review);
     if (!tl_session_advance(review->session, &error))
         tl_review_report_error(review, &error);
-    const double newest = 0.1; /* weight in a running mean */
-    double frame_s = 1 / review->good.cloth.frame_rate, late_s = fmax(now_s - review->next_step_s, 0);
-    review->play_speed += newest * (frame_s / (frame_s + late_s) - review->play_speed);
+    double frame_s = 1 / review->good.cloth.frame_rate;
+    review->play_speed = tl_play_speed(review->play_speed, frame_s, now_s - review->next_step_s);
     review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
     review->times.cloth = 1e3 * (tl_clock_s() - now_s);
 }

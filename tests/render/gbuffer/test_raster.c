@@ -469,6 +469,46 @@ static void test_corners_that_are_not_finite(void **state)
     }
 }
 
+/* Where GL runs on the CPU the raster draws the ids and GL draws nothing; GL does what the raster cannot do,
+ * holes. */
+static void test_who_draws(void **state)
+{
+    struct oracle *oracle = *state;
+    const struct test_device *device = oracle->device;
+    if (!tl_gpu_is_software(device->gpu)) {
+        printf("skipped: %s draws all ids\n", tl_gpu_name(device->gpu));
+        skip();
+    }
+    struct soup soup;
+    soup_create(&soup, 100, 3);
+    for (int masked = 0; masked < 2; masked++) {
+        tl_error error = {0};
+        const tl_surface *drawn = &soup.surface;
+        const struct tl_view view = look((vec3s){{0, 0, 4}}, (vec3s){{0, 0, 0}}, 0.02f, SIDE, SIDE);
+        tl_surfaces *surfaces = tl_surfaces_create(device->gpu);
+        struct tl_triangle_ranges ranges = {0};
+        struct tl_id_buffer ids = {0};
+        soup.materials[1].alpha_cutoff = masked ? 0.5f : 0;
+        assert_ok(tl_surfaces_update(surfaces, &drawn, 1, &error), error);
+        tl_triangle_ranges_make(&drawn, 1, &ranges);
+        const struct tl_gbuffer_request request = {.view = &view,
+                                                   .width = SIDE,
+                                                   .height = SIDE,
+                                                   .surfaces = surfaces,
+                                                   .drawn = &drawn,
+                                                   .surface_count = 1,
+                                                   .only_triangle = true};
+        assert_ok(tl_ids_draw(&ids, device->gpu, &request, &ranges, &error), error);
+        assert_true(ids.covered > 100);
+        assert_int_equal(tl_gbuffer_bytes(&ids.drawn) > 0, masked);
+        assert_int_equal(tl_raster_bytes(&ids.raster) > 0, !masked);
+        tl_ids_release(&ids);
+        tl_triangle_ranges_release(&ranges);
+        tl_surfaces_destroy(&surfaces);
+    }
+    soup_release(&soup);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -477,6 +517,7 @@ int main(void)
         cmocka_unit_test(test_tiles_cover_once), cmocka_unit_test(test_on_pixel_centres),
         cmocka_unit_test(test_equal_depths),     cmocka_unit_test(test_dressed_figure),
         cmocka_unit_test(test_threads),          cmocka_unit_test(test_corners_that_are_not_finite),
+        cmocka_unit_test(test_who_draws),
     };
     return cmocka_run_group_tests(tests, open_oracle, close_oracle);
 }

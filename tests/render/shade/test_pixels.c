@@ -504,6 +504,61 @@ static void test_scenes_that_need_samples(void **state)
     close_scene(&drawn);
 }
 
+/* ---- Between motion and rest ---- */
+
+/* How a job of the last frame came out. */
+static enum tl_job_action action_of(const struct test_device *device, const char *job)
+{
+    const tl_plan *plan = tl_renderer_last_plan(device->renderer);
+    for (int i = 0; i < plan->count; i++)
+        if (strcmp(plan->rows[i].name, job) == 0)
+            return plan->rows[i].action;
+    fail_msg("no job %s", job);
+    return TL_JOB_DROP;
+}
+
+/* Bytes of a resource; 0: it holds nothing. */
+static size_t bytes_of(const struct test_device *device, const char *name)
+{
+    struct tl_resource_memory rows[TL_RESOURCES_MAX];
+    size_t count = tl_renderer_resources(device->renderer, rows);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(rows[i].name, name) == 0)
+            return rows[i].bytes;
+    return 0;
+}
+
+/* What samples need is still there after frames of ratios at vertices: maps, programs and targets. */
+static void test_samples_after_ratios(void **state)
+{
+    const struct test_device *device = *state;
+    struct drawn_scene drawn;
+    open_scene(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
+    drawn.plain.settings.light.rounds = 1;
+    edit(&drawn, be_woven);
+    cloth_of(&drawn)->openness = 0.4f;
+    test_scene_refresh(&drawn.scene);
+    struct tl_render_settings *settings = &drawn.scene.settings;
+    settings->detail.shadow = TL_DETAIL_SHADOW_NONE;
+    tl_image first = draw(device, &drawn, TL_RATIO_AT_SAMPLES);
+    const size_t detail = bytes_of(device, "detail maps"),
+                 layers = bytes_of(device, "what is seen through cloth");
+    assert_true(detail > 0 && layers > 0);
+    assert_int_equal(action_of(device, "detail"), TL_JOB_RUN);
+    settings->light.ratio_at = TL_RATIO_AT_VERTICES;
+    tl_image second = test_scene_draw(&drawn.scene, device->renderer);
+    assert_int_equal(bytes_of(device, "detail maps"), detail);
+    assert_int_equal(bytes_of(device, "what is seen through cloth"), layers);
+    settings->light.ratio_at = TL_RATIO_AT_SAMPLES;
+    tl_image third = test_scene_draw(&drawn.scene, device->renderer);
+    assert_int_equal(action_of(device, "detail"), TL_JOB_REUSE);
+    assert_near(cover_difference(&first, &third), 0, 0);
+    tl_image_release(&first);
+    tl_image_release(&second);
+    tl_image_release(&third);
+    close_scene(&drawn);
+}
+
 /* ---- Fewer samples ---- */
 
 /* FLIP of the shapes' pixels against one sample a pixel. `image` is released. */
@@ -569,8 +624,8 @@ static void test_fewer_samples(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pictures), cmocka_unit_test(test_threads),
-                                       cmocka_unit_test(test_fewer_samples),
-                                       cmocka_unit_test(test_scenes_that_need_samples)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pictures), cmocka_unit_test(test_threads), cmocka_unit_test(test_fewer_samples),
+        cmocka_unit_test(test_samples_after_ratios), cmocka_unit_test(test_scenes_that_need_samples)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
