@@ -251,29 +251,45 @@ static struct tl_rigid turn_at(const tl_coarser *coarser, size_t vertex, const v
     return tl_rigid_fit(from, to, count);
 }
 
-void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
+/* Moves the free vertices to their places on the cage, and with `turns` by their turned offsets from there.
+ */
+static void place(const tl_coarser *coarser, const vec3d *places, const struct tl_rigid *turns,
+                  struct tl_particles *particles)
 {
     const struct tl_cage *cage = &coarser->cage;
-    struct tl_particles *particles = &cloth->particles;
-    vec3d *places = places_of(coarser);
-    struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cage->vertex_count; i++)
-        turns[i] = turn_at(coarser, i, places);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < particles->count; i++) {
         const struct tl_cage_point *point = &cage->points[i];
         if (point->triangle == TL_NONE || !(particles->w[i] > 0))
             continue;
         vec3d x = point_of(coarser, point, places);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; turns && k < 3; k++) {
             const struct tl_rigid *turn = &turns[cage->triangles[point->triangle][k]];
             x = vec3d_muladd(x, tl_rigid_turn(turn, coarser->offsets[i]), point->weights[k]);
         }
         particles->x[i] = x;
     }
+}
+
+void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
+{
+    const struct tl_cage *cage = &coarser->cage;
+    struct tl_particles *particles = &cloth->particles;
+    vec3d *places = places_of(coarser), *plain = TL_NEW_ARRAY(vec3d, particles->count);
+    struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < cage->vertex_count; i++)
+        turns[i] = turn_at(coarser, i, places);
+    place(coarser, places, NULL, particles);
+    const struct tl_cloth_report without = tl_cloth_measure(cloth, NULL);
+    memcpy(plain, particles->x, particles->count * sizeof *plain);
+    place(coarser, places, turns, particles);
+    const struct tl_cloth_report with = tl_cloth_measure(cloth, NULL);
+    if (with.rms_strain > without.rms_strain || with.crossing_count > without.crossing_count)
+        memcpy(particles->x, plain, particles->count * sizeof *plain);
     memset(particles->v, 0, particles->count * sizeof *particles->v);
     tl_cloth_set_constants(cloth);
     free(turns);
+    free(plain);
     free(places);
 }
