@@ -175,8 +175,7 @@ static struct tl_budget budget_of(const tl_quality_governor *governor, const str
     return budget;
 }
 
-/* Prepares the regions of one level in each frame, the cheapest level first, until the environment changes.
- */
+/* Prepares the regions of one level in each frame, the cheapest level first, once the environment stays. */
 static void prepare_regions(tl_quality_governor *governor, tl_renderer *renderer, const tl_frame *frame,
                             const struct tl_render_settings *full)
 {
@@ -193,6 +192,19 @@ static void prepare_regions(tl_quality_governor *governor, tl_renderer *renderer
         governor->is_preparing = true;
         return;
     }
+}
+
+bool tl_quality_governor_prepare(tl_quality_governor *governor, tl_renderer *renderer, const tl_frame *frame,
+                                 const struct tl_settings *settings)
+{
+    const struct tl_render_settings full = tl_settings_render(settings);
+    if (governor->budget_ms <= 0)
+        return false;
+    governor->level_counts[TL_CONTROL_REGIONS] = tl_quality_count(TL_CONTROL_REGIONS, &full);
+    prepare_regions(governor, renderer, frame, &full);
+    bool has_prepared = governor->is_preparing;
+    governor->is_preparing = false;
+    return has_prepared;
 }
 
 /* ---- The choice ---- */

@@ -42,6 +42,12 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
                                                     const tl_frame *frame,
                                                     const struct tl_settings *settings);
 
+/* Prepares the regions of one more level that a coming motion may ask for; for moments in which nobody waits,
+ * so that the first frames of the motion need not. `frame` and `settings` are those of the image at rest.
+ * Returns false when all are prepared, there is no budget, or the environment has only just changed. */
+bool tl_quality_governor_prepare(tl_quality_governor *governor, tl_renderer *renderer, const tl_frame *frame,
+                                 const struct tl_settings *settings);
+
 /* Returns the levels of an image at rest, for which nobody waits but the next gesture: full quality; with
  * ratios at vertices where a frame would hold that gesture up for longer than TL_REST_MS. */
 #define TL_REST_MS 300

@@ -283,6 +283,13 @@ bool tl_review_is_at_rest(const struct tl_review *review)
            (!review->wipe.renderer || tl_renderer_is_at_rest(review->wipe.renderer));
 }
 
+/* While nothing is to be drawn, what motion will need is made. */
+static void prepare_motion(struct tl_review *review)
+{
+    const tl_frame present = tl_session_frame(review->session);
+    tl_quality_governor_prepare(review->governor, review->renderer, &present, &review->good);
+}
+
 bool tl_review_update_image(struct tl_review *review, tl_error *error)
 {
     bool waits =
@@ -291,5 +298,7 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error)
     bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
+    if (!is_due && !improves && tl_review_is_sharp(review) && !review->playing && !review->loader)
+        prepare_motion(review);
     return waits || !is_due || redraw(review, tl_review_is_moving(review) ? TIME_BUDGET : TIME_REST, error);
 }

@@ -296,16 +296,47 @@ static void steps_tell_what_a_level_is_worth(void **state)
     tl_quality_governor_destroy(&governor);
 }
 
+/* What motion may ask for is there before it begins, so that no frame of it prepares regions: one level a
+ * call, once the environment stays, and nothing without a budget. */
+static void regions_are_prepared_at_rest(void **state)
+{
+    struct device *device = *state;
+    tl_error error = {0};
+    tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
+    assert_non_null(fresh);
+    struct tl_settings settings = small_settings();
+    settings.image.width = settings.image.height = 64;
+    settings.light.regions = 192;
+    const struct tl_render_settings full = tl_settings_render(&settings);
+    const tl_frame frame = frame_of(device);
+    assert_ok(tl_renderer_draw(fresh, &frame, &full, &error), error);
+    tl_quality_governor *none = tl_quality_governor_create(0);
+    for (int i = 0; i < 3; i++)
+        assert_false(tl_quality_governor_prepare(none, fresh, &frame, &settings));
+    tl_quality_governor_destroy(&none);
+    tl_quality_governor *governor = tl_quality_governor_create(50);
+    assert_false(tl_quality_governor_prepare(governor, fresh, &frame, &settings)); /* may be one of many */
+    const int levels = tl_quality_count(TL_CONTROL_REGIONS, &full);
+    for (int level = 1; level < levels; level++) {
+        struct tl_quality of = {.of[TL_CONTROL_REGIONS] = (uint8_t)(levels - level)};
+        const struct tl_render_settings then = tl_quality_at(&of, &full);
+        assert_false(tl_renderer_has_regions(fresh, &then));
+        assert_true(tl_quality_governor_prepare(governor, fresh, &frame, &settings));
+        assert_true(tl_renderer_has_regions(fresh, &then));
+    }
+    assert_int_equal(levels, 4);
+    assert_false(tl_quality_governor_prepare(governor, fresh, &frame, &settings));
+    tl_quality_governor_destroy(&governor);
+    tl_renderer_destroy(&fresh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(level_0_is_what_was_asked_for),
-        cmocka_unit_test(levels_change_their_own_setting),
-        cmocka_unit_test(levels_end_somewhere),
-        cmocka_unit_test(what_is_asked_for_errs_least),
-        cmocka_unit_test(budgets_are_kept_to),
-        cmocka_unit_test(rest_gives_everything_back),
-        cmocka_unit_test(steps_tell_what_a_level_is_worth),
+        cmocka_unit_test(level_0_is_what_was_asked_for), cmocka_unit_test(levels_change_their_own_setting),
+        cmocka_unit_test(levels_end_somewhere),          cmocka_unit_test(what_is_asked_for_errs_least),
+        cmocka_unit_test(budgets_are_kept_to),           cmocka_unit_test(rest_gives_everything_back),
+        cmocka_unit_test(regions_are_prepared_at_rest),  cmocka_unit_test(steps_tell_what_a_level_is_worth),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
