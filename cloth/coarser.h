@@ -22,7 +22,7 @@ typedef struct tl_coarser tl_coarser;
 /* Makes a coarser cloth at the cloth's present positions, at rest, with all its params. NULL when the cloth
  * is too small to gain by one, when it cannot be made much coarser, or has seams that are open. */
 tl_coarser *tl_coarser_create(const tl_cloth *cloth);
-void tl_coarser_destroy(tl_coarser **coarser);
+void tl_coarser_destroy(tl_coarser **handle);
 
 /* The coarser cloth, to be settled. Lifetime: until tl_coarser_destroy. */
 tl_cloth *tl_coarser_cloth(tl_coarser *coarser);

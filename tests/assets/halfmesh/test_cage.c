@@ -271,7 +271,7 @@ static void test_held(void **state)
     struct cloth cloth = make_sheet(20, 20, 1, 1);
     cloth.held[10 * 21 + 10] = true;
     for (size_t i = 0; i < 21; i++)
-        cloth.held[20 * 21 + i] = true;
+        cloth.held[(size_t)20 * 21 + i] = true;
     struct tl_cage cage = cage_of(&cloth, 40);
     size_t held = 0;
     bool middle = false;
