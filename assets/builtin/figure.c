@@ -21,7 +21,7 @@ static size_t node_index(int x, int y, int z)
 
 static void node_position(double x, double y, double z, double position[3])
 {
-    position[0] = (x - CELLS_X / 2) * CELL_M;
+    position[0] = (x - 0.5 * CELLS_X) * CELL_M;
     position[1] = ORIGIN_Y + y * CELL_M;
     position[2] = ORIGIN_Z + z * CELL_M;
 }

@@ -122,7 +122,8 @@ bool tl_body_measure(const char *name, const tl_mesh *mesh, struct tl_body_dista
                        "%s: has no legs that part below the waist, so no trousers are cut for it", name);
     out->crotch_y = split_height(mesh, y + step, y);
     out->knee = measure(mesh, 0.55 * out->crotch_y, LEG, 0, NULL);
-    for (double part = 0.3; part < 0.55; part += 0.025)
+    double part = 0.3; /* of the crotch's height */
+    for (int i = 0; i < 10; i++, part += 0.025)
         out->calf = fmax(out->calf, measure(mesh, part * out->crotch_y, LEG, 0, NULL));
     return true;
 }

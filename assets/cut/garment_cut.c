@@ -305,8 +305,8 @@ static double form_distance(const void *context, const double point[3])
 
 static struct tl_cut_plan make_plan(const struct cut_kind *kind, const struct tl_body *body)
 {
-    struct tl_cut_plan plan = kind->for_body ? kind->for_body(body) : kind->for_form();
-    plan.distance = kind->for_body ? body->distance : (struct tl_body_distance){form_distance, NULL};
+    struct tl_cut_plan plan = body ? kind->for_body(body) : kind->for_form();
+    plan.distance = body ? body->distance : (struct tl_body_distance){form_distance, NULL};
     return plan;
 }
 

@@ -127,7 +127,7 @@ static void mark_other_sides(struct tl_id_buffer *buffer, const struct tl_triang
             const struct tl_mesh_part *part = &surface->parts[p];
             if (!tl_material_transmits(&surface->materials[part->material]))
                 continue;
-            uint8_t *marks = buffer->marks + 2 * (ranges->first[s] + part->first_index / 3);
+            uint8_t *marks = buffer->marks + 2 * ((size_t)ranges->first[s] + part->first_index / 3);
             for (size_t t = 0; t < part->index_count / 3; t++)
                 marks[2 * t] = marks[2 * t + 1] = marks[2 * t] | marks[2 * t + 1];
         }

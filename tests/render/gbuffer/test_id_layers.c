@@ -60,7 +60,7 @@ static struct seen look(const struct soup *soups, size_t soup_count, const struc
     vec3s direction = view->forward;
     direction = glms_vec3_add(direction, glms_vec3_scale(view->right, (float)(2 * x / WIDTH - 1)));
     direction = glms_vec3_add(direction, glms_vec3_scale(view->up, (float)(2 * y / HEIGHT - 1)));
-    struct hit hits[LAYERS];
+    struct hit hits[LAYERS] = {{0}};
     int count = 0;
     uint32_t all = 0;
     for (size_t i = 0; i < soup_count; i++)
@@ -70,7 +70,7 @@ static struct seen look(const struct soup *soups, size_t soup_count, const struc
         const tl_surface *surface = surface_at(soups, soup_count, &own);
         vec3s corners[3];
         for (size_t k = 0; k < 3; k++)
-            corners[k] = surface->positions[surface->indices[3 * own + k]];
+            corners[k] = surface->positions[surface->indices[3 * (size_t)own + k]];
         double distance, u, v;
         if (!soup_intersect(corners, view->eye, direction, &distance, &u, &v) || u < 0 || v < 0 ||
             u + v > 1 || distance < (double)view->near_m || distance > (double)view->far_m)
@@ -152,7 +152,8 @@ static size_t check_view(const struct soup *soups, size_t count, vec3s eye, floa
     check_counts(ids);
 #pragma omp parallel for schedule(dynamic) reduction(+ : doubtful, wrong, layers[:LAYERS])
     for (size_t i = 0; i < PIXELS; i++) {
-        const double x = (double)(i % WIDTH) + 0.5, y = (double)(i / WIDTH) + 0.5;
+        const size_t column = i % WIDTH, row = i / WIDTH;
+        const double x = (double)column + 0.5, y = (double)row + 0.5;
         const struct seen seen = look(soups, count, &view, x, y);
         bool is_clear = true;
         for (int k = 0; k < 8; k++) {

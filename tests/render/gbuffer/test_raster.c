@@ -450,7 +450,7 @@ static void test_corners_that_are_not_finite(void **state)
         make_tiles(&soup, 4, 0, 16, 3);
         struct picture picture = in_pixels(&soup);
         soup.positions[7].raw[k % 3] = bad[k];
-        uint32_t ids[SIDE * SIDE];
+        uint32_t ids[SIDE * SIDE] = {0};
         struct tl_raster raster = {0};
         const struct tl_raster_request request = {.surfaces = picture.surfaces,
                                                   .surface_count = 1,

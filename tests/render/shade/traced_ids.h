@@ -77,9 +77,10 @@ static inline void traced_ids_make(const struct traced_scene *scene, struct tl_i
             const tl_material *material = traced_material(scene, &hit);
             uint32_t id = scene->ranges->first[hit.surface] + hit.triangle + 1;
             (k == 0 ? ids->ids : ids->layers[k - 1])[i] = id | (hit.back ? TL_SAMPLE_BACK : 0);
-            ids->marks[2 * (id - 1) + (hit.back ? 1 : 0)] = 1;
+            uint8_t *marks = ids->marks + 2 * (size_t)(id - 1); /* front, back */
+            marks[hit.back] = 1;
             if (tl_material_transmits(material))
-                ids->marks[2 * (id - 1)] = ids->marks[2 * (id - 1) + 1] = 1;
+                marks[0] = marks[1] = 1;
             ids->covered++;
             ids->layer_count = k + 1 > ids->layer_count ? k + 1 : ids->layer_count;
             if (k > ids->depths[i / width])
