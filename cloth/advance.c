@@ -393,8 +393,9 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
 /* Particles deeper below the ground than this are being lifted out of it; less is rounding. */
 #define BURIED_M 1e-6
 
-/* Whether anything may add energy: contact that moves or pushes out, a pull, seams, contact with itself,
- * wind. */
+/* Whether anything may add energy: contact that moves or pushes out, a pull, seams, untangling, wind. Contact
+ * of the cloth with itself only takes speed away, but for depth that it removes at a bounded speed: less than
+ * the tolerance of check_energy. */
 static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
 {
     const float *wind = cloth->params.wind;
@@ -403,8 +404,9 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
     bool ground = collider && tl_collider_has_ground(collider);
     for (size_t i = 0; i < cloth->particles.count && collider && !pushed; i++)
         pushed = cloth->contacts.allowed_depth[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
-    return pushed || cloth->grabbed || cloth->seams.pair_count > 0 || cloth->params.self_contact ||
-           wind[0] != 0 || wind[1] != 0 || wind[2] != 0;
+    return pushed || cloth->grabbed || cloth->seams.pair_count > 0 ||
+           (cloth->params.self_contact && !cloth->apart.clean) || wind[0] != 0 || wind[1] != 0 ||
+           wind[2] != 0;
 }
 
 /* Detects a solver that creates energy. While nothing drives the cloth, kinetic plus potential energy cannot

@@ -27,7 +27,8 @@
 
 /* Distance that a plane keeps on either side. Without it each window under pressure would halve the gap, down
  * to the rounding of drawn positions; features that are nearer come no nearer. */
-#define FLOOR_M 2e-5
+#define FLOOR_M     2e-5
+#define FLOOR_SHARE 0.004 /* at most, of the mesh's own size there */
 /* Share of the distance that is safe without a plane: a ball of it about each vertex. */
 #define UNPLANED_SHARE 0.45
 /* Features that are nearer have no direction from one to the other: they may come apart, or cross and be
@@ -166,7 +167,8 @@ static void add_planes(const struct tl_apart *apart, const struct tl_near_pair *
     double middle = (below + above) / 2;
     for (int i = 0; i < 4; i++) {
         bool first = i < second;
-        double room = (first ? middle - heights[i] : heights[i] - middle) - FLOOR_M;
+        double room = (first ? middle - heights[i] : heights[i] - middle) -
+                      tl_min(FLOOR_M, FLOOR_SHARE * apart->size[pair->v[i]]);
         add_plane(found, pair->v[i], first ? normal : vec3d_scale(normal, -1), room,
                   apart->radius[pair->v[i]]);
     }

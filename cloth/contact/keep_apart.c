@@ -14,8 +14,10 @@
 /* Farther past a plane, m, a vertex is not moved back before a new window has made sure that it must be:
  * planes stand still, and two features that move on together would be stopped by the plane between them. */
 #define CUT_M 2e-5
-/* m/s, at which depth from before a substep is removed. */
+/* m/s, at which depth from before a substep is removed; at most this many of the mesh's own sizes in a
+ * second. */
 #define PUSH_SPEED 0.3
+#define PUSH_SIZES 100
 /* Projections on all planes of a vertex, one after the other, before it is moved back along its way. */
 #define ROUNDS 3
 
@@ -100,8 +102,8 @@ static vec3d between(const struct tl_apart_contact *contact, const vec3d *x)
 /* Removes the depth of this substep, and of the depth before it what PUSH_SPEED allows. Friction reduces the
  * slip of this substep by at most `friction` times the depth of this substep, as for the avatar (contact.h).
  */
-static void solve_contact(const struct tl_apart_contact *contact, const struct tl_apart_params *params,
-                          struct tl_particles *particles)
+static void solve_contact(const struct tl_apart *apart, const struct tl_apart_contact *contact,
+                          const struct tl_apart_params *params, struct tl_particles *particles)
 {
     vec3d now = between(contact, particles->x);
     double depth = contact->kept - vec3d_dot(now, contact->normal);
@@ -109,7 +111,8 @@ static void solve_contact(const struct tl_apart_contact *contact, const struct t
         return;
     vec3d before = between(contact, particles->previous);
     double depth_before = tl_max(contact->kept - vec3d_dot(before, contact->normal), 0);
-    double push = depth - tl_max(depth_before - PUSH_SPEED * params->h, 0), inverse = 0;
+    double speed = tl_min(PUSH_SPEED, PUSH_SIZES * apart->size[contact->v[0]]);
+    double push = depth - tl_max(depth_before - speed * params->h, 0), inverse = 0;
     for (int i = 0; i < 4; i++)
         inverse += particles->w[contact->v[i]] * contact->weights[i] * contact->weights[i];
     if (!(push > 0) || !(inverse > 0))
@@ -134,7 +137,7 @@ void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params
     if (!apart->clean)
         tl_untangle_push(&apart->untangle, params->h, particles);
     for (size_t i = 0; i < apart->contacts.count; i++)
-        solve_contact(&apart->contacts.contacts[i], params, particles);
+        solve_contact(apart, &apart->contacts.contacts[i], params, particles);
 }
 
 /* ---- Truncation ---- */

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Distances are stored in single precision, this much shorter: more than they are rounded by. */
-#define ROUND_SHARE 1e-6
+/* Rounding of the distance of two points to single precision, as a share of the largest coordinate: two
+ * points with three coordinates each, and their difference. */
+#define ROUND_SHARE 4e-7f
 /* Spokes that have changed by less, as a share of what a hub needs to be open, are not measured again. */
 #define LEAST_CHANGE 0.05
 
@@ -64,6 +65,7 @@ struct tl_near tl_near_create(const struct tl_topology *topology, const uint32_t
                            .across = TL_NEW_ARRAY(uint32_t, count),
                            .ranges = TL_NEW_ARRAY(double, topology->triangle_count),
                            .open = TL_NEW_ARRAY(bool, count),
+                           .at = tl_alloc(count, sizeof(float[3])),
                            .base = TL_NEW_ARRAY(vec3d, count),
                            .reach = TL_NEW_ARRAY(double, count)};
     memcpy(near.class_of, class_of, count * sizeof *class_of);
@@ -84,6 +86,7 @@ void tl_near_release(struct tl_near *near)
     free(near->spokes);
     free(near->ranges);
     free(near->open);
+    free(near->at);
     free(near->base);
     free(near->reach);
     free(near->pairs);
@@ -109,12 +112,6 @@ vec3d tl_near_closest(const struct tl_near_pair *pair, const vec3d *x, double we
     return vec3d_sub(to, at[0]);
 }
 
-static double distance_of(const struct tl_near_pair *pair, const vec3d *x)
-{
-    double weights[4];
-    return vec3d_norm(tl_near_closest(pair, x, weights));
-}
-
 static bool touches(const struct tl_near *near, const struct tl_near_pair *pair)
 {
     const uint32_t *class_of = near->class_of;
@@ -138,6 +135,37 @@ static struct tl_near_pair two_sides(const uint32_t a[3], uint32_t corner, const
     return (struct tl_near_pair){.v = {a[next_corner(corner, 1)], a[next_corner(corner, 2)],
                                        b[next_corner(other, 1)], b[next_corner(other, 2)]},
                                  .edges = true};
+}
+
+/* ---- Batches ---- */
+
+/* Pairs of one kind whose distances are computed together. */
+struct near_batch {
+    int count;
+    struct tl_near_pair pairs[TL_LANES];
+    struct tl_closest_lanes lanes;
+};
+
+/* Returns whether the batch is full. */
+static bool add_to_batch(const struct tl_near *near, struct tl_near_pair pair, struct near_batch *batch)
+{
+    int lane = batch->count++;
+    batch->pairs[lane] = pair;
+    for (int i = 0; i < 4; i++)
+        for (int axis = 0; axis < 3; axis++)
+            batch->lanes.point[i][axis][lane] = near->at[pair.v[i]][axis];
+    return batch->count == TL_LANES;
+}
+
+/* Lower bounds of the pairs' distances; lanes beyond the batch's count have none. */
+static void bound_batch(const struct tl_near *near, const struct near_batch *batch, float bounds[TL_LANES])
+{
+    if (batch->pairs[0].edges)
+        tl_closest_segment_bounds(&batch->lanes, bounds);
+    else
+        tl_closest_triangle_bounds(&batch->lanes, bounds);
+    for (int i = 0; i < TL_LANES; i++)
+        bounds[i] -= near->rounding;
 }
 
 /* ---- Hubs ---- */
@@ -201,34 +229,50 @@ static void measure_spokes(struct tl_near *near, uint32_t hub, const vec3d *x)
         near->spokes[k] = in_axes(axes, vec3d_sub(x[near->ring[k]], x[hub]));
 }
 
+/* Lowers `least` to the bounds of a batch, and empties it. */
+static void take_least(const struct tl_near *near, struct near_batch *batch, double *least)
+{
+    float bounds[TL_LANES];
+    if (batch->count == 0)
+        return;
+    bound_batch(near, batch, bounds);
+    for (int i = 0; i < batch->count; i++)
+        *least = tl_min(*least, (double)bounds[i]);
+    batch->count = 0;
+}
+
 /* Nearest distance of features of two triangles around one hub (their corner 0) that do not touch: their far
  * corners and triangles, and pairs of sides of which one at least faces the hub. */
-static double clear_between(const struct tl_near *near, const uint32_t a[3], const uint32_t b[3],
-                            const vec3d *x)
+static void clear_between(const struct tl_near *near, const uint32_t a[3], const uint32_t b[3],
+                          struct near_batch batches[2], double *least)
 {
     const struct tl_near_pair pairs[] = {
         corner_and_triangle(a, 1, b), corner_and_triangle(a, 2, b), corner_and_triangle(b, 1, a),
         corner_and_triangle(b, 2, a), two_sides(a, 0, b, 0),        two_sides(a, 0, b, 1),
         two_sides(a, 0, b, 2),        two_sides(a, 1, b, 0),        two_sides(a, 2, b, 0)};
-    double least = HUGE_VAL;
-    for (size_t i = 0; i < TL_COUNT(pairs); i++)
-        if (!touches(near, &pairs[i]))
-            least = tl_min(least, distance_of(&pairs[i], x));
-    return least;
+    for (size_t i = 0; i < TL_COUNT(pairs); i++) {
+        struct near_batch *batch = &batches[pairs[i].edges];
+        if (!touches(near, &pairs[i]) && add_to_batch(near, pairs[i], batch))
+            take_least(near, batch, least);
+    }
 }
 
 static void measure_hub(struct tl_near *near, uint32_t hub, const vec3d *x)
 {
     double least = HUGE_VAL;
+    struct near_batch batches[2];
+    batches[0].count = batches[1].count = 0;
     measure_spokes(near, hub, x);
     for (uint32_t k = near->fans.first[hub]; k < near->fans.first[hub + 1]; k++) {
         uint32_t a[3], b[3];
         fan_triangle(near, k, a);
         for (uint32_t m = near->fans.first[hub]; m < k; m++) {
             fan_triangle(near, m, b);
-            least = tl_min(least, clear_between(near, a, b, x));
+            clear_between(near, a, b, batches, &least);
         }
     }
+    for (int i = 0; i < 2; i++)
+        take_least(near, &batches[i], &least);
     near->clear[hub] = least;
 }
 
@@ -261,6 +305,7 @@ static void open_hub(struct tl_near *near, uint32_t hub, const vec3d *x)
 struct near_list {
     size_t count, capacity;
     struct tl_near_pair *pairs;
+    struct near_batch batches[2]; /* of vertices and triangles, of edges */
 };
 
 static void make_room(struct near_list *list, size_t more)
@@ -279,21 +324,34 @@ static double feature_reach(const double *reach, const uint32_t *v, int from, in
     return most;
 }
 
-static void try_pair(const struct tl_near *near, struct tl_near_pair pair, const vec3d *x,
-                     struct near_list *out)
+/* Appends the pairs of a batch that are near enough, and empties it. */
+static void end_batch(const struct tl_near *near, struct near_list *out, struct near_batch *batch)
 {
-    int second = tl_near_second(&pair);
-    double most = near->margin + feature_reach(near->reach, pair.v, 0, second) +
-                  feature_reach(near->reach, pair.v, second, 4);
+    float bounds[TL_LANES];
+    if (batch->count == 0)
+        return;
+    bound_batch(near, batch, bounds);
+    make_room(out, TL_LANES);
+    for (int i = 0; i < batch->count; i++) {
+        struct tl_near_pair pair = batch->pairs[i];
+        int second = tl_near_second(&pair);
+        double most = near->margin + feature_reach(near->reach, pair.v, 0, second) +
+                      feature_reach(near->reach, pair.v, second, 4);
+        pair.distance = bounds[i];
+        if ((double)pair.distance <= most)
+            out->pairs[out->count++] = pair;
+    }
+    batch->count = 0;
+}
+
+static void try_pair(const struct tl_near *near, struct tl_near_pair pair, struct near_list *out)
+{
+    struct near_batch *batch = &out->batches[pair.edges];
     if (touches(near, &pair))
         return;
-    double distance = distance_of(&pair, x);
-    if (distance > most)
-        return;
-    pair.distance = (float)(distance * (1 - ROUND_SHARE));
     pair.kept = -1;
-    make_room(out, 1);
-    out->pairs[out->count++] = pair;
+    if (add_to_batch(near, pair, batch))
+        end_batch(near, out, batch);
 }
 
 /* Whether a plane across the line between the centres separates two triangles by more than their reach. */
@@ -320,12 +378,12 @@ static void list_features(const struct tl_near *near, uint32_t first, uint32_t s
         return;
     for (uint32_t i = 0; i < 3; i++) {
         if (owns_a >> i & 1)
-            try_pair(near, corner_and_triangle(a, i, b), x, out);
+            try_pair(near, corner_and_triangle(a, i, b), out);
         if (owns_b >> i & 1)
-            try_pair(near, corner_and_triangle(b, i, a), x, out);
+            try_pair(near, corner_and_triangle(b, i, a), out);
         for (uint32_t k = 0; k < 3 && owns_a >> (3 + i) & 1; k++)
             if (owns_b >> (3 + k) & 1)
-                try_pair(near, two_sides(a, i, b, k), x, out);
+                try_pair(near, two_sides(a, i, b, k), out);
     }
 }
 
@@ -335,6 +393,8 @@ static void list_task(const struct tl_near *near, size_t task, const vec3d *x, s
     tl_near_tree_pairs(&near->tree, task, &pairs);
     for (size_t i = 0; i < pairs.count; i++)
         list_features(near, pairs.pairs[i][0], pairs.pairs[i][1], x, out);
+    for (size_t i = 0; i < TL_COUNT(out->batches); i++)
+        end_batch(near, out, &out->batches[i]);
     tl_near_pairs_release(&pairs);
 }
 
@@ -358,12 +418,29 @@ static void join_lists(struct tl_near *near, struct near_list *lists)
     }
 }
 
+/* Positions in single precision, from an origin near the cloth. */
+static void round_positions(struct tl_near *near, const vec3d *x)
+{
+    size_t count = near->topology->vertex_count;
+    float largest = 0;
+    for (size_t i = 0; i < count; i++) {
+        vec3d from = vec3d_sub(x[i], x[0]);
+        const double p[3] = {from.x, from.y, from.z};
+        for (int axis = 0; axis < 3; axis++) {
+            near->at[i][axis] = (float)p[axis];
+            largest = tl_maxf(largest, fabsf(near->at[i][axis]));
+        }
+    }
+    near->rounding = ROUND_SHARE * largest;
+}
+
 void tl_near_list(struct tl_near *near, const vec3d *x)
 {
     size_t count = near->topology->vertex_count;
     double *margins = TL_NEW_ARRAY(double, count);
     struct near_list *lists = TL_NEW_ARRAY(struct near_list, near->tree.task_count);
     memcpy(near->base, x, count * sizeof *x);
+    round_positions(near, x);
 #pragma omp parallel if (count >= TL_NEAR_PARALLEL_VERTICES)
     {
 #pragma omp for schedule(static)

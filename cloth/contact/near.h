@@ -22,7 +22,7 @@
 /* A vertex v[0] and a triangle v[1] v[2] v[3], or the edges v[0] v[1] and v[2] v[3]. */
 struct tl_near_pair {
     uint32_t v[4];
-    float distance; /* m when listed, rounded down */
+    float distance; /* m when listed; a lower bound (tl_closest_segment_bounds) */
     float kept;     /* m, for the list's user; negative when listed */
     bool edges;
 };
@@ -46,6 +46,8 @@ struct tl_near {
     vec3d *spokes;        /* [ring entry] in the hub's axes, at the last measurement */
     bool *open;           /* [vertex] */
     double *ranges;       /* [triangle] m, the largest reach of its corners */
+    float (*at)[3];       /* [vertex] m from vertex 0, rounded */
+    float rounding;       /* m, of a distance of two points of `at` */
     bool listed;          /* base, reach, margin and pairs are valid */
     vec3d *base;          /* [vertex] m */
     double *reach;        /* [vertex] m */

@@ -33,7 +33,8 @@ static inline struct tl_cloth_params params_exact(int solver)
 {
     struct tl_cloth_params params = params_defaults();
     params.solver = solver;
-    params.strain_limit = 0; /* the energy alone */
+    params.strain_limit = 0; /* the energy alone, without what acts beside it */
+    params.self_contact = false;
     params_solve_exactly(&params);
     return params;
 }

@@ -45,15 +45,17 @@ static double sag(void)
     return RADIUS * (1 - pow(cos(M_PI / (2 * RINGS)), 2));
 }
 
-static void test_drape_over_sphere(void **state)
+/* What may be missing from the distance: a plane that is queried again after 2 mm leaves this sphere by 0.01
+ * mm; and at the impact the cloth's contact with itself holds some vertices back for a frame. */
+static void drape_over_sphere(bool self_contact, double missing_m)
 {
-    (void)state;
     tl_error error = {0};
     const struct sheet_shape shape = {40, 40, 1, 1};
     tl_garment garment = sheet_make(&shape, above_sphere);
     tl_mesh sphere = body_sphere((vec3s){{0, 0.5f, 0}}, RADIUS, RINGS);
     struct tl_cloth_fabric fabric = fabric_defaults();
     struct tl_cloth_params params = params_defaults();
+    params.self_contact = self_contact;
     tl_collider *collider = tl_collider_create(&sphere, true, &error);
     tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
     assert_non_null(cloth);
@@ -62,13 +64,19 @@ static void test_drape_over_sphere(void **state)
         struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
         assert_near(report.deepest_m, 0, 0);
         double nearest = nearest_to_centre(cloth, (vec3d){0, 0.5, 0});
-        /* A plane that is queried again after 2 mm leaves this sphere by 0.01 mm. */
-        assert_true(nearest > RADIUS + fabric.thickness_m - sag() - 1e-4);
+        assert_true(nearest > RADIUS + fabric.thickness_m - sag() - missing_m);
     }
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);
     tl_mesh_release(&sphere);
     sheet_free(&garment);
+}
+
+static void test_drape_over_sphere(void **state)
+{
+    (void)state;
+    drape_over_sphere(false, 1e-4);
+    drape_over_sphere(true, 5e-4);
 }
 
 /* Penetration is removed at a limited speed: particles stay slow, and in the end none is inside. */

@@ -119,12 +119,12 @@ static double fly(double speed, double *flutter)
     tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
     double reach = 0;
     *flutter = 0;
-    for (int frame = 0; frame < 90; frame++) {
+    for (int frame = 0; frame < 180; frame++) {
         assert_ok(tl_cloth_step(cloth, NULL, &error), error);
         vec3d tip = cloth->particles.x[sheet_vertex(&shape, shape.columns, shape.rows / 2)];
         assert_true(tl_cloth_max_strain(cloth) < 0.5);
-        if (frame >= 45) {
-            reach += tip.x / 45;
+        if (frame >= 60) {
+            reach += tip.x / 120;
             *flutter = fmax(*flutter, fabs(tip.z));
         }
     }
@@ -136,8 +136,8 @@ static double fly(double speed, double *flutter)
 static void test_flag(void **state)
 {
     (void)state;
-    double flutter[2], calm = fly(1.5, &flutter[0]), windy = fly(9, &flutter[1]);
-    printf("flag: reaches %.2f m at 1.5 m/s, %.2f m at 9 m/s, swings by %.3f and %.3f m\n", calm, windy,
+    double flutter[2], calm = fly(1, &flutter[0]), windy = fly(9, &flutter[1]);
+    printf("flag: reaches %.2f m at 1 m/s, %.2f m at 9 m/s, swings by %.3f and %.3f m\n", calm, windy,
            flutter[0], flutter[1]);
     assert_true(windy > 0.45 && windy < 0.6);
     assert_true(calm < 0.75 * windy);

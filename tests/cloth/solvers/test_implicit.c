@@ -121,6 +121,7 @@ static struct tl_cloth_params settle_params(void)
 {
     struct tl_cloth_params params = params_defaults();
     params.solver = TL_CLOTH_SETTLE;
+    params.self_contact = false; /* the solve alone */
     return params;
 }
 

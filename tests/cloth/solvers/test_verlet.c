@@ -43,6 +43,7 @@ static struct trial begin(int n, const struct tl_cloth_fabric *fabric, enum held
         if (held == HELD_EDGE || column == 0 || column == n)
             sheet_pin(&trial.garment, sheet_vertex(&shape, column, n));
     trial.params.solver = TL_CLOTH_REFERENCE;
+    trial.params.self_contact = false; /* energies alone */
     trial.cloth = tl_cloth_create(&trial.garment, fabric, &trial.params, &error);
     assert_non_null(trial.cloth);
     return trial;
