@@ -12,14 +12,14 @@
 
 /* Names that stand for built-in assets (assets/garment.h, assets/builtin/specimen.h, assets/avatar.h,
  * assets/builtin/studio.h), and "none". */
-static const char *const garment_names[] = {"dress", "skirt",  "layers", "trousers", "sheet",
+static const char *const garment_names[] = {"dress", "skirt",  "layers", "trousers", "shirt", "sheet",
                                             "disc",  "sphere", "torus",  "none",     NULL};
 static const char *const avatar_names[] = {"form", "figure", "ball", "none", NULL};
 static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
 #define OWN "own"
-static const char *const colourways_names[] = {OWN, "dress", "skirt", "trousers", "composed", NULL};
+static const char *const colourways_names[] = {OWN, "dress", "skirt", "trousers", "shirt", "composed", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
     .garment = "dress", .avatar = "form", .motion = "none", .environment = "studio", .environment_rate = 30, \
@@ -216,8 +216,11 @@ static void choose_fabric(struct tl_scene_params *scene)
 /* The built-in scene that shows a built-in garment has its colourways too. */
 const char *tl_settings_colourways_source(const struct tl_settings *settings)
 {
-    static const char *const sources[][2] = {
-        {"dress", "dress"}, {"skirt", "skirt"}, {"trousers", "trousers"}, {"layers", "composed"}};
+    static const char *const sources[][2] = {{"dress", "dress"},
+                                             {"skirt", "skirt"},
+                                             {"trousers", "trousers"},
+                                             {"shirt", "shirt"},
+                                             {"layers", "composed"}};
     const struct tl_scene_params *scene = &settings->scene;
     if (!has_own_colourways(scene))
         return scene->colourways;

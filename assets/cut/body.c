@@ -32,13 +32,8 @@ static double measure(const tl_mesh *mesh, double y, enum part part, double leng
     const struct tl_section *section = find_part(sections, count, part);
     double girth = section ? (double)section->girth_m : 0;
     if (section && ring) {
-        struct tl_point *points = TL_NEW_ARRAY(struct tl_point, section->hull_count);
-        for (size_t i = 0; i < section->hull_count; i++)
-            points[i] = (struct tl_point){(double)section->hull[i].x, (double)section->hull[i].y};
-        tl_ring_around(points, (int)section->hull_count, girth, part == TRUNK, length > 0 ? length : girth,
-                       ring);
+        tl_section_ring(section, part == TRUNK, length, ring);
         ring->y = y;
-        free(points);
     }
     tl_sections_release(&sections, count);
     return girth;
@@ -97,6 +92,55 @@ static double split_height(const tl_mesh *mesh, double with, double without)
     return with;
 }
 
+/* Whether a section has arms beside the trunk. */
+static bool has_arms(const tl_mesh *mesh, double y)
+{
+    const struct tl_plane plane = tl_plane_level((float)y);
+    struct tl_section *sections;
+    size_t count = tl_mesh_sections(mesh, &plane, &sections);
+    bool left = false, right = false, trunk = find_part(sections, count, TRUNK) != NULL;
+    for (size_t i = 0; i < count; i++) {
+        left |= sections[i].lower.x > 0;
+        right |= sections[i].upper.x < 0;
+    }
+    tl_sections_release(&sections, count);
+    return left && right && trunk;
+}
+
+/* Bust, underarm and arm, where arms hang beside the trunk above the waist. */
+static void measure_chest(struct tl_body *body, double step)
+{
+    bool arms = false;
+    for (double y = body->waist_y; y < 0.9 * body->height; y += step) {
+        bool here = has_arms(body->mesh, y);
+        if (arms && !here)
+            break;
+        arms = here;
+        body->bust = fmax(body->bust, tl_body_trunk_girth(body, y));
+        body->underarm_y = here ? y : 0;
+    }
+    if (!(body->underarm_y > 0) || !tl_body_measure_arm(body->mesh, body->underarm_y, &body->arm))
+        body->underarm_y = 0;
+}
+
+static void measure_neck(struct tl_body *body, double step)
+{
+    body->neck = INFINITY;
+    for (double y = body->underarm_y; y < 0.9 * body->height; y += step) {
+        const struct tl_plane plane = tl_plane_level((float)y);
+        struct tl_section *sections;
+        size_t count = tl_mesh_sections(body->mesh, &plane, &sections);
+        const struct tl_section *neck = find_part(sections, count, TRUNK);
+        if (neck && (double)neck->girth_m < body->neck) {
+            body->neck = (double)neck->girth_m;
+            body->neck_y = y;
+            body->neck_half = 0.5 * (double)(neck->upper.x - neck->lower.x);
+            body->neck_z = 0.5 * (double)(neck->upper.y + neck->lower.y);
+        }
+        tl_sections_release(&sections, count);
+    }
+}
+
 bool tl_body_measure(const char *name, const tl_mesh *mesh, struct tl_body_distance distance,
                      struct tl_body *out, tl_error *error)
 {
@@ -121,6 +165,9 @@ bool tl_body_measure(const char *name, const tl_mesh *mesh, struct tl_body_dista
         return tl_fail(error, TL_INPUT,
                        "%s: has no legs that part below the waist, so no trousers are cut for it", name);
     out->crotch_y = split_height(mesh, y + step, y);
+    measure_chest(out, step);
+    if (out->underarm_y > 0)
+        measure_neck(out, step);
     out->knee = measure(mesh, 0.55 * out->crotch_y, LEG, 0, NULL);
     double part = 0.3; /* of the crotch's height */
     for (int i = 0; i < 10; i++, part += 0.025)

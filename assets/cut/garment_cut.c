@@ -14,27 +14,32 @@
 #define EDGE_MAXIMUM_M 0.08f
 #define EDGE_FIRST_M   0.02f /* a finer cut starts from the shape of one with edges twice as long */
 
-#define REACH_M                                                                                              \
-    4.0 /* relaxation reaches from neck to hem and back in the first cut, less far in finer ones */
+/* How far relaxation reaches in the first cut, less far in finer ones: from neck to hem and back. Drafted
+ * garments, which start farther from their shape, are relaxed for longer. */
+#define REACH_M         4.0
+#define REACH_DRAFTED_M 8.0
 
 /* Garments for the form are scaled to other bodies, the others are drafted for each body. */
 static const struct cut_kind {
     const char *name;
     struct tl_cut_plan (*for_form)(void);
     struct tl_cut_plan (*for_body)(const struct tl_body *);
+    bool has_sleeves;
 } kinds[] = {
     {"dress", .for_form = tl_cut_plan_dress},
     {"skirt", .for_form = tl_cut_plan_skirt},
     {"layers", .for_form = tl_cut_plan_layers},
     {"trousers", .for_body = tl_cut_plan_trousers},
+    {"shirt", .for_body = tl_cut_plan_shirt, .has_sleeves = true},
 };
-const char *const tl_garment_names[] = {"dress", "skirt", "layers", "trousers", NULL};
+const char *const tl_garment_names[] = {"dress", "skirt", "layers", "trousers", "shirt", NULL};
 
 /* The pieces of a plan after cutting, and where their vertices begin in the garment. */
 struct cutting {
     const struct tl_cut_plan *plan;
     tl_panel_mesh panels[TL_CUT_MAX_PIECES];
     size_t first_vertex[TL_CUT_MAX_PIECES + 1];
+    double reach_m; /* of relaxation */
 };
 
 static struct tl_curve *half_curve(struct tl_cut_piece *piece, size_t curve)
@@ -263,8 +268,8 @@ static void place(const struct cutting *cutting, const tl_garment *coarse, doubl
     for (size_t i = 0; i < garment->pin_count; i++)
         fixed[body[garment->pins[i]]] = true;
     struct tl_fit_edge *edges = fit_edges(garment, body);
-    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count, carries ? 0 : REACH_M,
-               cutting->plan->distance);
+    tl_cut_fit(position, bodies, fixed, edges, garment->model.mesh.index_count,
+               carries ? 0 : cutting->reach_m, cutting->plan->distance, cutting->plan->keeps_sides);
     for (size_t v = 0; v < count; v++) {
         const double *at = position[body[v]];
         garment->model.mesh.positions[v] = (vec3s){{(float)at[0], (float)at[1], (float)at[2]}};
@@ -317,7 +322,7 @@ static void cut(const struct cut_kind *kind, const struct tl_body *body, float e
     if (coarse_edge_m > 0)
         cut(kind, body, coarse_edge_m, &coarse);
     struct tl_cut_plan plan = make_plan(kind, body);
-    struct cutting cutting = {.plan = &plan};
+    struct cutting cutting = {.plan = &plan, .reach_m = kind->for_body ? REACH_DRAFTED_M : REACH_M};
     choose_segments(&plan, (double)edge_m);
     cut_pieces(&cutting, (double)edge_m);
     *out = (tl_garment){.model = {.name = tl_copy_string(kind->name)}};
@@ -364,6 +369,9 @@ static bool cut_for(const struct cut_kind *kind, float edge_m, const struct tl_w
     struct tl_body body;
     if (!tl_body_measure(wearer->name, wearer->mesh, wearer->distance, &body, error))
         return false;
+    if (kind->has_sleeves && !(body.underarm_y > 0))
+        return tl_fail(error, TL_INPUT,
+                       "%s: has no arms that hang beside the trunk, so no shirt is cut for it", wearer->name);
     cut(kind, &body, edge_m, out);
     return true;
 }

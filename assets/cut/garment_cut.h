@@ -8,8 +8,8 @@
 
 /* Built-in garments, cut as flat panels: around the built-in dress form (assets/builtin/form.h) "dress",
  * "skirt", and "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY; and drafted
- * from the measures of the figure "trousers". `edge_m` is the target length of an edge. False when the name
- * is unknown (the message lists the names). */
+ * from the measures of the figure "trousers" and "shirt". `edge_m` is the target length of an edge. False
+ * when the name is unknown (the message lists the names). */
 bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error);
 
 /* Whether the garment needs arms or legs: it is cut for the figure instead of the form. */

@@ -1,9 +1,13 @@
 #include "assets/cut/garment_cut_internal.h"
 
+#include "config/memory.h"
+
 #include <math.h>
+#include <stdlib.h>
 
 enum { LEAST_PASSES = 100, PASSES_PER_PUSH = 4 };
-#define SHORT_STIFFNESS 0.15  /* weak: slack cloth buckles instead of pushing its vertices apart */
+#define SHORT_STIFFNESS 0.15 /* weak: slack cloth buckles instead of pushing its vertices apart */
+#define SIDE_M          0.001
 #define CLEARANCE_M     0.006 /* kept between the cloth and the body */
 
 static void pull(double a[3], double b[3], bool a_fixed, bool b_fixed, double length)
@@ -36,8 +40,11 @@ static void push_out(double p[3], struct tl_body_distance body)
 }
 
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
-                size_t edge_count, double reach_m, struct tl_body_distance distance)
+                size_t edge_count, double reach_m, struct tl_body_distance distance, bool keeps_sides)
 {
+    double *side = TL_NEW_ARRAY(double, count); /* 1 left, -1 right, 0 in the middle */
+    for (size_t i = 0; keeps_sides && i < count; i++)
+        side[i] = positions[i][0] > SIDE_M ? 1 : positions[i][0] < -SIDE_M ? -1 : 0;
     double total = 0;
     for (size_t e = 0; e < edge_count; e++)
         total += edges[e].length;
@@ -51,6 +58,9 @@ void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const s
         for (size_t i = 0; i < count; i++) {
             if (!fixed[i])
                 push_out(positions[i], distance);
+            if (side[i] * positions[i][0] < fabs(side[i]) * SIDE_M)
+                positions[i][0] = side[i] * SIDE_M;
         }
     }
+    free(side);
 }

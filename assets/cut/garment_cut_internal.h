@@ -46,7 +46,8 @@ struct tl_cut_plan {
     struct tl_cut_pin pins[TL_CUT_MAX_PINS];
     size_t pin_count;
     void *placement;                  /* owned: what the pieces' contexts point into; free() releases it */
-    struct tl_body_distance distance; /* of the body; none: the dress form's */
+    struct tl_body_distance distance; /* of the body */
+    bool keeps_sides;                 /* its left and its right do not pass x = 0 */
 };
 
 /* A piece of a flared skirt: half of a sector of a ring, hung around the form. Its curves: 0 hem, 1 side, 2
@@ -64,6 +65,7 @@ struct tl_cut_plan tl_cut_plan_layers(void);
 
 /* Drafted for a body; `body` must live as long as the plan. */
 struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body);
+struct tl_cut_plan tl_cut_plan_shirt(const struct tl_body *body); /* which has arms */
 
 /* The mirror image in x = 0, run through backwards: counter-clockwise again. */
 struct tl_curve tl_cut_mirrored_curve(const struct tl_curve *curve);
@@ -83,13 +85,14 @@ static inline size_t tl_cut_mirror(const struct tl_cut_piece *piece, size_t i)
 
 /* Relaxes a start shape: moves edges towards their rest lengths and vertices out of the body; `fixed`
  * ones stay. It is no simulation (no mass, no gravity) but removes the strain of the first guess. `reach_m`:
- * how far corrections travel, at one edge a pass; at least a hundred passes are made. */
+ * how far corrections travel, at one edge a pass; at least a hundred passes are made. `keeps_sides`: what
+ * starts left or right of x = 0 stays a millimetre off it. */
 struct tl_fit_edge {
     uint32_t a, b;
     double length; /* metres, at rest */
 };
 void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const struct tl_fit_edge *edges,
-                size_t edge_count, double reach_m, struct tl_body_distance distance);
+                size_t edge_count, double reach_m, struct tl_body_distance distance, bool keeps_sides);
 
 /* Interpolates positions [vertices of `garment`], metres, from a coarser cut of the same plan with edges of
  * about edge_m, by the place of each vertex in the flat pattern: linearly over triangles, extrapolated a

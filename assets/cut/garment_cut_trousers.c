@@ -445,7 +445,8 @@ struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body)
 {
     struct trousers *t = TL_NEW(struct trousers);
     draft(body, t);
-    struct tl_cut_plan plan = {.name = "trousers", .piece_count = PIECES, .placement = t};
+    struct tl_cut_plan plan = {
+        .name = "trousers", .piece_count = PIECES, .placement = t, .keeps_sides = true};
     for (size_t i = 0; i < BAND_FRONT; i++) {
         bool back = i == BACK_RIGHT || i == BACK_LEFT, mirrored = i == FRONT_RIGHT || i == BACK_LEFT;
         const struct leg_pattern *pattern = back ? &t->back : &t->front;

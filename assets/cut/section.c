@@ -152,3 +152,13 @@ void tl_sections_release(struct tl_section **sections, size_t count)
     free(*sections);
     *sections = NULL;
 }
+
+void tl_section_ring(const struct tl_section *section, bool symmetric, double length, struct tl_ring *out)
+{
+    struct tl_point *points = TL_NEW_ARRAY(struct tl_point, section->hull_count);
+    const double girth = (double)section->girth_m;
+    for (size_t i = 0; i < section->hull_count; i++)
+        points[i] = (struct tl_point){(double)section->hull[i].x, (double)section->hull[i].y};
+    tl_ring_around(points, (int)section->hull_count, girth, symmetric, length > 0 ? length : girth, out);
+    free(points);
+}

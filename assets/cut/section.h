@@ -3,6 +3,7 @@
 #define TOILE_ASSETS_CUT_SECTION_H
 
 #include "assets/base/mesh.h"
+#include "assets/cut/wrap.h"
 
 /* A section has coordinates along `across` and `onward`, from `point`. Unit vectors, at right angles. */
 struct tl_plane {
@@ -22,5 +23,8 @@ struct tl_section {
  * is a new array, to be released. */
 size_t tl_mesh_sections(const tl_mesh *mesh, const struct tl_plane *plane, struct tl_section **out);
 void tl_sections_release(struct tl_section **sections, size_t count);
+
+/* A ring of the given length around a section; 0: of its girth. */
+void tl_section_ring(const struct tl_section *section, bool symmetric, double length, struct tl_ring *out);
 
 #endif

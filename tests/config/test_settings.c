@@ -156,7 +156,8 @@ static void test_refusals(void **state)
     (void)state;
     refuse("nowhere.yaml", NULL, "nowhere.yaml: no such file: check the path");
     refuse("drss", NULL,
-           "drss: no such scene: expected dress, skirt, trousers, review, gallery, composed, cusick, or a "
+           "drss: no such scene: expected dress, skirt, trousers, shirt, review, gallery, composed, cusick, "
+           "or a "
            "YAML file: "
            "did you mean dress?");
     refuse(NULL, "scene.fabric=satn",
@@ -173,7 +174,7 @@ static void test_refusals(void **state)
     write_text(FOLDER "/bad.yaml", "scene:\n  garment: dres\n");
     refuse(FOLDER "/bad.yaml", NULL,
            FOLDER "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, layers, "
-                  "trousers, sheet, disc, sphere, torus, none or a file name "
+                  "trousers, shirt, sheet, disc, sphere, torus, none or a file name "
                   "with its extension: did you mean dress?");
     /* A preset is about quality, a fabric about cloth: neither may reach into the scene. */
     write_text(FOLDER "/preset.yaml", "scene:\n  fabric: wool\n");

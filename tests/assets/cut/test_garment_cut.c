@@ -52,7 +52,8 @@ static double pattern_area(const tl_garment *garment)
 static void for_each_cut(void (*check)(const tl_garment *, const char *, float))
 {
     for (size_t g = 0; tl_garment_names[g]; g++) {
-        for (size_t e = 0; e < TL_COUNT(edges_m); e++) {
+        /* A sleeve is three edges of 8 cm around, and a collar one of 5 cm high. */
+        for (size_t e = strcmp(tl_garment_names[g], "shirt") == 0 ? 2 : 0; e < TL_COUNT(edges_m); e++) {
             tl_garment garment = cut(tl_garment_names[g], edges_m[e]);
             check(&garment, tl_garment_names[g], edges_m[e]);
             drop(&garment);
@@ -156,7 +157,6 @@ static int compare_positions(const void *a, const void *b)
  * the pattern are worth 0.1 %. */
 static void check_seams(const tl_garment *garment, const char *name, float edge_m)
 {
-    (void)name;
     const tl_mesh *mesh = &garment->model.mesh;
     for (size_t s = 0; s < garment->seam_count; s++) {
         const struct tl_seam_pair *pair = &garment->seams[s];
@@ -166,9 +166,12 @@ static void check_seams(const tl_garment *garment, const char *name, float edge_
             continue;
         double side_a = (double)glms_vec2_distance(garment->pattern[pair->a], garment->pattern[pair[-1].a]);
         double side_b = (double)glms_vec2_distance(garment->pattern[pair->b], garment->pattern[pair[-1].b]);
+        /* The shirt's straight stand meets necklines of 8 cm, and a fall whose cubic is 1 % off its arc. */
+        const bool shirt = strcmp(name, "shirt") == 0;
+        const double radius = shirt ? 0.08 : 0.25;
         bool same_seam = side_a > 0 && side_a < 2 * (double)edge_m && side_b < 2 * (double)edge_m;
         if (same_seam)
-            assert_near(side_a, side_b, (0.001 + pow(side_a / 0.25, 2) / 24) * side_a);
+            assert_near(side_a, side_b, ((shirt ? 0.012 : 0.001) + pow(side_a / radius, 2) / 24) * side_a);
     }
     uint32_t *weld = weld_by_seams(garment);
     vec3s *sorted = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
@@ -198,7 +201,8 @@ static int compare_edges(const void *a, const void *b)
 }
 
 /* Sewn, the garment is an oriented manifold with the openings it should have: V - E + F = 2 - openings. The
- * dress: neck, two arms, hem; the skirt: waist and hem; trousers: waist and two hems. Border edges add up to
+ * dress: neck, two arms, hem; the skirt: waist and hem; trousers: waist and two hems; the shirt:
+ * collar, two cuffs, hem. Border edges add up to
  * the openings' lengths. */
 static void check_topology(const tl_garment *garment, const char *name, float edge_m)
 {
@@ -222,7 +226,9 @@ static void check_topology(const tl_garment *garment, const char *name, float ed
     long edge_count = (long)(mesh->index_count + border) / 2;
     long openings = 2 - ((long)vertices - edge_count + (long)mesh->index_count / 3);
     /* The layers have the dress's four and the curtain's one, and two are lost to there being two of them. */
-    assert_int_equal(openings, strcmp(name, "skirt") == 0 ? 2 : strcmp(name, "dress") == 0 ? 4 : 3);
+    assert_int_equal(openings, strcmp(name, "skirt") == 0                                 ? 2
+                               : strcmp(name, "dress") == 0 || strcmp(name, "shirt") == 0 ? 4
+                                                                                          : 3);
     free(edges);
     free(weld);
 }
@@ -256,7 +262,7 @@ static void check_start(const tl_garment *garment, const char *name, float edge_
     printf("%s at %g m: start strain mean %.4f, largest %.3f, nearest to the form %.4f m\n", name,
            (double)edge_m, mean, largest, nearest);
     assert_true(mean < 0.02);
-    assert_true(largest < 0.20);
+    assert_true(largest < (strcmp(name, "shirt") == 0 ? 0.25 : 0.20)); /* its sleeve caps */
     /* One step along a rough distance's gradient takes cloth to its 6 mm; between the figure's limbs it is
      * rougher. */
     assert_true(nearest > (tl_garment_is_for_figure(name) ? 0.003 : 0.004));
