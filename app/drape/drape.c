@@ -28,6 +28,16 @@ static void log_stretch(const struct tl_cloth_params *params, double strain)
                 100 * strain, params->substeps);
 }
 
+/* What came crossed and could not be untangled: a garment that is too tight, or one that its file ties in
+ * knots. */
+static void log_crossings(const struct tl_cloth_params *params, const tl_cloth *cloth)
+{
+    size_t count =
+        params->self_contact && params->settle_s > 0 ? tl_cloth_measure(cloth, NULL).crossing_count : 0;
+    if (count > 0)
+        tl_info("the cloth still passes through itself: %zu pairs of its triangles cross", count);
+}
+
 /* ---- Into the clip's first pose ---- */
 
 static bool has_pose(const struct tl_drape_request *request)
@@ -159,14 +169,15 @@ static tl_cloth *restore(const struct tl_drape_request *request, const struct tl
 tl_cloth *tl_drape(const struct tl_drape_request *request, tl_collider *collider, tl_error *error)
 {
     double strain;
-    if (!tl_cache_is_used())
-        return make(request, collider, &strain, error);
-    const struct tl_cache_key key = key_of(request);
-    tl_cloth *cloth = restore(request, &key, collider, error);
+    tl_cloth *cloth;
+    if (tl_cache_is_used()) {
+        const struct tl_cache_key key = key_of(request);
+        cloth = restore(request, &key, collider, error);
+        if (!cloth && (cloth = make(request, collider, &strain, error)))
+            store(&key, cloth, strain);
+    } else
+        cloth = make(request, collider, &strain, error);
     if (cloth)
-        return cloth;
-    cloth = make(request, collider, &strain, error);
-    if (cloth)
-        store(&key, cloth, strain);
+        log_crossings(request->params, cloth);
     return cloth;
 }
