@@ -322,10 +322,13 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
     }
 }
 
-/* Only a moving avatar catches cloth: on a body at rest, soft cloth may legitimately hang at any length. */
+/* A moving avatar catches cloth, and so does cloth that lies on itself and holds a vertex inside the avatar
+ * until that is moved out: its neighbours cannot follow past the cloth between. Otherwise soft cloth on a
+ * body at rest may hang at any length. */
 static void release_caught(tl_cloth *cloth, const tl_collider *collider)
 {
-    if (collider && tl_collider_travel(collider) > 0)
+    bool held = cloth->params.self_contact && cloth->contacts.caught_count > 0;
+    if (collider && (held || tl_collider_travel(collider) > 0))
         tl_caught_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
                           &cloth->particles, cloth->contacts.slipped);
 }

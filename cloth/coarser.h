@@ -5,11 +5,11 @@
  * Carrying: every vertex has a place on the cage and an offset from it, both taken where the coarser cloth
  * was made. Where the cage has moved to, the offset is turned as the cage's corners have turned around that
  * place (the best rotation of each corner's neighbours), so that folds finer than the cage are carried along
- * and not sheared. Where the cage has folded anew, neighbours turn so differently that offsets do harm: they
- * are left out if that leaves less strain or fewer crossings (a skirt of 16,000 vertices: 2.3 instead of 5.5
- * %, 0 instead of 106). A smooth surface through the cage's corners (Phong tessellation) in place of its
- * triangles was tried: where folds are sharp it bulges, which doubled the strain after carrying and made
- * crossings.
+ * and not sheared. Where the cage has folded in another way, neighbours turn so differently that offsets
+ * increase the strain: they are left out if that leaves less strain or fewer crossings (a skirt of 16,000
+ * vertices: 2.3 instead of 5.5 %, 0 instead of 106). A smooth surface through the cage's corners (Phong
+ * tessellation) in place of its triangles was tried: where folds are sharp it bulges, which doubled the
+ * strain after carrying and made crossings.
  *
  * Metres. Threads: one at a time per cloth; carrying uses all. */
 #ifndef TOILE_CLOTH_COARSER_H

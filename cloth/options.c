@@ -5,8 +5,9 @@
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
-    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81,                \
-    .settle_s = 10, .settle_speed = 0.003, .cages = true, .edge_m = 0.02f, .longest_edge_m = 0.1f
+    .self_contact = true, .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000,           \
+    .gravity = 9.81, .settle_s = 10, .settle_speed = 0.003, .cages = true, .edge_m = 0.02f,                  \
+    .longest_edge_m = 0.1f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 

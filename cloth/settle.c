@@ -3,6 +3,7 @@
 #include "cloth/build.h"
 #include "cloth/coarser.h"
 #include "cloth/measure.h"
+#include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -73,13 +74,18 @@ static void stop_at_peak(tl_cloth *cloth, struct stops *stops)
     stops->frames = stop ? 0 : stops->frames + 1;
 }
 
-/* Settles a coarser version of the cloth, if it has one, and carries the cloth to where that has come to. */
-static bool settle_coarser(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+/* Settles a coarser version of the cloth, if it has one, and carries the cloth to where that has come to. A
+ * coarser cloth that fails is left out: the cloth itself can settle without. */
+static bool settle_coarser(tl_cloth *cloth, const tl_collider *collider)
 {
+    tl_error error = {0};
     tl_coarser *coarser = cloth->params.cages ? tl_coarser_create(cloth) : NULL;
-    bool carried = coarser && tl_cloth_settle(tl_coarser_cloth(coarser), collider, error);
+    bool carried = coarser && tl_cloth_settle(tl_coarser_cloth(coarser), collider, &error);
     if (carried)
         tl_coarser_carry(coarser, cloth);
+    else if (coarser && !tl_interrupted())
+        tl_info("a coarser version of the cloth could not be settled, so it settles without: %s",
+                error.message);
     tl_coarser_destroy(&coarser);
     return carried;
 }
@@ -97,9 +103,8 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
         if (!tried && !tl_seams_are_closing(&cloth->seams)) {
             tried = true;
             tl_cloth_use_solver(cloth, params);
-            carried = settle_coarser(cloth, collider, error);
+            carried = settle_coarser(cloth, collider);
             phase = carried ? TL_COUNT(phases) - 1 : phase;
-            progress = tl_progress_begin("settling the cloth");
         }
         /* Slower slip than settle_speed counts as rest, so such contacts stick. */
         const struct tl_advance_params advance = {.drag = phases[phase].drag,

@@ -62,3 +62,22 @@ for substeps in 4 30; do
 done
 check "cloth that hangs too long is reported" grep -q "the cloth is stretched by .* cloth.substeps=4 are too few" said4
 check "and nothing else is" sh -c "! grep -q stretched said30"
+
+# Two sheets that cross, which a hundredth of a second is too short to take apart.
+cat >crossed.obj <<'OBJ'
+v -0.2 1 -0.2
+v 0.2 1 -0.2
+v 0.2 1 0.2
+v -0.2 1 0.2
+v 0.013 0.81 -0.107
+v 0.013 0.81 0.093
+v 0.013 1.21 0.093
+v 0.013 1.21 -0.107
+f 1 2 3
+f 1 3 4
+f 5 6 7
+f 5 7 8
+OBJ
+$TOILE export --garment crossed.obj --units m --avatar none --no-cache --set cloth.settle_s=0.01 -o apart.obj 2>said_crossed
+check "cloth that is still crossed is reported" grep -q "still passes through itself: [1-9][0-9]* pairs" said_crossed
+check "and no other is" sh -c "! grep -q 'passes through itself' said30"

@@ -245,7 +245,8 @@ static struct counts count_pixels(const struct sunny *scene, const float *visibl
 #define CUT_SHARE   0.031
 #define SHEER       1
 
-static void check_suns(const struct sunny *scene, float yaw)
+/* What is seen of each sun at each pixel, once the environment is turned by `yaw`. */
+static struct tl_sun_pixels pixels_of(const struct sunny *scene, float yaw)
 {
     struct tl_pixel_triangles triangles = {0};
     tl_pixel_triangles_make(&triangles, &scene->ids, &scene->view, &scene->ranges, &scene->materials);
@@ -255,9 +256,17 @@ static void check_suns(const struct sunny *scene, float yaw)
                                                   .suns = &scene->suns,
                                                   .trace = scene->trace,
                                                   .ground = &scene->ground,
+                                                  .openness = scene->materials.openness,
                                                   .environment_yaw = yaw};
     struct tl_sun_pixels pixels = {0};
     tl_sun_pixels_update(&pixels, &request);
+    tl_pixel_triangles_release(&triangles);
+    return pixels;
+}
+
+static void check_suns(const struct sunny *scene, float yaw)
+{
+    struct tl_sun_pixels pixels = pixels_of(scene, yaw);
     printf("yaw %.1f: %zu rays for %zu pixels\n", (double)yaw, pixels.rays, scene->ids.covered);
     assert_true(pixels.rays < (size_t)scene->suns.count * scene->ids.covered);
     for (int sun = 0; sun < scene->suns.count; sun++) {
@@ -273,7 +282,6 @@ static void check_suns(const struct sunny *scene, float yaw)
         assert_near(counts.soft_bias / soft, 0, SOFT_BIAS);
         assert_near((double)counts.cut / soft, 0, CUT_SHARE);
     }
-    tl_pixel_triangles_release(&triangles);
     tl_sun_pixels_release(&pixels);
 }
 
@@ -295,23 +303,13 @@ static void test_sheer_layers(void **state)
     (void)state;
     struct sunny scene;
     open_sheer(&scene);
-    struct tl_pixel_triangles triangles = {0};
-    tl_pixel_triangles_make(&triangles, &scene.ids, &scene.view, &scene.ranges, &scene.materials);
-    const struct tl_sun_pixels_request request = {.ids = &scene.ids,
-                                                  .triangles = &triangles,
-                                                  .ranges = &scene.ranges,
-                                                  .suns = &scene.suns,
-                                                  .trace = scene.trace,
-                                                  .ground = &scene.ground,
-                                                  .openness = scene.materials.openness};
-    struct tl_sun_pixels pixels = {0};
-    tl_sun_pixels_update(&pixels, &request);
+    struct tl_sun_pixels pixels = pixels_of(&scene, 0);
     printf("%zu rays for %zu pixels of %d layers\n", pixels.rays, scene.ids.covered, scene.ids.layer_count);
     assert_true(scene.ids.layer_count >= 3);
     assert_true(pixels.rays < (size_t)scene.suns.count * scene.ids.covered);
     size_t lit = 0, filtered = 0, soft = 0;
     double weight = 1; /* of a layer in the picture */
-    for (int layer = 0; layer < scene.ids.layer_count; layer++, weight *= (double)request.openness)
+    for (int layer = 0; layer < scene.ids.layer_count; layer++, weight *= (double)scene.materials.openness)
         for (int sun = 0; sun < 2; sun++) {
             struct counts counts = count_pixels(&scene, pixels.visible[layer][sun], layer, sun, 0);
             size_t sharp = counts.lit + counts.dark;
@@ -329,7 +327,6 @@ static void test_sheer_layers(void **state)
             }
         }
     assert_true(lit > 5000 && filtered > 2000 && soft > 200); /* behind the nearest layer */
-    tl_pixel_triangles_release(&triangles);
     tl_sun_pixels_release(&pixels);
     close_sunny(&scene);
 }
@@ -342,21 +339,11 @@ static void test_narrow_shadows(void **state)
     (void)state;
     struct sunny scene;
     open_narrow(&scene);
-    struct tl_pixel_triangles triangles = {0};
-    tl_pixel_triangles_make(&triangles, &scene.ids, &scene.view, &scene.ranges, &scene.materials);
-    const struct tl_sun_pixels_request request = {.ids = &scene.ids,
-                                                  .triangles = &triangles,
-                                                  .ranges = &scene.ranges,
-                                                  .suns = &scene.suns,
-                                                  .trace = scene.trace,
-                                                  .ground = &scene.ground};
-    struct tl_sun_pixels pixels = {0};
-    tl_sun_pixels_update(&pixels, &request);
+    struct tl_sun_pixels pixels = pixels_of(&scene, 0);
     struct counts counts = count_pixels(&scene, pixels.visible[0][0], 0, 0, 0);
     printf("a line of %zu pixels: %zu wrong, %zu partly lit\n", counts.dark, counts.wrong, counts.soft);
     assert_true(counts.dark > 100);
     assert_true(counts.wrong <= ENDS);
-    tl_pixel_triangles_release(&triangles);
     tl_sun_pixels_release(&pixels);
     close_sunny(&scene);
 }
