@@ -142,7 +142,11 @@ void tl_cloth_build_state(tl_cloth *cloth)
     const tl_garment *garment = cloth->garment;
     const tl_mesh *mesh = &garment->model.mesh;
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
-    size_t count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
+    size_t count = mesh->vertex_count;
+    for (size_t i = 0; i < count; i++)
+        weld[i] = (uint32_t)i;
+    if (!garment->welds_seams_only)
+        count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
     tl_cloth_build_mesh(cloth, weld, count);
     cloth->particles = tl_particles_create(count);
     for (size_t i = 0; i < mesh->vertex_count; i++)

@@ -6,6 +6,7 @@
 #include "assets/environment.h"
 #include "assets/model.h"
 #include "assets/motion/point_cache.h"
+#include "assets/pattern/pattern_place.h"
 #include "cloth/cloth.h"
 #include "config/file.h"
 #include "config/memory.h"
@@ -194,6 +195,66 @@ static cJSON *describe_model(const tl_model *model)
     return object;
 }
 
+/* Counts the edges of each label, in the order of their first. */
+static void describe_labels(cJSON *object, const tl_pattern *pattern)
+{
+    cJSON *labels = cJSON_AddObjectToObject(object, "labels");
+    for (size_t p = 0; p < pattern->panel_count; p++) {
+        for (size_t e = 0; e < pattern->panels[p].edge_count; e++) {
+            const char *label = pattern->panels[p].edges[e].label;
+            cJSON *count = cJSON_GetObjectItemCaseSensitive(labels, label);
+            if (count)
+                cJSON_SetNumberValue(count, count->valuedouble + 1);
+            else if (label[0] != '\0')
+                cJSON_AddNumberToObject(labels, label, 1);
+        }
+    }
+}
+
+static double panel_outline(const struct tl_pattern_panel *panel)
+{
+    double length = 0;
+    for (size_t e = 0; e < panel->edge_count; e++)
+        length += tl_pattern_edge_length(&panel->edges[e]);
+    return length;
+}
+
+/* Describes a sewing pattern, with the seams that gather or ease by more than rounding. */
+static cJSON *describe_pattern(const tl_pattern *pattern)
+{
+    const double noticed = 0.01;
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "kind", "pattern");
+    cJSON_AddStringToObject(object, "name", pattern->name);
+    cJSON *panels = cJSON_AddObjectToObject(object, "panels");
+    for (size_t p = 0; p < pattern->panel_count; p++) {
+        const struct tl_pattern_panel *panel = &pattern->panels[p];
+        cJSON *item = cJSON_AddObjectToObject(panels, panel->name);
+        if (panel->label[0] != '\0')
+            cJSON_AddStringToObject(item, "label", panel->label);
+        cJSON_AddNumberToObject(item, "edges", (double)panel->edge_count);
+        cJSON_AddNumberToObject(item, "outline_m", panel_outline(panel));
+        cJSON_AddNumberToObject(item, "area_m2", tl_pattern_panel_area(panel));
+    }
+    describe_labels(object, pattern);
+    cJSON_AddNumberToObject(object, "stitches", (double)pattern->stitch_count);
+    cJSON *eased = cJSON_AddObjectToObject(object, "eased_percent");
+    for (size_t s = 0; s < pattern->stitch_count; s++) {
+        const struct tl_pattern_side *sides = pattern->stitches[s].sides;
+        double ease = tl_pattern_stitch_ease(pattern, s);
+        char *key = tl_format("%zu: %s, %s", s, pattern->panels[sides[0].panel].name,
+                              pattern->panels[sides[1].panel].name);
+        if (ease > noticed)
+            cJSON_AddNumberToObject(eased, key, 100 * ease);
+        free(key);
+    }
+    cJSON_AddStringToObject(
+        object, "body",
+        "the one that it was drafted for: --avatar FILE; its measures are looked for in a "
+        ".yaml of the same name");
+    return object;
+}
+
 /* Describes a recorded motion in the file's own units, which depend on the garment that it moves. */
 static cJSON *describe_motion(const char *path, const struct tl_point_cache_facts *facts)
 {
@@ -307,6 +368,12 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
             return false;
         object = describe_model(&model);
         tl_model_release(&model);
+    } else if (tl_pattern_is_file(path)) {
+        tl_pattern pattern;
+        if (!tl_pattern_load(path, &pattern, error))
+            return false;
+        object = describe_pattern(&pattern);
+        tl_pattern_release(&pattern);
     } else if (tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
         object = describe_scene(path, error);
         if (!object)
@@ -318,10 +385,11 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
         object = describe_environment(&environment);
         tl_environment_release(&environment);
     } else {
-        return tl_fail(
-            error, TL_INPUT,
-            "%s: unknown kind of file: expected .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or a scene's .yaml",
-            path);
+        return tl_fail(error, TL_INPUT,
+                       "%s: unknown kind of file: expected .glb, .gltf, .obj, .json (a sewing pattern), "
+                       ".pc2, .mdd, .exr, "
+                       ".hdr or a scene's .yaml",
+                       path);
     }
     print_object(object, arguments->json);
     return true;

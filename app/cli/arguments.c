@@ -39,7 +39,7 @@ struct flag {
 
 static const struct flag flags_known[] = {
     {"--garment", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.garment", "NAME|FILE",
-     "dress, skirt, trousers, shirt, none, or a .glb, .gltf or .obj file"},
+     "dress, skirt, trousers, shirt, none, a .glb, .gltf or .obj file, or a pattern, .json"},
     {"--units", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.units", "UNITS",
      "of the garment's file: auto, m, dm, cm, mm or in"},
     {"--motion", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.motion", "FILE",

@@ -7,7 +7,7 @@ bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settin
 {
     if (arguments->positional_count > 1)
         return tl_fail(error, TL_USAGE,
-                       "%s: one scene at a time: name a YAML, .glb, .gltf or .obj file, or none",
+                       "%s: one scene at a time: name a YAML, .glb, .gltf, .obj or .json file, or none",
                        arguments->positionals[1]);
     const struct tl_settings_source source = {
         .scene_file = arguments->positional_count ? arguments->positionals[0] : NULL,

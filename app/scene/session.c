@@ -8,6 +8,8 @@
 #include "assets/avatar.h"
 #include "assets/builtin/specimen.h"
 #include "assets/cut/fit.h"
+#include "assets/pattern/pattern.h"
+#include "assets/pattern/pattern_worn.h"
 #include "assets/refine.h"
 #include "cloth/energy/strain.h"
 #include "cloth/mesh/topology.h"
@@ -84,6 +86,12 @@ static void report_units(const tl_model *model, const char *option)
     }
 }
 
+/* Whether the garment hangs on arms or legs, as patterns may. */
+static bool needs_limbs(const char *garment)
+{
+    return tl_garment_is_for_figure(garment) || tl_pattern_is_file(garment);
+}
+
 static bool load_avatar(tl_session *session, tl_error *error)
 {
     const char *name = session->settings.scene.avatar;
@@ -92,8 +100,7 @@ static bool load_avatar(tl_session *session, tl_error *error)
     if (strcmp(name, "none") == 0)
         return true;
     if (strcmp(name, "form") == 0)
-        loaded =
-            tl_garment_is_for_figure(session->settings.scene.garment) ? tl_avatar_figure() : tl_avatar_form();
+        loaded = needs_limbs(session->settings.scene.garment) ? tl_avatar_figure() : tl_avatar_form();
     else if (strcmp(name, "figure") == 0)
         loaded = tl_avatar_figure();
     else if (strcmp(name, "ball") == 0)
@@ -181,12 +188,14 @@ static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
     const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
     if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
         return true;
+    const float edge_m = session->settings.cloth.edge_m;
+    const tl_mesh *mesh = session->avatar ? &session->avatar->model.mesh : NULL;
+    if (tl_pattern_is_file(name))
+        return tl_pattern_worn(name, &(struct tl_pattern_wearer){wearer, mesh}, edge_m, out, error);
     if (!is_built_in_garment(name))
         return read_garment(session, out, error);
-    const float edge_m = session->settings.cloth.edge_m;
     if (!session->avatar || strcmp(wearer, "form") == 0)
         return tl_garment_cut(name, edge_m, out, error);
-    const tl_mesh *mesh = &session->avatar->model.mesh;
     tl_collider *body = tl_collider_create(mesh, false, error);
     const struct tl_wearer worn_by = {wearer, mesh, {distance_to_body, body}};
     bool good = body && tl_garment_cut_for(name, edge_m, &worn_by, out, error);

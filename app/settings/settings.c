@@ -3,6 +3,7 @@
 
 #include "assets/base/units.h"
 #include "assets/model.h"
+#include "assets/pattern/pattern.h"
 #include "config/embedded.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -173,6 +174,12 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
+/* A pattern in place of a scene is worn by the body that the options name. */
+static bool apply_pattern(const struct tl_binding *all, const char *path, tl_error *error)
+{
+    return tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
+}
+
 static bool has_own_colourways(const struct tl_scene_params *scene)
 {
     return strcmp(scene->colourways, OWN) == 0;
@@ -198,17 +205,20 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool applied = tl_model_is_file(scene) ? apply_model(all, scene, error) : apply_scene(all, scene, error);
+    bool applied = tl_model_is_file(scene)     ? apply_model(all, scene, error)
+                   : tl_pattern_is_file(scene) ? apply_pattern(all, scene, error)
+                                               : apply_scene(all, scene, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
     return applied;
 }
 
-/* A garment file has materials of its own; a built-in garment gets them from a fabric. */
+/* A garment file has materials of its own; a built-in garment and a pattern get them from a fabric. */
 static void choose_fabric(struct tl_scene_params *scene)
 {
+    bool has_own = tl_option_is_file_name(scene->garment) && !tl_pattern_is_file(scene->garment);
     if (scene->fabric[0] == '\0')
-        strcpy(scene->fabric, tl_option_is_file_name(scene->garment) ? "none" : "satin");
+        strcpy(scene->fabric, has_own ? "none" : "satin");
     if (scene->overlay_fabric[0] == '\0')
         strcpy(scene->overlay_fabric, "none");
 }

@@ -81,7 +81,7 @@ struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 
 /* The parts of the command line that settings are loaded from. */
 struct tl_settings_source {
-    const char *scene_file;         /* YAML, .glb or .gltf, or NULL: the built-in scene */
+    const char *scene_file;         /* YAML, a model or a pattern, or NULL: the built-in scene */
     const char *const *assignments; /* "table.key=value", later ones win */
     size_t assignment_count;
 };

@@ -91,6 +91,7 @@ const struct tl_review_gesture tl_review_gestures[] = {
     {TL_SECTION_LIGHT, "Shift + drag", "turn the environment"},
     {TL_SECTION_COMPARE, "drag the line", "move it"},
     {TL_SECTION_WINDOW, "drop a file", ".glb .gltf .obj: model; .pc2 .mdd: motion;"},
+    {TL_SECTION_WINDOW, "", ".json: sewing pattern;"},
     {TL_SECTION_WINDOW, "", ".exr .hdr: light; .yaml: scene, fabric, preset"},
 };
 const size_t tl_review_gesture_count = TL_COUNT(tl_review_gestures);

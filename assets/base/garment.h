@@ -19,6 +19,8 @@ typedef struct tl_garment {
     vec2s *pattern;
     size_t seam_count;
     struct tl_seam_pair *seams;
+    bool
+        welds_seams_only; /* what starts at one place is not one for that: panels that hang over each other */
     size_t pin_count;
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
     bool solid;     /* rigid, not cloth (assets/builtin/specimen.h) */

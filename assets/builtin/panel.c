@@ -1,12 +1,14 @@
 #include "assets/builtin/panel.h"
 
 #include "assets/builtin/delaunay.h"
+#include "assets/builtin/delaunay_ring.h"
 #include "config/memory.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CURVE_SAMPLES = 128, SMOOTHING_PASSES = 8, SMOOTHING_ROUNDS = 2 };
 
@@ -46,8 +48,7 @@ double tl_curve_length(const struct tl_curve *curve)
     return length[CURVE_SAMPLES];
 }
 
-/* The curve's start and its inner divisions; its end is the next curve's start. */
-static void divide_curve(const struct tl_curve *curve, struct tl_point *out)
+void tl_curve_divide(const struct tl_curve *curve, struct tl_point *out)
 {
     double length[CURVE_SAMPLES + 1];
     measure_curve(curve, length);
@@ -121,10 +122,12 @@ static void fill_inside(tl_panel_mesh *panel, double edge_m)
     }
 }
 
-static void triangulate(tl_panel_mesh *panel)
+/* False when an outline edge is lost. */
+static bool triangulate(tl_panel_mesh *panel)
 {
     free(panel->triangles);
     size_t count = tl_delaunay(panel->points, panel->point_count, &panel->triangles), kept = 0;
+    bool follows = tl_delaunay_follow(panel->points, panel->outline_count, panel->triangles, count);
     for (size_t t = 0; t < count; t++) {
         struct tl_point centre = {0, 0};
         for (int k = 0; k < 3; k++) {
@@ -138,15 +141,18 @@ static void triangulate(tl_panel_mesh *panel)
         kept++;
     }
     panel->triangle_count = kept;
-    /* Euler's count for a disc: anything else means that an outline edge was lost. */
-    assert(kept == 2 * panel->point_count - panel->outline_count - 2);
+    return follows && kept == 2 * panel->point_count - panel->outline_count - 2; /* Euler's, of a disc */
 }
 
-/* Moves inner points to the mean of their neighbours, which evens out the strip along the outline. */
-static void smooth(tl_panel_mesh *panel)
+/* Moves inner points to the mean of their neighbours, which evens out the strip along the outline. Beside a
+ * notch the mean may lie outside, or on the outline: such points stay. */
+static void smooth(tl_panel_mesh *panel, double edge_m)
 {
+    const double clearance = 0.25 * edge_m;
     struct tl_point *sum = TL_NEW_ARRAY(struct tl_point, panel->point_count);
+    struct tl_point *before = TL_NEW_ARRAY(struct tl_point, panel->point_count);
     double *weight = TL_NEW_ARRAY(double, panel->point_count);
+    memcpy(before, panel->points, panel->point_count * sizeof *before);
     for (int pass = 0; pass < SMOOTHING_PASSES; pass++) {
         for (size_t i = 0; i < panel->point_count; i++) {
             sum[i] = (struct tl_point){0, 0};
@@ -163,26 +169,47 @@ static void smooth(tl_panel_mesh *panel)
         for (size_t i = panel->outline_count; i < panel->point_count; i++)
             panel->points[i] = (struct tl_point){sum[i].x / weight[i], sum[i].y / weight[i]};
     }
+    for (size_t i = panel->outline_count; i < panel->point_count; i++)
+        if (!is_inside(panel->points, panel->outline_count, panel->points[i]) ||
+            distance_to_outline(panel->points, panel->outline_count, panel->points[i]) < clearance)
+            panel->points[i] = before[i];
     free(sum);
+    free(before);
     free(weight);
+}
+
+bool tl_panel_fill(const struct tl_point *outline, size_t count, double edge_m, tl_panel_mesh *out)
+{
+    *out = (tl_panel_mesh){.outline_count = count, .point_count = count};
+    out->points = TL_NEW_ARRAY(struct tl_point, count);
+    memcpy(out->points, outline, count * sizeof *outline);
+    fill_inside(out, edge_m);
+    bool good = triangulate(out);
+    for (int round = 0; good && round < SMOOTHING_ROUNDS; round++) {
+        smooth(out, edge_m);
+        good = triangulate(out);
+    }
+    if (!good)
+        tl_panel_release(out);
+    return good;
 }
 
 tl_panel_mesh tl_panel_cut(const struct tl_curve *outline, size_t curve_count, double edge_m)
 {
-    tl_panel_mesh panel = {0};
+    size_t count = 0;
     for (size_t c = 0; c < curve_count; c++)
-        panel.outline_count += (size_t)outline[c].segments;
-    panel.points = TL_NEW_ARRAY(struct tl_point, panel.outline_count);
+        count += (size_t)outline[c].segments;
+    struct tl_point *points = TL_NEW_ARRAY(struct tl_point, count);
+    size_t next = 0;
     for (size_t c = 0; c < curve_count; c++) {
-        divide_curve(&outline[c], panel.points + panel.point_count);
-        panel.point_count += (size_t)outline[c].segments;
+        tl_curve_divide(&outline[c], points + next);
+        next += (size_t)outline[c].segments;
     }
-    fill_inside(&panel, edge_m);
-    triangulate(&panel);
-    for (int round = 0; round < SMOOTHING_ROUNDS; round++) {
-        smooth(&panel);
-        triangulate(&panel);
-    }
+    tl_panel_mesh panel;
+    bool good = tl_panel_fill(points, count, edge_m, &panel);
+    assert(good);
+    (void)good;
+    free(points);
     return panel;
 }
 

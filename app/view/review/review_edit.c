@@ -1,6 +1,7 @@
 #include "app/view/review/review_edit.h"
 
 #include "assets/motion/point_cache.h"
+#include "assets/pattern/pattern.h"
 #include "config/embedded.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -230,14 +231,18 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
         tl_review_set(review, "scene.environment", path);
     } else if (tl_point_cache_is_file(path)) {
         tl_review_set(review, "scene.motion", path);
+    } else if (tl_pattern_is_file(path)) {
+        tl_review_set(review, "scene.garment", path);
     } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
                tl_path_has_extension(path, "yml")) {
         ask_about(review, path);
     } else {
         tl_error error;
-        tl_fail(&error, TL_INPUT,
-                "%s: cannot be used here: drop a .glb, .gltf, .obj, .pc2, .mdd, .exr, .hdr or .yaml file",
-                path);
+        tl_fail(
+            &error, TL_INPUT,
+            "%s: cannot be used here: drop a .glb, .gltf, .obj, .json (a pattern), .pc2, .mdd, .exr, .hdr or "
+            ".yaml file",
+            path);
         tl_review_report_error(review, &error);
     }
 }

@@ -3,6 +3,7 @@
 #include "app/cli/arguments.h"
 #include "app/view/review/review_move.h"
 #include "assets/model.h"
+#include "assets/pattern/pattern.h"
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -21,7 +22,9 @@ bool tl_review_restore_state(struct tl_review *review)
     const char *scene = arguments->positional_count > 0 ? arguments->positionals[0] : NULL;
     review->params = *(const struct tl_window_params *)tl_window_options.defaults;
     review->scene_file =
-        scene && tl_option_is_file_name(scene) && !tl_model_is_file(scene) ? tl_copy_string(scene) : NULL;
+        scene && tl_option_is_file_name(scene) && !tl_model_is_file(scene) && !tl_pattern_is_file(scene)
+            ? tl_copy_string(scene)
+            : NULL;
     review->state_folder = arguments->fresh ? NULL : tl_state_folder();
     if (!review->state_folder)
         return false;

@@ -117,12 +117,49 @@ static void test_disc(void **state)
     tl_panel_release(&panel);
 }
 
+/* A slit 4 mm wide, the points on its sides opposite the middles of the other side's edges: those edges are
+ * no Delaunay edges. They are kept all the same, and the triangles cover what the slit leaves, no more. */
+static void test_slit(void **state)
+{
+    (void)state;
+    struct tl_point outline[64];
+    size_t count = 0;
+    for (int i = 0; i < 10; i++)
+        outline[count++] = (struct tl_point){0.02 * i, 0};
+    for (int i = 0; i < 10; i++)
+        outline[count++] = (struct tl_point){0.2, 0.02 * i};
+    for (int i = 0; i < 5; i++)
+        outline[count++] = (struct tl_point){0.2 - 0.0196 * i, 0.2};
+    for (int i = 0; i < 8; i++)
+        outline[count++] = (struct tl_point){0.102, 0.2 - 0.02 * i};
+    for (int i = 0; i < 8; i++)
+        outline[count++] = (struct tl_point){0.098, 0.05 + 0.02 * i};
+    for (int i = 0; i < 5; i++)
+        outline[count++] = (struct tl_point){0.098 - 0.0196 * i, 0.2};
+    for (int i = 0; i < 10; i++)
+        outline[count++] = (struct tl_point){0, 0.2 - 0.02 * i};
+    double exact = 0, area = 0;
+    for (size_t i = 0; i < count; i++) {
+        struct tl_point a = outline[i], b = outline[(i + 1) % count];
+        exact += 0.5 * (a.x * b.y - b.x * a.y);
+    }
+    tl_panel_mesh panel;
+    assert_true(tl_panel_fill(outline, count, 0.02, &panel));
+    for (size_t t = 0; t < panel.triangle_count; t++) {
+        assert_true(area_of(panel.points, panel.triangles[t]) > 0);
+        area += area_of(panel.points, panel.triangles[t]);
+    }
+    assert_near(area, exact, 1e-9);
+    tl_panel_release(&panel);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_delaunay),
         cmocka_unit_test(test_rectangle),
         cmocka_unit_test(test_disc),
+        cmocka_unit_test(test_slit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

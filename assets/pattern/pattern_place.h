@@ -1,0 +1,28 @@
+/* Patterns on a body: where the body's waist is, and the panels that belong there. Metres. Threads: pure. */
+#ifndef TOILE_ASSETS_PATTERN_PATTERN_PLACE_H
+#define TOILE_ASSETS_PATTERN_PATTERN_PLACE_H
+
+#include "assets/base/mesh.h"
+#include "assets/pattern/pattern.h"
+
+/* Edges of this label lie at the waist when they are worn: the top of a skirt or of trousers. */
+#define TL_PATTERN_AT_WAIST "lower_interface"
+
+/* The body's measures, as GarmentCode writes them: a file beside the body's, of its name with .yaml, that
+ * holds `body:` with values in centimetres. Zero for each that is not there. */
+struct tl_pattern_measures {
+    double height, head, waist_line; /* m: head_l, and from the neck to the waist */
+};
+/* False when there is no such file, or no such measures in it; then *out is zeroed. */
+bool tl_pattern_measures(const char *body_path, struct tl_pattern_measures *out);
+
+/* The waist's height above the ground: height - head - waist_line where the measures are known, else where
+ * the body is narrowest (assets/cut/fit.h); 0 when it is not found. */
+double tl_pattern_waist(const struct tl_pattern_measures *measures, const tl_mesh *body);
+
+/* Raises all panels with edges at the waist by one distance, so that these edges' mean lies at waist_m, and
+ * moves them inwards, so that what hangs over them is outside. False when no edge is labelled so: the pattern
+ * is unchanged. */
+bool tl_pattern_raise(tl_pattern *pattern, double waist_m);
+
+#endif
