@@ -10,7 +10,13 @@
 #include <string.h>
 
 /* How far panels at the waist are moved towards the body. */
-#define TUCK_M                 0.015
+#define TUCK_M 0.015
+/* GarmentCode hangs a shirt so that its top is so far below the shoulders, which it then falls over. */
+#define BELOW_SHOULDER_M 0.05
+/* Of the average body's height (GarmentCode's mean_all: 1.457 of 1.720 m). */
+#define SHOULDER_SHARE 0.847
+/* The vertical part of a panel's y axis: less, and it is turned. */
+#define UPRIGHT                0.98
 #define TL_LIMIT_MEASURE_BYTES ((size_t)1 << 20)
 
 /* ---- Measures ---- */
@@ -93,12 +99,16 @@ bool tl_pattern_measures(const char *body_path, struct tl_pattern_measures *out)
     return found;
 }
 
-double tl_pattern_waist(const struct tl_pattern_measures *measures, const tl_mesh *body)
+struct tl_pattern_levels tl_pattern_levels(const struct tl_pattern_measures *measures, const tl_mesh *body)
 {
     struct tl_waist waist;
-    if (measures->height > 0)
-        return measures->height - measures->head - measures->waist_line;
-    return tl_mesh_waist(body, &waist) ? (double)waist.y_m : 0;
+    if (measures->height > 0) {
+        double shoulder = measures->height - measures->head;
+        return (struct tl_pattern_levels){shoulder - measures->waist_line, shoulder};
+    }
+    struct tl_box box = tl_box_of(body->positions, body->vertex_count);
+    double shoulder = (double)box.lower.y + SHOULDER_SHARE * (double)(box.upper.y - box.lower.y);
+    return (struct tl_pattern_levels){tl_mesh_waist(body, &waist) ? (double)waist.y_m : 0, shoulder};
 }
 
 /* ---- Panels at the waist ---- */
@@ -116,39 +126,120 @@ static bool has_waist(const struct tl_pattern_panel *panel)
     return false;
 }
 
-/* Adds the edge's length, and its height times that. */
-static void add_height(const struct tl_pattern_panel *panel, const struct tl_pattern_edge *edge,
-                       double *length, double *moment)
+/* The edges whose heights are averaged. */
+struct mean_height {
+    double length, moment; /* m; m^2: lengths times heights */
+};
+
+static void add_edge(struct mean_height *mean, const struct tl_pattern_panel *panel,
+                     const struct tl_pattern_edge *edge)
 {
     enum { SAMPLES = 16 };
     struct tl_point points[SAMPLES];
-    double edge_length = tl_pattern_edge_length(edge), height = 0;
+    double length = tl_pattern_edge_length(edge), height = 0;
     tl_pattern_edge_divide(edge, SAMPLES, points);
     for (int i = 0; i < SAMPLES; i++)
         height += (panel->origin[1] + points[i].x * panel->across[1] + points[i].y * panel->up[1]) / SAMPLES;
-    *length += edge_length;
-    *moment += edge_length * height;
+    mean->length += length;
+    mean->moment += length * height;
 }
 
-bool tl_pattern_raise(tl_pattern *pattern, double waist_m)
+/* Moves a panel against its outer side. */
+static void tuck(struct tl_pattern_panel *panel)
 {
-    double length = 0, moment = 0;
+    const double *a = panel->across, *u = panel->up;
+    const double outwards[3] = {a[1] * u[2] - a[2] * u[1], a[2] * u[0] - a[0] * u[2],
+                                a[0] * u[1] - a[1] * u[0]};
+    for (int k = 0; k < 3; k++)
+        panel->origin[k] -= TUCK_M * outwards[k];
+}
+
+/* Marks a panel and all that are sewn to it, directly or not, except those at the waist. */
+static void mark_sewn(const tl_pattern *pattern, size_t first, bool *marked)
+{
+    marked[first] = true;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t s = 0; s < pattern->stitch_count; s++) {
+            size_t a = pattern->stitches[s].sides[0].panel, b = pattern->stitches[s].sides[1].panel;
+            size_t other = marked[a] ? b : a;
+            if (marked[a] == marked[b] || has_waist(&pattern->panels[other]))
+                continue;
+            marked[other] = changed = true;
+        }
+    }
+}
+
+/* The height of the edges of marked panels that are sewn to edges at the waist. */
+static struct mean_height height_at_waist(const tl_pattern *pattern, const bool *marked)
+{
+    struct mean_height mean = {0, 0};
+    for (size_t s = 0; s < pattern->stitch_count; s++) {
+        for (int k = 0; k < 2; k++) {
+            const struct tl_pattern_side *side = &pattern->stitches[s].sides[k];
+            const struct tl_pattern_side *other = &pattern->stitches[s].sides[1 - k];
+            if (marked[side->panel] && is_at_waist(&pattern->panels[other->panel].edges[other->edge]))
+                add_edge(&mean, &pattern->panels[side->panel],
+                         &pattern->panels[side->panel].edges[side->edge]);
+        }
+    }
+    return mean;
+}
+
+/* A panel that hangs aslant, such as a sleeve along its arm. */
+static bool is_turned(const struct tl_pattern_panel *panel)
+{
+    return panel->up[1] < UPRIGHT;
+}
+
+static double top_of(const struct tl_pattern_panel *panel)
+{
+    double top = -INFINITY;
+    for (size_t e = 0; e < panel->edge_count; e++) {
+        struct tl_point at = tl_pattern_edge_start(&panel->edges[e]);
+        top = fmax(top, panel->origin[1] + at.x * panel->across[1] + at.y * panel->up[1]);
+    }
+    return top;
+}
+
+/* What is sewn to the waist goes there with it, as one: a bodice. Where panels hang aslant they are placed on
+ * limbs, away from which they are not moved. */
+static void raise_sewn(tl_pattern *pattern, size_t first, const struct tl_pattern_levels *levels, bool *done)
+{
+    bool *marked = TL_NEW_ARRAY(bool, pattern->panel_count);
+    bool turned = false;
+    mark_sewn(pattern, first, marked);
+    struct mean_height mean = height_at_waist(pattern, marked);
+    double top = -INFINITY;
+    for (size_t p = 0; p < pattern->panel_count; p++) {
+        turned |= marked[p] && is_turned(&pattern->panels[p]);
+        done[p] |= marked[p];
+        if (marked[p])
+            top = fmax(top, top_of(&pattern->panels[p]));
+    }
+    double rise = fmin(levels->waist - mean.moment / mean.length, levels->shoulder - BELOW_SHOULDER_M - top);
+    for (size_t p = 0; p < pattern->panel_count; p++)
+        if (marked[p] && !turned && mean.length > 0)
+            pattern->panels[p].origin[1] += fmax(rise, 0);
+    free(marked);
+}
+
+bool tl_pattern_raise(tl_pattern *pattern, const struct tl_pattern_levels *levels)
+{
+    struct mean_height mean = {0, 0};
+    bool *done = TL_NEW_ARRAY(bool, pattern->panel_count);
     for (size_t p = 0; p < pattern->panel_count; p++)
         for (size_t e = 0; e < pattern->panels[p].edge_count; e++)
             if (is_at_waist(&pattern->panels[p].edges[e]))
-                add_height(&pattern->panels[p], &pattern->panels[p].edges[e], &length, &moment);
-    if (!(length > 0))
-        return false;
-    for (size_t p = 0; p < pattern->panel_count; p++) {
-        struct tl_pattern_panel *panel = &pattern->panels[p];
-        if (!has_waist(panel))
-            continue;
-        const double *a = panel->across, *u = panel->up;
-        const double outwards[3] = {a[1] * u[2] - a[2] * u[1], a[2] * u[0] - a[0] * u[2],
-                                    a[0] * u[1] - a[1] * u[0]};
-        for (int k = 0; k < 3; k++)
-            panel->origin[k] -= TUCK_M * outwards[k];
-        panel->origin[1] += waist_m - moment / length;
+                add_edge(&mean, &pattern->panels[p], &pattern->panels[p].edges[e]);
+    for (size_t p = 0; mean.length > 0 && p < pattern->panel_count; p++) {
+        if (has_waist(&pattern->panels[p])) {
+            tuck(&pattern->panels[p]);
+            pattern->panels[p].origin[1] += levels->waist - mean.moment / mean.length;
+        } else if (!done[p]) {
+            raise_sewn(pattern, p, levels, done);
+        }
     }
-    return true;
+    free(done);
+    return mean.length > 0;
 }

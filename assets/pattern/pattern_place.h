@@ -16,13 +16,18 @@ struct tl_pattern_measures {
 /* False when there is no such file, or no such measures in it; then *out is zeroed. */
 bool tl_pattern_measures(const char *body_path, struct tl_pattern_measures *out);
 
-/* The waist's height above the ground: height - head - waist_line where the measures are known, else where
- * the body is narrowest (assets/cut/fit.h); 0 when it is not found. */
-double tl_pattern_waist(const struct tl_pattern_measures *measures, const tl_mesh *body);
+/* Heights above the ground where things hang. */
+struct tl_pattern_levels {
+    double waist; /* height - head - waist_line where the measures are known, else where the body is narrowest
+                     (assets/cut/fit.h); 0: not found */
+    double shoulder; /* the neck's foot: height - head, else as on the average body */
+};
+struct tl_pattern_levels tl_pattern_levels(const struct tl_pattern_measures *measures, const tl_mesh *body);
 
-/* Raises all panels with edges at the waist by one distance, so that these edges' mean lies at waist_m, and
- * moves them inwards, so that what hangs over them is outside. False when no edge is labelled so: the pattern
- * is unchanged. */
-bool tl_pattern_raise(tl_pattern *pattern, double waist_m);
+/* Raises all panels with edges at the waist by one distance, so that these edges' mean lies there, and moves
+ * them inwards, so that what hangs over them is outside. What is sewn to these edges is raised as one until
+ * it meets them or reaches the shoulders, unless some of its panels are turned towards limbs. False when no
+ * edge is labelled so: the pattern is unchanged. */
+bool tl_pattern_raise(tl_pattern *pattern, const struct tl_pattern_levels *levels);
 
 #endif

@@ -10,9 +10,11 @@ static void place(tl_pattern *pattern, const struct tl_pattern_wearer *wearer)
 {
     struct tl_pattern_measures measures = {0};
     bool known = tl_option_is_file_name(wearer->name) && tl_pattern_measures(wearer->name, &measures);
-    double waist_m = wearer->mesh ? tl_pattern_waist(&measures, wearer->mesh) : 0;
-    if (waist_m > 0 && tl_pattern_raise(pattern, waist_m))
-        tl_info("%s: hung at the waist of %s, %.3f m high by %s", pattern->name, wearer->name, waist_m,
+    if (!wearer->mesh)
+        return;
+    struct tl_pattern_levels levels = tl_pattern_levels(&measures, wearer->mesh);
+    if (levels.waist > 0 && tl_pattern_raise(pattern, &levels))
+        tl_info("%s: hung at the waist of %s, %.3f m high by %s", pattern->name, wearer->name, levels.waist,
                 known ? "the measures beside it" : "its girths");
 }
 

@@ -259,29 +259,55 @@ static void test_darts_are_cut_out(void **state)
     tl_pattern_release(&pattern);
 }
 
+/* A skirt with its top at the waist; a bodice that is sewn to it and a yoke that is sewn to the bodice, which
+ * follow until they meet the waist or reach the shoulders; a hood that is sewn to nothing, which stays. */
 static void test_panels_at_the_waist_are_raised(void **state)
 {
     (void)state;
-    tl_error error = {0};
-    tl_pattern pattern;
-#define TOP                                                                                                  \
-    "{\"endpoints\": [0, 1]}, {\"endpoints\": [1, 2]}, {\"endpoints\": [2, 3]%s}, {\"endpoints\": [3, 0]}"
-    char text[1024];
-    snprintf(text, sizeof text,
-             "\"panels\": {\"skirt\": {" SQUARE ", \"translation\": [0, 50, 20], \"edges\": [" TOP
-             "]}, \"top\": "
-             "{" SQUARE ", \"translation\": [0, 90, 20], \"edges\": [" TOP "]}}",
-             ", \"label\": \"lower_interface\"", "");
-    assert_ok(tl_pattern_load(write_pattern("waist.json", text, CM), &pattern, &error), error);
-    assert_true(tl_pattern_raise(&pattern, 1.05));
-    assert_near(hung(&pattern.panels[0], 0.1, 0.1).y, 1.05, 1e-6);
-    assert_near(pattern.panels[0].origin[2], 0.2 - 0.015, 1e-9); /* tucked in, towards -z */
-    assert_near(pattern.panels[1].origin[1], 0.9, 1e-9);
-    assert_near(pattern.panels[1].origin[2], 0.2, 1e-9);
-    tl_pattern_release(&pattern);
-    pattern = load_curved(NULL, CM);
-    assert_false(tl_pattern_raise(&pattern, 1.05));
-    tl_pattern_release(&pattern);
+#define RING(label)                                                                                          \
+    "\"edges\": [{\"endpoints\": [0, 1]}, {\"endpoints\": [1, 2]}, {\"endpoints\": [2, 3]" label             \
+    "}, {\"endpoints\": [3, 0]}]"
+    const char *const text = "\"panels\": {\"skirt\": {" SQUARE ", \"translation\": [0, 50, 20], " RING(
+        ", \"label\": \"lower_interface\"") "}, "
+                                            "\"hood\": {" SQUARE ", \"translation\": [0, 90, 20], " RING(
+                                                "") "}, "
+                                                    "\"bodice\": {" SQUARE
+                                                    ", \"translation\": [0, 80, 20], " RING(
+                                                        "") "}, "
+                                                            "\"yoke\": {" SQUARE
+                                                            ", \"translation\": [0, 95, 20], \"rotation\": "
+                                                            "[0, 0, %g], " RING(
+                                                                "") "}}, "
+                                                                    "\"stitches\": [[{\"panel\": \"bodice\", "
+                                                                    "\"edge\": 0}, {\"panel\": \"skirt\", "
+                                                                    "\"edge\": 2}], "
+                                                                    "[{\"panel\": \"yoke\", \"edge\": 0}, "
+                                                                    "{\"panel\": \"bodice\", \"edge\": 2}]]";
+    const struct {
+        double turn, shoulder, rise;
+    } cases[] = {{0, 2, 0.25}, {0, 1.2, 0.1}, {0, 1, 0}, {50, 2, 0}};
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        char filled[4096];
+        tl_error error = {0};
+        tl_pattern pattern;
+        const struct tl_pattern_levels levels = {.waist = 1.05, .shoulder = cases[i].shoulder};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+        snprintf(filled, sizeof filled, text, cases[i].turn);
+#pragma GCC diagnostic pop
+        assert_ok(tl_pattern_load(write_pattern("waist.json", filled, CM), &pattern, &error), error);
+        assert_true(tl_pattern_raise(&pattern, &levels));
+        assert_near(hung(&pattern.panels[0], 0.1, 0.1).y, 1.05, 1e-6);
+        assert_near(pattern.panels[0].origin[2], 0.2 - 0.015, 1e-9); /* tucked in, towards -z */
+        assert_near(pattern.panels[1].origin[1], 0.9, 1e-9);
+        assert_near(pattern.panels[2].origin[1], 0.8 + cases[i].rise, 1e-9);
+        assert_near(pattern.panels[3].origin[1], 0.95 + cases[i].rise, 1e-9);
+        assert_near(pattern.panels[3].origin[2], 0.2, 1e-9);
+        tl_pattern_release(&pattern);
+    }
+    tl_pattern plain = load_curved(NULL, CM);
+    assert_false(tl_pattern_raise(&plain, &(struct tl_pattern_levels){1.05, 1.4}));
+    tl_pattern_release(&plain);
 }
 
 static void test_measures_stand_beside_the_body(void **state)
@@ -292,7 +318,8 @@ static void test_measures_stand_beside_the_body(void **state)
     const char *other = "camera:\n  height: 170\n";
     scratch_write(scratch("body.yaml"), good, strlen(good));
     assert_true(tl_pattern_measures(scratch("body.obj"), &measures));
-    assert_near(tl_pattern_waist(&measures, NULL), 1.065, 1e-12);
+    assert_near(tl_pattern_levels(&measures, NULL).waist, 1.065, 1e-12);
+    assert_near(tl_pattern_levels(&measures, NULL).shoulder, 1.44, 1e-12);
     scratch_write(scratch("scene.yaml"), other, strlen(other));
     assert_false(tl_pattern_measures(scratch("scene.obj"), &measures));
     assert_false(tl_pattern_measures(scratch("absent.obj"), &measures));
