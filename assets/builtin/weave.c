@@ -6,12 +6,16 @@
 #include <math.h>
 
 static const char *const pattern_names[] = {"none", "plain", "twill", "satin", NULL};
+static const char *const section_names[] = {"round", "flat", NULL};
 
 #define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE)
 
 static const struct tl_option rows[] = {
     TL_OPTION_ENUM(struct tl_weave_params, pattern, AFFECTS, pattern_names,
                    "interlacing of the yarns; none: only the material's own maps"),
+    TL_OPTION_ENUM(
+        struct tl_weave_params, section, AFFECTS, section_names,
+        "section of the yarns; round: twisted fibres; flat: filaments side by side, as of silk and satin"),
     TL_OPTION_FLOAT(struct tl_weave_params, warp_pitch_mm, AFFECTS, 0.05, 20, "mm",
                     "distance between warp yarns"),
     TL_OPTION_FLOAT(struct tl_weave_params, weft_pitch_mm, AFFECTS, 0.05, 20, "mm",
@@ -58,7 +62,7 @@ struct yarns {
     double other_pitch; /* along: distance of the crossings */
     double amplitude;   /* of the centre line */
     double thickness;   /* half the height of the section */
-    bool is_warp;
+    bool is_warp, is_flat;
 };
 
 struct sample {
@@ -80,7 +84,7 @@ static double level(const struct yarns *yarns, const struct weave_drawing *drawi
 }
 
 /* A yarn's surface: its centre line goes from crossing to crossing by half cosines, level over floats; its
- * section is an ellipse, sheared along the height. */
+ * section is an ellipse or a parabola, sheared along the height. */
 static struct sample yarn_surface(const struct yarns *yarns, const struct weave_drawing *drawing, int yarn,
                                   double across, double along)
 {
@@ -90,10 +94,12 @@ static struct sample yarn_surface(const struct yarns *yarns, const struct weave_
     double place = along / yarns->other_pitch - 0.5, t = place - floor(place);
     double from = level(yarns, drawing, yarn, (int)floor(place));
     double to = level(yarns, drawing, yarn, (int)floor(place) + 1);
-    double middle = 0.5 * (from + to), swing = 0.5 * (from - to), rise = sqrt(1 - x * x);
+    double middle = 0.5 * (from + to), swing = 0.5 * (from - to);
+    double rise = yarns->is_flat ? 1 - x * x : sqrt(1 - x * x);
+    double fall = yarns->is_flat ? 2 * x : x / rise;
     return (struct sample){
         .height = yarns->amplitude * (middle + swing * cos(M_PI * t)) + yarns->thickness * rise,
-        .slope_across = -yarns->thickness * x / rise / (HALF_WIDTH * yarns->pitch),
+        .slope_across = -yarns->thickness * fall / (HALF_WIDTH * yarns->pitch),
         .slope_along = -yarns->amplitude * swing * M_PI * sin(M_PI * t) / yarns->other_pitch,
     };
 }
@@ -151,14 +157,16 @@ static void fill_texel(const struct weaving *weaving, tl_weave *out, int column,
 
 /* Warp and weft share the height: where one is over and the other under they touch, so amplitude and half
  * thickness are both half the crest's height. */
-static struct yarns make_yarns(float pitch_mm, float other_pitch_mm, float crimp_mm, bool is_warp)
+static struct yarns make_yarns(float pitch_mm, float other_pitch_mm, float crimp_mm, int section,
+                               bool is_warp)
 {
     double half_crimp = 0.5e-3 * (double)crimp_mm;
     return (struct yarns){.pitch = 1e-3 * (double)pitch_mm,
                           .other_pitch = 1e-3 * (double)other_pitch_mm,
                           .amplitude = half_crimp,
                           .thickness = half_crimp,
-                          .is_warp = is_warp};
+                          .is_warp = is_warp,
+                          .is_flat = section == TL_YARN_FLAT};
 }
 
 bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out)
@@ -170,8 +178,9 @@ bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out)
     float warp_pitch = params->warp_pitch_mm, weft_pitch = params->weft_pitch_mm, crimp = params->crimp_mm;
     const struct weaving weaving = {.params = params,
                                     .drawing = &drawings[params->pattern],
-                                    .warp = make_yarns(warp_pitch, weft_pitch, crimp, true),
-                                    .weft = make_yarns(weft_pitch, warp_pitch, crimp, false)};
+                                    .warp = make_yarns(warp_pitch, weft_pitch, crimp, params->section, true),
+                                    .weft =
+                                        make_yarns(weft_pitch, warp_pitch, crimp, params->section, false)};
     int repeat = weaving.drawing->repeat, side = repeat * params->texels_per_yarn;
     *out = (tl_weave){.size_m = {1e-3f * warp_pitch * (float)repeat, 1e-3f * weft_pitch * (float)repeat},
                       .normal = tl_image_create(side, side, 3, TL_IMAGE_U8),

@@ -1,5 +1,5 @@
 /* The weave generator: detail maps of woven fabrics from their interlacing pattern, to scale in millimetres.
- * Each yarn is a bent tube of elliptic section; the height map is the upper envelope of all yarns, normals
+ * Each yarn is a bent tube; the height map is the upper envelope of all yarns, normals
  * are its analytic slopes, gloss and tint are those of the topmost yarn. */
 #ifndef TOILE_ASSETS_BUILTIN_WEAVE_H
 #define TOILE_ASSETS_BUILTIN_WEAVE_H
@@ -11,8 +11,13 @@
  * in both the warp floats on the face. */
 enum tl_weave_pattern { TL_WEAVE_NONE, TL_WEAVE_PLAIN, TL_WEAVE_TWILL, TL_WEAVE_SATIN };
 
+/* The section of a yarn: an ellipse, of twisted yarns; or a parabola, of filaments that lie flat side by
+ * side. The slopes of the ellipse have no bound at its edges, those of the parabola are spread evenly. */
+enum tl_yarn_section { TL_YARN_ROUND, TL_YARN_FLAT };
+
 struct tl_weave_params {
     int pattern;         /* enum tl_weave_pattern; NONE: the material's own maps only */
+    int section;         /* enum tl_yarn_section */
     float warp_pitch_mm; /* distance between warp yarns */
     float weft_pitch_mm; /* distance between weft yarns */
     float crimp_mm;      /* height of a yarn's crest over the fabric's middle plane */

@@ -1,31 +1,62 @@
 #include "render/brdf/brdf.h"
 
 #include "render/brdf/fresnel.h"
+#include "render/brdf/slope_fan.h"
 #include "render/env/exponent.h"
 
 #include <math.h>
 
-#define MIN_WIDTH 1e-3f
-#define PI        ((float)M_PI)
+#define PI ((float)M_PI)
 
 static float finite_or(float x, float otherwise)
 {
     return isfinite(x) ? x : otherwise;
 }
 
-static float width_of(float width, float exponent)
+/* The squared Gaussian slope of a Blinn-Phong lobe. */
+static float square_of(float exponent)
 {
-    float from_exponent = sqrtf(2 / (4 * exponent + 2));
-    return fminf(fmaxf(width > 0 ? width : from_exponent, MIN_WIDTH), 1);
+    return 2 / (4 * exponent + 2);
+}
+
+/* A width by its square without maps and bumps, and what these add to it. */
+static float width_of(float square, float widening)
+{
+    return sqrtf(tl_facet_square(square, finite_or(widening, 0)));
+}
+
+static float given_square(float width, float otherwise)
+{
+    return finite_or(width, 0) > 0 ? width * width : otherwise;
 }
 
 struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossiness)
 {
+    float own = square_of(tl_lobe_exponent(finite_or(material->glossiness, 0)));
+    float wider = square_of(tl_lobe_exponent(finite_or(glossiness, 0))) - own;
+    const float both[2] = {wider, wider};
+    return tl_brdf_bumped(material, f0, glossiness, both);
+}
+
+/* The spreads are along u and v, the widths along the threads. */
+static void widen(struct tl_gloss *gloss, float own, float by_glossiness, const float widening[2])
+{
+    float c = cosf(gloss->rotation), s = sinf(gloss->rotation);
+    bool is_ward = gloss->model == TL_REFLECT_WARD;
+    float weft = is_ward ? c * c * widening[0] + s * s * widening[1] : by_glossiness;
+    float warp = is_ward ? s * s * widening[0] + c * c * widening[1] : by_glossiness;
+    gloss->width_weft = width_of(given_square(gloss->width_weft, own), weft);
+    gloss->width_warp = width_of(given_square(gloss->width_warp, own), warp);
+}
+
+struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness,
+                              const float widening[2])
+{
     struct tl_brdf brdf = {
         .gloss = material->gloss, .f0 = f0, .exponent = tl_lobe_exponent(finite_or(glossiness, 0))};
     struct tl_gloss *gloss = &brdf.gloss;
-    gloss->width_weft = width_of(finite_or(gloss->width_weft, 0), brdf.exponent);
-    gloss->width_warp = width_of(finite_or(gloss->width_warp, 0), brdf.exponent);
+    float own = square_of(tl_lobe_exponent(finite_or(material->glossiness, 0)));
+    widen(gloss, own, square_of(brdf.exponent) - own, widening);
     gloss->index = gloss->index > 0 ? finite_or(gloss->index, 1) : 1;
     gloss->extinction = fmaxf(finite_or(gloss->extinction, 0), 0);
     for (int c = 0; c < 3; c++)

@@ -43,9 +43,14 @@ struct tl_brdf {
 };
 
 /* The model of a material where its maps give glossiness g and reflectance f0. A width of 0 becomes sqrt(2 /
- * (4 s + 2)), the Gaussian slope of the Blinn-Phong lobe with the same peak. Widths are clamped to [1e-3, 1].
- * Inputs that are not finite become 0. */
+ * (4 s + 2)), the Gaussian slope of the Blinn-Phong lobe with the same peak. The square of a width that is
+ * given changes by as much as that of this one does between the material's own glossiness and g: variances
+ * add. Widths are clamped to [1e-3, 1]. Inputs that are not finite become 0. */
 struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossiness);
+/* The same where unresolved bumps have different spreads along u and v: WARD's squared widths change by
+ * `widening` (tl_bump_statistics_widening) instead. */
+struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness,
+                              const float widening[2]);
 
 /* f_r cos a by channel; 0 where light or viewer lie below the surface. Finite for all finite input. */
 vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v);

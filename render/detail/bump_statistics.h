@@ -61,4 +61,15 @@ TL_INLINE float tl_bump_statistics_roughness(const struct tl_detail_params *para
     return detail_widened(rough, along, across, fabsf(view.z));
 }
 
+/* What maps and these bumps add to squared widths of facets along axis 0 (u) or 1 (v). `own_rough` is that of
+ * the material, `rough` with its maps and yarns. */
+TL_INLINE float tl_bump_statistics_widening(const struct tl_detail_params *params, float own_rough,
+                                            float rough, const struct tl_bump_statistics *bumps, int axis)
+{
+    float variance = params->minify == TL_DETAIL_MINIFY_LEAN      ? bumps->spread[axis]
+                     : params->minify == TL_DETAIL_MINIFY_TOKSVIG ? detail_variance(bumps->length)
+                                                                  : 0;
+    return detail_widening(own_rough, rough, variance);
+}
+
 #endif

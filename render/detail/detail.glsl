@@ -302,6 +302,18 @@ float detail_rough(float rough, Bumps bumps, vec3 view)
 #endif
 }
 
+// What maps and averaged normals add to squared widths of facets along u and v.
+vec2 detail_widenings(float own_rough, float rough, Bumps bumps)
+{
+#if DETAIL_MINIFY == DETAIL_TOKSVIG
+    return vec2(detail_widening(own_rough, rough, detail_variance(bumps.length)));
+#elif DETAIL_MINIFY == DETAIL_LEAN
+    return vec2(detail_widening(own_rough, rough, bumps.spread.x), detail_widening(own_rough, rough, bumps.spread.y));
+#else
+    return vec2(detail_widening(own_rough, rough, 0.0));
+#endif
+}
+
 #ifndef VERTEX_STAGE
 // Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), with screen-space derivatives of the triangle. `mapped` has
 // slopes per metre of the nominal size of a UV unit.

@@ -60,6 +60,19 @@ TERM float detail_widened(float rough, float along, float beside, float cosine)
     return clamp(rough + 2.0f * (along + beside * cosine * cosine), 0.0f, 1.0f);
 }
 
+// The squared width of facets whose mirror lobe has roughness 1 - g: 2 / (4 s + 2), s = 1 / (1 - g), as in render/brdf.
+TERM float detail_facet_square(float rough)
+{
+    return rough / (2.0f + rough);
+}
+
+// What is added to a squared width of facets when the roughness of the yarn is `rough` in place of the material's own,
+// and the slopes of unresolved bumps have this variance: a width squared is twice the variance of its slopes.
+TERM float detail_widening(float own_rough, float rough, float variance)
+{
+    return detail_facet_square(rough) - detail_facet_square(own_rough) + 2.0f * variance;
+}
+
 // The fraction of a broad light above the tangent plane of facets that spread about the surface's normal: the mean of
 // (1 + cos tilt) / 2.
 TERM float detail_open(float mean_length)

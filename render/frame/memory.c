@@ -25,8 +25,7 @@ static size_t lights_bytes(const struct tl_light_cache *cache)
 
 static size_t samples_bytes(const struct tl_samples *samples)
 {
-    size_t tangent = samples->tangents ? sizeof *samples->tangents : 0;
-    return samples->capacity * (sizeof *samples->items + tangent) + samples->staging_bytes;
+    return samples->capacity * sizeof *samples->items + samples->staging_bytes;
 }
 
 static size_t resource_bytes(const struct tl_resources *from, enum tl_resource resource)

@@ -23,7 +23,7 @@ layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAME
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
 #endif
 #ifdef FRAMES
-layout(location = 5) out vec4 out_tangent; // world, along u, not yet at right angles to the normal; handedness
+layout(location = 5) out vec2 out_widening; // added to squared widths of facets along u and v
 #endif
 #ifdef BEHIND
 layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
@@ -91,6 +91,10 @@ void main()
         discard;
     vec3 n = side * smooth_normal;
     float rough = 1.0 - glossiness(place.uv);
+#ifdef FRAMES
+    float own_rough = 1.0 - material_scalars.x;
+    out_widening = vec2(detail_widening(own_rough, rough, 0.0));
+#endif
     vec3 kd = diffuse(colour.rgb, place.uv);
     if (has_bumps(tangent)) {
         Bumps bumps = bumps_at(place.uv);
@@ -99,6 +103,9 @@ void main()
                                          : bent_normal(bumps.normal, normal, tangent, smooth_normal));
 #else
         n = side * bent_normal(bumps.normal, normal, tangent, smooth_normal);
+#endif
+#ifdef FRAMES
+        out_widening = detail_widenings(own_rough, rough, bumps);
 #endif
         rough = detail_rough(rough, bumps, view);
         kd *= detail_open(bumps.length);
@@ -122,9 +129,6 @@ void main()
     out_point = vec4(point, cover);
     out_normal = vec4(n, rough);
     out_diffuse = vec4(kd, horizon.x);
-#ifdef FRAMES
-    out_tangent = vec4(direction_or(tangent.xyz, vec3(0.0)), tangent.w * side);
-#endif
     out_specular = vec4(ks, horizon.y);
     out_triangle = with_side(texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r);
 }

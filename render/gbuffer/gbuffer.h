@@ -17,13 +17,14 @@ enum tl_gbuffer_layer {
     TL_GBUFFER_SPECULAR, /* RGBA16F: F ks; octahedral y of the smooth normal */
     TL_GBUFFER_TRIANGLE, /* R32UI: 0 nothing; else 1 + the triangle's number counted through all surfaces, and
                             TL_SAMPLE_BACK where its back is seen */
-    TL_GBUFFER_TANGENT,  /* RGBA16F: world, along u; handedness. Only where something is faceted: F ks is its
- F0 then */
+    TL_GBUFFER_WIDENING, /* RG16F: added to squared widths of facets along u and v. Only where something is
+                            faceted: F ks is its F0 then */
     TL_GBUFFER_LAYERS
 };
 
-/* Bits of the variants of the program: with tangents; only what lies behind a depth; nothing but the number
- * of the triangle; of a part whose alpha map cuts holes (the other variants decide that while they draw). */
+/* Bits of the variants of the program: with the layer of facets; only what lies behind a depth; nothing but
+ * the number of the triangle; of a part whose alpha map cuts holes (the other variants decide that while they
+ * draw). */
 enum {
     TL_GBUFFER_FRAMES = 1,
     TL_GBUFFER_BEHIND = 2,
@@ -52,7 +53,7 @@ struct tl_gbuffer_request {
     size_t surface_count;
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_detail_params *detail; /* NULL: normals alone */
-    bool frames;                           /* with the layer of tangents */
+    bool frames;                           /* with the layer of facets */
     bool
         only_triangle; /* one layer, like TL_GBUFFER_TRIANGLE but with places in cull.numbers: an ID buffer */
     const tl_texture *passed; /* only what lies behind this depth; NULL: what is nearest */

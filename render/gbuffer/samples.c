@@ -70,20 +70,32 @@ vec3s tl_sample_start(const tl_sample *sample, const struct tl_triangle_ranges *
     return glms_vec3_add(point, glms_vec3_scale(sample->smooth, offset_m));
 }
 
+vec4s tl_sample_tangent(const tl_sample *sample, const struct tl_triangle_ranges *ranges)
+{
+    uint32_t numbers[3];
+    size_t index;
+    const tl_surface *surface = tl_triangle_find(ranges, sample->triangle & ~TL_SAMPLE_BACK, numbers, &index);
+    vec4s sum = {{0, 0, 0, 0}};
+    if (!surface->tangents)
+        return (vec4s){{0, 0, 0, 1}};
+    for (int i = 0; i < 3; i++)
+        sum = glms_vec4_add(sum, glms_vec4_scale(surface->tangents[numbers[i]], sample->weights[i]));
+    float length = glms_vec3_norm((vec3s){{sum.x, sum.y, sum.z}}), scale = length > 1e-15f ? 1 / length : 0;
+    float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+    return (vec4s){{scale * sum.x, scale * sum.y, scale * sum.z, side * sum.w}};
+}
+
 void tl_samples_reserve(struct tl_samples *samples, size_t count)
 {
     if (count <= samples->capacity && samples->items)
         return;
     samples->capacity = count + count / 4 + 1;
     samples->items = tl_resize(samples->items, samples->capacity, sizeof *samples->items);
-    if (samples->tangents)
-        samples->tangents = tl_resize(samples->tangents, samples->capacity, sizeof *samples->tangents);
 }
 
 void tl_samples_release(struct tl_samples *samples)
 {
     free(samples->items);
-    free(samples->tangents);
     free(samples->staging);
     *samples = (struct tl_samples){0};
 }

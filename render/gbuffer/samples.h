@@ -17,8 +17,9 @@ typedef struct tl_sample {
     vec3s smooth;      /* interpolated normal without maps, unit, on the viewer's side: the horizon's */
     vec3s mirror; /* r: the view vector reflected about `normal`, unit; continued where that faces away */
     float glossiness;
-    vec3s diffuse;  /* kd */
-    vec3s specular; /* F ks */
+    vec3s diffuse;     /* kd */
+    vec3s specular;    /* F ks */
+    float widening[2]; /* added to squared widths of facets along u and v; 0 where nothing is faceted */
 } tl_sample;
 
 /* In tiles of 4 x 4 texels, so that sixteen samples in a row are neighbours. */
@@ -30,8 +31,7 @@ struct tl_samples {
     size_t behind_count, other_count;
     size_t count, capacity;
     tl_sample *items;
-    vec4s *tangents; /* [capacity]: world, along u; handedness. NULL where the G-buffer has none */
-    void *staging;   /* the G-buffer as it was read */
+    void *staging; /* the G-buffer as it was read */
     size_t staging_bytes;
 };
 
@@ -64,6 +64,10 @@ const tl_material *tl_triangle_material(const struct tl_triangle_ranges *ranges,
 /* The origin of a sample's rays: on the smooth surface that its triangle approximates, `offset_m` above it.
  */
 vec3s tl_sample_start(const tl_sample *sample, const struct tl_triangle_ranges *ranges, float offset_m);
+
+/* The tangent along u, interpolated, on the side that is seen: unit or zero; and handedness. A back face's
+ * normal and bitangent are turned over and its tangent is kept. */
+vec4s tl_sample_tangent(const tl_sample *sample, const struct tl_triangle_ranges *ranges);
 
 /* Reads the G-buffer back. The arrays of `out` are used again from frame to frame. */
 void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_ranges *ranges, vec3s eye,

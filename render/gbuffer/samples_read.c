@@ -18,7 +18,7 @@ struct layers {
     const uint16_t *diffuses;  /* ... */
     const uint16_t *speculars; /* ... */
     const uint32_t *triangles; /* [height][width] */
-    const uint16_t *tangents;  /* [height][width][4], or NULL */
+    const uint16_t *widenings; /* [height][width][2], or NULL */
 };
 
 /* Barycentric weights of the point of the triangle's plane that is nearest to `p`, inside the triangle. */
@@ -82,6 +82,8 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
                         .glossiness = 1 - from_half(normal[3]),
                         .diffuse = half_vector(diffuse),
                         .specular = half_vector(specular)};
+    for (size_t i = 0; layers->widenings && i < 2; i++)
+        sample.widening[i] = from_half(layers->widenings[2 * texel + i]);
     uint32_t corners[3];
     size_t index;
     const tl_surface *surface = tl_triangle_find(ranges, sample.triangle & ~TL_SAMPLE_BACK, corners, &index);
@@ -103,17 +105,9 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
     return sample;
 }
 
-static vec4s read_tangent(const struct layers *layers, size_t texel)
-{
-    const uint16_t *tangent = layers->tangents + 4 * texel;
-    return (vec4s){
-        {from_half(tangent[0]), from_half(tangent[1]), from_half(tangent[2]), from_half(tangent[3])}};
-}
-
-/* Visits the covered texels of one row of tiles; fills `out` and `tangents` when they are there. Returns how
- * many there are. */
+/* Visits the covered texels of one row of tiles; fills `out` when it is there. Returns how many there are. */
 static size_t read_tile_row(const struct layers *layers, int row, const struct tl_triangle_ranges *ranges,
-                            vec3s eye, tl_sample *out, vec4s *tangents)
+                            vec3s eye, tl_sample *out)
 {
     size_t count = 0;
     for (int x0 = 0; x0 < layers->width; x0 += TILE)
@@ -124,22 +118,9 @@ static size_t read_tile_row(const struct layers *layers, int row, const struct t
                     continue;
                 if (out)
                     out[count] = read_sample(layers, texel, ranges, eye);
-                if (tangents)
-                    tangents[count] = read_tangent(layers, texel);
                 count++;
             }
     return count;
-}
-
-/* The array of tangents comes and goes with their layer. */
-static void keep_tangents(bool kept, struct tl_samples *samples)
-{
-    if (kept && !samples->tangents)
-        samples->tangents = TL_NEW_ARRAY(vec4s, samples->capacity > 0 ? samples->capacity : 1);
-    if (!kept) {
-        free(samples->tangents);
-        samples->tangents = NULL;
-    }
 }
 
 static void gather(const struct layers *layers, const struct tl_triangle_ranges *ranges, vec3s eye,
@@ -149,17 +130,15 @@ static void gather(const struct layers *layers, const struct tl_triangle_ranges 
     size_t *first = TL_NEW_ARRAY(size_t, (size_t)row_count + 1);
 #pragma omp parallel for
     for (int row = 0; row < row_count; row++)
-        first[row + 1] = read_tile_row(layers, row, ranges, eye, NULL, NULL);
+        first[row + 1] = read_tile_row(layers, row, ranges, eye, NULL);
     for (int row = 0; row < row_count; row++)
         first[row + 1] += first[row];
     out->count = out->primary_count = first[row_count];
     out->behind_count = out->other_count = 0;
-    keep_tangents(layers->tangents != NULL, out);
     tl_samples_reserve(out, out->count);
 #pragma omp parallel for schedule(dynamic)
     for (int row = 0; row < row_count; row++)
-        read_tile_row(layers, row, ranges, eye, out->items + first[row],
-                      out->tangents ? out->tangents + first[row] : NULL);
+        read_tile_row(layers, row, ranges, eye, out->items + first[row]);
     free(first);
 }
 
@@ -180,8 +159,8 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
     const tl_target *target = &gbuffer->target;
     out->width = target->width;
     out->height = target->height;
-    bool tangents = target->colour_count > TL_GBUFFER_TANGENT;
-    size_t texel_bytes = tangents ? 16 + 4 * 8 + 4 : 16 + 3 * 8 + 4;
+    bool faceted = target->colour_count > TL_GBUFFER_WIDENING;
+    size_t texel_bytes = faceted ? 16 + 3 * 8 + 4 + 4 : 16 + 3 * 8 + 4;
     size_t bytes = (size_t)target->width * (size_t)target->height * texel_bytes;
     if (bytes != out->staging_bytes) {
         free(out->staging);
@@ -197,7 +176,7 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
         .diffuses = read_layer(gbuffer, TL_GBUFFER_DIFFUSE, GL_RGBA, GL_HALF_FLOAT, 8, &at),
         .speculars = read_layer(gbuffer, TL_GBUFFER_SPECULAR, GL_RGBA, GL_HALF_FLOAT, 8, &at),
         .triangles = read_layer(gbuffer, TL_GBUFFER_TRIANGLE, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &at),
-        .tangents = tangents ? read_layer(gbuffer, TL_GBUFFER_TANGENT, GL_RGBA, GL_HALF_FLOAT, 8, &at) : NULL,
+        .widenings = faceted ? read_layer(gbuffer, TL_GBUFFER_WIDENING, GL_RG, GL_HALF_FLOAT, 4, &at) : NULL,
     };
     gather(&layers, ranges, eye, out);
 }

@@ -295,13 +295,13 @@ static float viewed_by(const struct lobes *lobes, vec3s normal)
 }
 
 static void add_fan(const struct block *block, const tl_sample *sample, const tl_material *material,
-                    size_t index, struct lobes *lobes)
+                    struct lobes *lobes)
 {
     const struct tl_compose_request *request = block->request;
-    vec4s stored = request->samples->tangents ? request->samples->tangents[index] : (vec4s){{0, 0, 0, 1}};
+    const vec4s stored = tl_sample_tangent(sample, request->ranges);
     vec3s tangent = into_environment(block, (vec3s){{stored.x, stored.y, stored.z}});
     vec3s normal = into_environment(block, sample->normal);
-    lobes->brdf = tl_brdf_of(material, sample->specular, sample->glossiness);
+    lobes->brdf = tl_brdf_bumped(material, sample->specular, sample->glossiness, sample->widening);
     float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
     lobes->facets =
@@ -325,14 +325,14 @@ static void add_coat(const struct block *block, const tl_sample *sample, const t
 }
 
 /* The lobes of a sample that has more than two, and what is left of the two. */
-static void part_lobes(const struct block *block, const tl_material *material, size_t index,
-                       tl_sample *sample, struct lobes *lobes)
+static void part_lobes(const struct block *block, const tl_material *material, tl_sample *sample,
+                       struct lobes *lobes)
 {
     vec3s view = glms_vec3_normalize(glms_vec3_sub(block->request->eye, sample->point));
     lobes->viewer = into_environment(block, view);
     lobes->base = 1 - material->coat * tl_coat_reflectance(fmaxf(glms_vec3_dot(sample->smooth, view), 0));
     if (material->gloss.model != TL_REFLECT_PHONG) {
-        add_fan(block, sample, material, index, lobes);
+        add_fan(block, sample, material, lobes);
         sample->specular = (vec3s){{0, 0, 0}};
         sample->glossiness = 0;
     }
@@ -490,7 +490,7 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     struct lobes lobes = {0};
     if (rich) {
         rest = *sample;
-        part_lobes(block, rich, index, &rest, &lobes);
+        part_lobes(block, rich, &rest, &lobes);
         sample = &rest;
     }
     struct frame frame = frame_of(block, sample);
@@ -586,7 +586,7 @@ TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t inde
     const tl_material *rich = rich_material(request, index);
     struct lobes lobes = {0};
     if (rich)
-        part_lobes(block, rich, index, &sample, &lobes);
+        part_lobes(block, rich, &sample, &lobes);
     struct frame frame = frame_of(block, &sample);
     struct kind kind = {.bumped = false, .glossy = is_glossy(request, &sample)};
     struct sums sums = sum_kind(block, index, &frame, kind);

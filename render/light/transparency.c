@@ -53,13 +53,11 @@ static bool share_out_primary(struct tl_transparency *transparency,
     return more;
 }
 
-static size_t append(struct tl_samples *samples, const tl_sample *sample, const vec4s *tangent)
+static size_t append(struct tl_samples *samples, const tl_sample *sample)
 {
     size_t index = samples->count++;
     tl_samples_reserve(samples, samples->count);
     samples->items[index] = *sample;
-    if (samples->tangents)
-        samples->tangents[index] = tangent ? *tangent : (vec4s){{0, 0, 0, 1}};
     return index;
 }
 
@@ -77,7 +75,7 @@ static bool append_behind(struct tl_transparency *transparency, const struct tl_
         const tl_sample *before = &samples->items[parent - 1];
         float openness = material_of(request, before)->openness;
         float through = transparency->shares[parent - 1] * openness / (before->cover * (1 - openness));
-        size_t index = append(samples, &found->items[i], found->tangents ? &found->tangents[i] : NULL);
+        size_t index = append(samples, &found->items[i]);
         reserve_shares(transparency, samples->count);
         more |= share_out(transparency, request, samples, index, through, last);
         samples->behind_count++;
@@ -130,7 +128,7 @@ static void append_other_sides(struct tl_transparency *transparency,
         if (!tl_material_transmits(material))
             continue;
         tl_sample other = other_side(&samples->items[i], material, request->draw.view->eye);
-        size_t index = append(samples, &other, NULL);
+        size_t index = append(samples, &other);
         reserve_shares(transparency, samples->count);
         transparency->shares[index] = transparency->shares[i];
         samples->other_count++;

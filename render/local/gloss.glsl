@@ -18,12 +18,11 @@ float lobe_exponent(float glossiness)
     return min(1.0 / max(1.0 - glossiness, 1e-6), 1e6); // tl_lobe_exponent
 }
 
-vec2 widths_of(float exponent)
+// The material's widths, with what maps and bumps add to their squares along weft and warp (tl_brdf_bumped).
+vec2 widths_of(vec2 widening)
 {
-    float from_exponent = sqrt(2.0 / (4.0 * exponent + 2.0));
-    vec2 width = vec2(gloss_widths.x > 0.0 ? gloss_widths.x : from_exponent,
-                      gloss_widths.y > 0.0 ? gloss_widths.y : from_exponent);
-    return clamp(width, 1e-3, 1.0);
+    vec2 square = gloss_widths.xy * gloss_widths.xy;
+    return clamp(sqrt(max(square + widening, 0.0)), 1e-3, 1.0);
 }
 
 float fresnel_dielectric(float index, float cosine)
@@ -126,14 +125,14 @@ float thread_scale(float s)
 }
 
 // f_r cos a without the Fresnel term.
-float lobe(Cosines c, float s)
+float lobe(Cosines c, float s, vec2 widening)
 {
     if (MODEL == TORRANCE_SPARROW) {
-        float width = widths_of(s).x;
+        float width = widths_of(widening).x;
         return facets(c.half_sine2 / (c.half_normal * c.half_normal), width) * masked(c, width);
     }
     if (MODEL == WARD)
-        return ward(c, widths_of(s));
+        return ward(c, widths_of(widening));
     if (MODEL == BLINN_PHONG)
         return (4.0 * s + 2.0) / (8.0 * PI) * power(c.half_normal, c.half_sine2, 4.0 * s);
     if (MODEL == BANKS) {
@@ -145,14 +144,14 @@ float lobe(Cosines c, float s)
     return (s + 1.0) / (2.0 * PI) * power(c.mirror, c.mirror_sine2, s);
 }
 
-// f_r cos a of a material whose maps give f0 and s. Tables are made for constant values and ignore the maps.
-vec3 gloss(Cosines c, vec3 f0, float s)
+// f_r cos a of a material whose maps give f0, s and `widening`. Tables are made for constant values and ignore the maps.
+vec3 gloss(Cosines c, vec3 f0, float s, vec2 widening)
 {
     if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
         return vec3(0.0);
 #if TABLES > 0
     return tables_gloss(c, tables_product(c));
 #else
-    return fresnel(f0, c) * lobe(c, s);
+    return fresnel(f0, c) * lobe(c, s, widening);
 #endif
 }

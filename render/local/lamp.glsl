@@ -7,7 +7,7 @@ layout(location = 66) uniform vec4 lamp; // w = 1: position; w = 0: direction to
 layout(location = 67) uniform vec3 lamp_irradiance;
 layout(location = 68) uniform vec3 constant_lamp; // COORDINATES_MATRIX: l and v, constant over the image
 layout(location = 69) uniform vec3 constant_eye;
-layout(location = 70) uniform vec4 gloss_widths; // widths along weft and warp (0: from glossiness); cosine and sine of the rotation
+layout(location = 70) uniform vec4 gloss_widths; // widths along weft and warp without maps; cosine and sine of the rotation
 
 const float NEAREST_M = 1e-3; // TL_LAMP_NEAREST_M
 

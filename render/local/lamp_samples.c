@@ -36,9 +36,9 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
     lit.base = 1 - lit.coat;
     lit.faceted = lit.material->gloss.model != TL_REFLECT_PHONG;
     if (lit.faceted) {
-        vec4s tangent = samples->tangents ? samples->tangents[index] : (vec4s){{0, 0, 0, 1}};
+        const vec4s tangent = tl_sample_tangent(sample, request->ranges);
         float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
-        lit.brdf = tl_brdf_of(lit.material, sample->specular, sample->glossiness);
+        lit.brdf = tl_brdf_bumped(lit.material, sample->specular, sample->glossiness, sample->widening);
         lit.frame = tl_brdf_frame_make(sample->normal, (vec3s){{tangent.x, tangent.y, tangent.z}}, tangent.w,
                                        side * lit.material->gloss.rotation);
     }

@@ -188,12 +188,13 @@ static void set_lamp(const struct tl_local *local, const struct tl_local_request
 
 static void set_gloss(const tl_material *material)
 {
-    const struct tl_gloss *gloss = &material->gloss;
+    const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+    const struct tl_gloss *gloss = &brdf.gloss;
     glUniform4f(GLOSS_WIDTHS, gloss->width_weft, gloss->width_warp, cosf(gloss->rotation),
                 sinf(gloss->rotation));
     glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
                 1 - material->openness);
-    glUniform2f(GLOSS_OPTICS, gloss->index > 0 ? gloss->index : 1, fmaxf(gloss->extinction, 0));
+    glUniform2f(GLOSS_OPTICS, gloss->index, gloss->extinction);
 }
 
 static void bind_shadow(const struct tl_lamp_shadows *shadows, enum tl_lamp_shadow kind)

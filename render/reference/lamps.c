@@ -42,7 +42,8 @@ vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl
     vec3s sum = {{0, 0, 0}};
     if (scene->lamp_count == 0)
         return sum;
-    const struct tl_brdf brdf = tl_brdf_of(point->material, point->f0, point->glossiness);
+    const struct tl_brdf brdf =
+        tl_brdf_bumped(point->material, point->f0, point->glossiness, point->widening);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(point->normal, point->tangent, point->handedness,
                                                           point->side * point->material->gloss.rotation);
     for (size_t i = 0; i < scene->lamp_count; i++) {

@@ -222,7 +222,7 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
     layers->base = 1 - layers->coat;
     layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
     if (layers->faceted) {
-        layers->brdf = tl_brdf_of(material, result->f0, result->glossiness);
+        layers->brdf = tl_brdf_bumped(material, result->f0, result->glossiness, result->widening);
         layers->frame = tl_brdf_frame_make(result->normal, result->tangent, result->handedness,
                                            place->side * material->gloss.rotation);
         result->glossy = (vec3s){{0, 0, 0}};
@@ -237,8 +237,14 @@ static void set_lobes(const struct sample_place *place, const struct tl_referenc
 {
     vec3s n = glms_vec3_scale(smooth, place->side);
     float g = glossiness_of(place), open = 1;
-    if (has_bumps(place)) {
-        struct tl_bump_statistics bumps = bumps_at(place);
+    struct tl_bump_statistics bumps = tl_bump_statistics_of_normal((vec3s){{0, 0, 1}});
+    bool bumped = has_bumps(place);
+    if (bumped)
+        bumps = bumps_at(place);
+    for (int i = 0; i < 2; i++)
+        result->widening[i] =
+            tl_bump_statistics_widening(place->detail, 1 - place->material->glossiness, 1 - g, &bumps, i);
+    if (bumped) {
         n = glms_vec3_scale(bent_normal(place, bumps.normal, smooth), place->side);
         g = 1 -
             tl_bump_statistics_roughness(place->detail, 1 - g, &bumps, into_tangent(place, smooth, viewer));

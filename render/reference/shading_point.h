@@ -49,12 +49,13 @@ struct tl_shading_point {
     vec3s normal, axis;
     float exponent; /* s */
     vec3s diffuse, glossy;
-    vec3s viewer;     /* towards the eye */
-    vec3s tangent;    /* along u, at right angles to `normal`; zero where the surface has none */
-    float side;       /* 1 for a front face, -1 for a back face */
-    vec3s albedo, f0; /* diffuse colour and reflectance at normal incidence, independent of `lobe` */
-    float handedness; /* bitangent = handedness * cross(normal, tangent) */
-    float glossiness; /* glossiness from the maps; `exponent` is derived from it */
+    vec3s viewer;      /* towards the eye */
+    vec3s tangent;     /* along u, at right angles to `normal`; zero where the surface has none */
+    float side;        /* 1 for a front face, -1 for a back face */
+    vec3s albedo, f0;  /* diffuse colour and reflectance at normal incidence, independent of `lobe` */
+    float handedness;  /* bitangent = handedness * cross(normal, tangent) */
+    float glossiness;  /* glossiness from the maps; `exponent` is derived from it */
+    float widening[2]; /* added to squared widths of facets along u and v */
     const tl_material *material; /* borrowed from the surface */
 };
 

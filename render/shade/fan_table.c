@@ -12,18 +12,6 @@ static float cosine_of(int row)
     return sinf(0.5f * (float)M_PI * fminf(at * at, 1));
 }
 
-static bool follows_glossiness(const tl_material *material)
-{
-    switch (material->gloss.model) {
-    case TL_REFLECT_WARD:
-        return !(material->gloss.width_weft > 0 && material->gloss.width_warp > 0);
-    case TL_REFLECT_TORRANCE_SPARROW:
-        return !(material->gloss.width_weft > 0);
-    default:
-        return true;
-    }
-}
-
 /* Nodes with fewer lobes than the table repeat the middle one without weight. */
 static void fill_node(const struct tl_fitted_lobe low[], const struct tl_fitted_lobe high[], int count,
                       int wanted, struct tl_fan_node *node)
@@ -121,7 +109,7 @@ static int largest_count(const tl_material *material, float glossiness, int max_
 void tl_fan_table_make(const tl_material *material, float gloss_low, float gloss_high, int max_count,
                        struct tl_fan_table *out)
 {
-    bool one = !follows_glossiness(material) || gloss_high - gloss_low < 1e-4f;
+    bool one = gloss_high - gloss_low < 1e-4f;
     *out = (struct tl_fan_table){
         .gloss_count = one ? 1 : TL_FAN_GLOSSES, .gloss_low = gloss_low, .gloss_high = gloss_high};
     for (int gloss = 0; gloss < out->gloss_count; gloss++) {

@@ -194,6 +194,12 @@ TL_INLINE void bend(struct tl_look_lanes *lanes, const struct statistic_lanes *b
         bool has_tangent = glms_vec3_dot(tangent, tangent) > 0;
         vec3s n = bent(normal, tangent, handedness, at.normal, smooth);
         vec3s viewer = local_viewer(tl_lane_vector(lanes->viewer, i), smooth, tangent, handedness);
+        const float own_rough = 1 - lanes->part->material->glossiness;
+        for (int axis = 0; axis < 2; axis++) {
+            float wider =
+                tl_bump_statistics_widening(&params, own_rough, 1 - lanes->glossiness[i], &at, axis);
+            lanes->widening[axis][i] = has_tangent ? wider : lanes->widening[axis][i];
+        }
         float rough = tl_bump_statistics_roughness(&params, 1 - lanes->glossiness[i], &at, viewer);
         for (int c = 0; c < 3; c++)
             lanes->shown[c][i] = has_tangent ? side * n.raw[c] : lanes->shown[c][i];
@@ -249,6 +255,7 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
     }
     for (int i = 0; i < TL_LANES; i++) {
         lanes->glossiness[i] = material->glossiness;
+        lanes->widening[0][i] = lanes->widening[1][i] = 0;
         lanes->diffuse[i] = diffuse;
         lanes->f0[i] = f0;
     }
@@ -256,6 +263,9 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
         return;
     struct texel_lanes weave_at;
     read_colours(detail, lanes, &weave_at);
+    for (int i = 0; i < TL_LANES; i++)
+        lanes->widening[0][i] = lanes->widening[1][i] =
+            detail_widening(1 - material->glossiness, 1 - lanes->glossiness[i], 0);
     if (part->has_bumps)
         apply_bumps(detail, lanes, &weave_at);
 }

@@ -195,8 +195,15 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     part.is_glossy = glms_vec3_max(material->specular) > 0;
     part.transmits = tl_material_transmits(material);
     materials->openness = fmaxf(materials->openness, material->openness);
-    if (material->gloss.model != TL_REFLECT_PHONG)
+    part.is_faceted = material->gloss.model != TL_REFLECT_PHONG;
+    part.fan_count = fan;
+    if (material->gloss.model == TL_REFLECT_WARD) {
+        const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+        part.ward_squares[0] = brdf.gloss.width_weft * brdf.gloss.width_weft;
+        part.ward_squares[1] = brdf.gloss.width_warp * brdf.gloss.width_warp;
+    } else if (part.is_faceted) {
         part.fan = find_fan(materials, &part, fan);
+    }
     return part;
 }
 

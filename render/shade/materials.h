@@ -33,7 +33,10 @@ struct tl_shade_part {
     bool has_bumps;                 /* the tangent is read */
     bool is_glossy;                 /* something is reflected */
     bool transmits;                 /* light comes through from the other side */
-    const struct tl_fan_table *fan; /* NULL: two cosine lobes */
+    bool is_faceted;                /* the gloss is not one cosine lobe: */
+    float ward_squares[2];          /* squared widths of Ward's facets without maps and bumps */
+    int fan_count;                  /* lobes at most that stand for them */
+    const struct tl_fan_table *fan; /* of other facets than Ward's */
 };
 
 struct tl_shade_image;

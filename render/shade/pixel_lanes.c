@@ -1,6 +1,7 @@
 #include "config/memory.h"
 #include "render/env/lobes_fetch.h"
 #include "render/shade/pixels_internal.h"
+#include "render/shade/ward_lanes_internal.h"
 
 #include <assert.h>
 #include <math.h>
@@ -126,7 +127,8 @@ struct gloss_lanes {
     tl_quad reflectance[TL_LANES];
     /* Facets: */
     float tangent[3][TL_LANES], bitangent[3][TL_LANES], normal[3][TL_LANES]; /* the frame of the threads */
-    float cosine[TL_LANES];                                                  /* of the viewer in it */
+    float viewer[3][TL_LANES];                                               /* in it */
+    float square[2][TL_LANES];                                               /* of Ward's widths */
 };
 
 /* Schlick's factor of what is missing from F0 to its greatest value. */
@@ -160,76 +162,99 @@ TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, vec3s 
         n, turned, glms_vec3_scale(glms_vec3_cross(n, turned), handedness * side < 0 ? -1.0f : 1.0f)};
 }
 
-/* Where the table of the fan is read. */
-struct fan_lanes {
-    int row[TL_LANES], column[TL_LANES], gloss[TL_LANES];
-    float row_share[TL_LANES], column_share[TL_LANES], gloss_share[TL_LANES], side[TL_LANES];
-};
-
-TL_INLINE void place_fan(const struct tl_pixel_lanes *lanes, struct gloss_lanes *gloss, struct fan_lanes *fan)
+TL_INLINE void find_frames(const struct tl_pixel_lanes *lanes, struct gloss_lanes *gloss)
 {
     const struct tl_look_lanes *look = &lanes->look;
+    const float cc = look->part->turn_cosine * look->part->turn_cosine;
+    const float ss = look->part->turn_sine * look->part->turn_sine;
     for (int i = 0; i < TL_LANES; i++) {
         struct tl_brdf_frame frame =
             frame_of(look->part, tl_lane_vector(look->shown, i), tl_lane_vector(look->tangent, i),
                      look->tangent[3][i], look->side[i]);
         vec3s viewer = tl_lane_vector(look->viewer, i);
-        gloss->cosine[i] = glms_vec3_dot(viewer, frame.normal);
-        struct tl_fan_place at =
-            tl_fan_place(look->part->fan, glms_vec3_dot(viewer, frame.tangent),
-                         glms_vec3_dot(viewer, frame.bitangent), gloss->cosine[i], look->glossiness[i]);
+        float along_u = look->widening[0][i], along_v = look->widening[1][i];
+        gloss->viewer[0][i] = glms_vec3_dot(viewer, frame.tangent);
+        gloss->viewer[1][i] = glms_vec3_dot(viewer, frame.bitangent);
+        gloss->viewer[2][i] = glms_vec3_dot(viewer, frame.normal);
         tl_lane_store(gloss->tangent, i, frame.tangent);
         tl_lane_store(gloss->bitangent, i, frame.bitangent);
         tl_lane_store(gloss->normal, i, frame.normal);
-        fan->row[i] = at.row.first;
-        fan->row_share[i] = at.row.share;
-        fan->column[i] = at.column.first;
-        fan->column_share[i] = at.column.share;
-        fan->gloss[i] = at.gloss.first;
-        fan->gloss_share[i] = at.gloss.share;
-        fan->side[i] = at.side;
+        gloss->square[0][i] = tl_facet_square(look->part->ward_squares[0], cc * along_u + ss * along_v);
+        gloss->square[1][i] = tl_facet_square(look->part->ward_squares[1], ss * along_u + cc * along_v);
     }
 }
 
 /* The lobes of a fan. */
 struct lobe_lanes {
+    int count;
     float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* in the frame of the threads, not normalised */
     float log_exponent[TL_LANES];              /* all lobes of a fan have the same one */
     tl_quad weight[TL_LOBE_FIT_MAX][TL_LANES];
 };
 
-TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct fan_lanes *at,
+TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
                          struct lobe_lanes *lobes)
 {
     const struct tl_fan_table *fan = lanes->look.part->fan;
+    struct tl_fan_place places[TL_LANES];
     const size_t middle = (size_t)fan->lobe_count / 2;
+    lobes->count = fan->lobe_count;
+    for (int i = 0; i < TL_LANES; i++)
+        places[i] = tl_fan_place(fan, gloss->viewer[0][i], gloss->viewer[1][i], gloss->viewer[2][i],
+                                 lanes->look.glossiness[i]);
     for (int i = 0; i < lanes->look.count; i++) {
-        const struct tl_fan_place place = {{at->row[i], at->row_share[i]},
-                                           {at->column[i], at->column_share[i]},
-                                           {at->gloss[i], at->gloss_share[i]},
-                                           at->side[i]};
         const struct tl_fan_shares shares = tl_fan_shares(lanes->look.f0[i]);
         tl_quad nodes[2 * TL_LOBE_FIT_MAX];
-        tl_fan_fetch(fan, &place, nodes);
+        tl_fan_fetch(fan, &places[i], nodes);
         for (int k = 0; k < fan->lobe_count; k++) {
             const size_t node = 2 * (size_t)k;
             const tl_quad local = nodes[node], weight = nodes[node + 1];
-            for (int c = 0; c < 3; c++)
-                lobes->local[k][c][i] = local[c];
+            lobes->local[k][0][i] = places[i].side * local[0];
+            lobes->local[k][1][i] = places[i].side * local[1];
+            lobes->local[k][2][i] = local[2];
             lobes->weight[k][i] = shares.low * weight[0] + shares.high * weight[1];
         }
         lobes->log_exponent[i] = nodes[2 * middle][3];
     }
 }
 
+TL_INLINE tl_quad divide_or_zero(tl_quad a, tl_quad b)
+{
+    const tl_quad safe = {tl_maxf(b[0], 1e-20f), tl_maxf(b[1], 1e-20f), tl_maxf(b[2], 1e-20f), 1};
+    return a / safe;
+}
+
+TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+                        struct lobe_lanes *lobes)
+{
+    const struct tl_look_lanes *look = &lanes->look;
+    struct tl_ward_lanes ward;
+    const float least = 1e-6f; /* of a cosine: the light of pixels below the surface is not used */
+    ward.gloss = &look->part->material->gloss;
+    memcpy(ward.viewer, gloss->viewer, sizeof ward.viewer);
+    memcpy(ward.square, gloss->square, sizeof ward.square);
+    for (int i = 0; i < TL_LANES; i++)
+        ward.viewer[2][i] = tl_maxf(ward.viewer[2][i], least);
+    tl_ward_fit(&ward, look->part->fan_count, look->count);
+    lobes->count = ward.count;
+    memcpy(lobes->local, ward.local, (size_t)ward.count * sizeof ward.local[0]);
+    for (int i = 0; i < TL_LANES; i++)
+        lobes->log_exponent[i] = tl_log2(ward.exponent[i]);
+    for (int i = 0; i < look->count; i++) {
+        const tl_quad f0 = look->f0[i], missing = schlick(f0, 1) - f0;
+        const tl_quad scale = divide_or_zero(f0 * ward.albedo[0][i] + missing * ward.albedo[1][i],
+                                             f0 * ward.sum[0][i] + missing * ward.sum[1][i]);
+        for (int k = 0; k < ward.count; k++)
+            lobes->weight[k][i] = scale * (f0 * ward.plain[k][i] + missing * ward.away[k][i]);
+    }
+}
+
 TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss_lanes *gloss,
-                          const struct fan_lanes *fan, float local[3][TL_LANES],
-                          const struct blend_lanes *blends, struct pair_lanes *to)
+                          float local[3][TL_LANES], const struct blend_lanes *blends, struct pair_lanes *to)
 {
     for (int i = 0; i < TL_LANES; i++) {
-        vec3s d = glms_vec3_scale(tl_lane_vector(gloss->tangent, i), fan->side[i] * local[0][i]);
-        d = glms_vec3_add(d,
-                          glms_vec3_scale(tl_lane_vector(gloss->bitangent, i), fan->side[i] * local[1][i]));
+        vec3s d = glms_vec3_scale(tl_lane_vector(gloss->tangent, i), local[0][i]);
+        d = glms_vec3_add(d, glms_vec3_scale(tl_lane_vector(gloss->bitangent, i), local[1][i]));
         d = glms_vec3_add(d, glms_vec3_scale(tl_lane_vector(gloss->normal, i), local[2][i]));
         place_pair(blends, i, tl_pixel_turned(scene, d), to);
     }
@@ -239,22 +264,24 @@ TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss
 TL_INLINE void add_facets(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                           struct gloss_lanes *gloss, tl_quad light[TL_LANES])
 {
-    const int count = lanes->look.count, lobe_count = lanes->look.part->fan->lobe_count;
+    const int count = lanes->look.count;
     assert(count > 0); /* what idle lanes hold is the first one's */
-    struct fan_lanes fan;
     struct lobe_lanes lobes;
     struct blend_lanes blends;
     struct pair_lanes pairs[TL_LOBE_FIT_MAX];
-    place_fan(lanes, gloss, &fan);
-    fetch_fan(lanes, &fan, &lobes);
+    find_frames(lanes, gloss);
+    if (lanes->look.part->fan)
+        fetch_fan(lanes, gloss, &lobes);
+    else
+        fit_ward(lanes, gloss, &lobes);
     choose_maps(scene, lobes.log_exponent, count, &blends);
-    for (int k = 0; k < lobe_count; k++)
-        place_lobe(scene, gloss, &fan, lobes.local[k], &blends, &pairs[k]);
+    for (int k = 0; k < lobes.count; k++)
+        place_lobe(scene, gloss, lobes.local[k], &blends, &pairs[k]);
     for (int i = 0; i < count; i++) {
         tl_quad sum = {0, 0, 0, 0};
-        for (int k = 0; k < lobe_count; k++)
+        for (int k = 0; k < lobes.count; k++)
             sum += fetch_pair(&blends, i, &pairs[k]) * lobes.weight[k][i];
-        if (gloss->cosine[i] > 0)
+        if (gloss->viewer[2][i] > 0)
             light[i] += sum * lanes->glossy_ratio[i];
     }
 }
@@ -289,24 +316,20 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
 
 static bool is_plain_ward(const struct tl_gloss *model)
 {
-    return model->model == TL_REFLECT_WARD && model->fresnel == TL_FRESNEL_SCHLICK &&
-           model->width_weft >= 1e-3f && model->width_warp >= 1e-3f && model->width_weft <= 1 &&
-           model->width_warp <= 1;
+    return model->model == TL_REFLECT_WARD && model->fresnel == TL_FRESNEL_SCHLICK;
 }
 
 /* tl_brdf_gloss_under_disc of Ward's facets. */
 TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
                         const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
 {
-    const struct tl_gloss *model = &lanes->look.part->material->gloss;
     const float wider = sun->radius * sun->radius / 8;
-    const float u = model->width_weft * model->width_weft + wider,
-                v = model->width_warp * model->width_warp + wider;
     float lobe[TL_LANES], share[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(gloss->normal, i);
         vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
-        float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->cosine[i];
+        float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
+        float u = gloss->square[0][i] + wider, v = gloss->square[1][i] + wider;
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
               y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
         float value = tl_exp2(-1.44269504f * (x * x / u + y * y / v) / (z * z)) *
@@ -329,7 +352,8 @@ TL_INLINE void add_brdf(const struct tl_pixel_lanes *lanes, const struct gloss_l
         if (!(seen[i] > 0))
             continue;
         vec3s f0 = {{look->f0[i][0], look->f0[i][1], look->f0[i][2]}};
-        struct tl_brdf brdf = tl_brdf_of(look->part->material, f0, look->glossiness[i]);
+        const float widening[2] = {look->widening[0][i], look->widening[1][i]};
+        struct tl_brdf brdf = tl_brdf_bumped(look->part->material, f0, look->glossiness[i], widening);
         const struct tl_brdf_frame frame = {tl_lane_vector(gloss->normal, i),
                                             tl_lane_vector(gloss->tangent, i),
                                             tl_lane_vector(gloss->bitangent, i)};
@@ -379,9 +403,9 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
     tl_quad lit[TL_LANES];
     for (int i = 0; i < look->count; i++)
         lit[i] = look->diffuse[i] * lobe[i];
-    if (part->fan && is_plain_ward(&part->material->gloss))
+    if (part->is_faceted && is_plain_ward(&part->material->gloss))
         add_ward(lanes, gloss, item, direction, lit);
-    else if (part->fan)
+    else if (part->is_faceted)
         add_brdf(lanes, gloss, item, direction, seen, lit);
     else if (part->is_glossy)
         add_mirrored(lanes, gloss, item, direction, lit);
@@ -415,7 +439,7 @@ TL_CLONES static void light_lanes(const struct tl_pixel_scene *scene, const stru
     add_diffuse(scene, lanes, light);
     if (part->transmits)
         add_transmitted(scene, lanes, light);
-    if (part->fan)
+    if (part->is_faceted)
         add_facets(scene, lanes, &gloss, light);
     else if (part->is_glossy)
         add_lobe(scene, lanes, &gloss, light);

@@ -97,7 +97,7 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
     run->slope = run->slopes[0] + run->slopes[1] + run->slopes[2];
     run->is_mixed = covered > 0 && covered < 3;
     run->is_fading = fades(request, triangle);
-    run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->fan &&
+    run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->is_faceted &&
                    !run->part->transmits && has_one_normal(run);
     if (run->is_flat)
         flatten(scene, run);
@@ -175,7 +175,7 @@ TL_INLINE void fill_lane(const struct pixel_run *run, const struct tl_pixel_weig
     look->side[lane] = run->triangle->back ? -1.0f : 1.0f;
     for (int c = 0; c < 3; c++)
         look->normal[c][lane] = normal[c];
-    if (run->part->has_bumps || run->part->fan) {
+    if (run->part->has_bumps || run->part->is_faceted) {
         const tl_quad tangent = weighted_quad(run->tangents, weights->at);
         for (int c = 0; c < 4; c++)
             look->tangent[c][lane] = tangent[c];

@@ -36,8 +36,6 @@ static void reserve(struct tl_vertex_ratios *ratios, size_t count)
     ratios->taps = tl_resize(ratios->taps, ratios->capacity, sizeof *ratios->taps);
     ratios->places = tl_resize(ratios->places, ratios->capacity, sizeof *ratios->places);
     ratios->made = tl_resize(ratios->made, ratios->capacity, sizeof *ratios->made);
-    if (!ratios->samples.tangents)
-        ratios->samples.tangents = TL_NEW_ARRAY(vec4s, 1);
     tl_samples_reserve(&ratios->samples, ratios->capacity);
 }
 
@@ -46,6 +44,7 @@ struct corner_lanes {
     struct tl_look_lanes look;
     struct {
         uint32_t seen, vertex;
+        int corner; /* of the triangle `seen` */
         size_t surface_index;
     } items[TL_LANES];
 };
@@ -53,7 +52,7 @@ struct corner_lanes {
 /* A vertex has no neighbours to filter over: it looks like the mean of its maps, in the middle of bumps of
  * every direction. */
 static void add_corner(struct corner_lanes *lanes, const struct tl_ratios_request *request, uint32_t seen,
-                       size_t surface_index, const tl_surface *surface, uint32_t vertex)
+                       size_t surface_index, const tl_surface *surface, uint32_t vertex, int corner)
 {
     const float whole = 1e3f; /* UV units: all of any map */
     const vec3s up = {{0, 1, 0}};
@@ -61,6 +60,7 @@ static void add_corner(struct corner_lanes *lanes, const struct tl_ratios_reques
     const int lane = look->count++;
     lanes->items[lane].seen = seen;
     lanes->items[lane].vertex = vertex;
+    lanes->items[lane].corner = corner;
     lanes->items[lane].surface_index = surface_index;
     tl_lane_store(look->normal, lane, surface->normals[vertex]);
     tl_lane_store(look->viewer, lane,
@@ -82,6 +82,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
     const uint32_t seen = lanes->items[lane].seen, vertex = lanes->items[lane].vertex;
     const size_t surface_index = lanes->items[lane].surface_index;
     const bool back = seen & TL_SAMPLE_BACK;
+    const int corner = lanes->items[lane].corner;
     const vec3s normal = glms_vec3_scale(tl_lane_vector(look->smooth, lane), look->side[lane]);
     const vec3s viewer = tl_lane_vector(look->viewer, lane);
     float cosine = tl_maxf(glms_vec3_dot(normal, viewer), 0);
@@ -96,7 +97,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
     size_t i = ratios->count++;
     ratios->samples.items[i] =
         (tl_sample){.triangle = seen,
-                    .weights = {1, 0, 0},
+                    .weights = {corner == 0, corner == 1, corner == 2},
                     .cover = 1,
                     .point = glms_vec3_sub(request->eye, seen_from), /* compose takes the viewer from it */
                     .normal = normal,
@@ -104,10 +105,8 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
                     .mirror = tl_unit_or(mirror, normal),
                     .glossiness = look->glossiness[lane],
                     .diffuse = {{diffuse[0], diffuse[1], diffuse[2]}},
-                    .specular = {{f0[0], f0[1], f0[2]}}};
-    ratios->samples.tangents[i] =
-        (vec4s){{look->tangent[0][lane], look->tangent[1][lane], look->tangent[2][lane],
-                 look->tangent[3][lane] * look->side[lane]}};
+                    .specular = {{f0[0], f0[1], f0[2]}},
+                    .widening = {look->widening[0][lane], look->widening[1][lane]}};
     uint32_t value = tl_points_of_vertex(request->points, surface_index, vertex, back);
     ratios->taps[i] = (struct tl_taps){.point = {value, value, value, value}, .weight = {1}};
     ratios->places[i] = (uint32_t)(2 * (ratios->first_vertex[surface_index] + vertex) + back);
@@ -150,7 +149,7 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
             bool is_known = !all && before != 0 && before + 1 == ratios->update;
             if (before == ratios->update || (is_known && (place / 2 + ratios->update) % 2 == 0))
                 continue;
-            add_corner(&lanes, request, seen, index, surface, corners[k]);
+            add_corner(&lanes, request, seen, index, surface, corners[k], k);
         }
     }
     place_samples(ratios, request, &lanes);
@@ -195,6 +194,6 @@ void tl_ratios_release(struct tl_vertex_ratios *ratios)
 size_t tl_ratios_bytes(const struct tl_vertex_ratios *ratios)
 {
     return 2 * ratios->vertex_count * (sizeof *ratios->items + sizeof *ratios->stamps) +
-           ratios->capacity * (sizeof(tl_sample) + sizeof(vec4s) + sizeof *ratios->taps +
-                               sizeof *ratios->places + sizeof *ratios->made);
+           ratios->capacity *
+               (sizeof(tl_sample) + sizeof *ratios->taps + sizeof *ratios->places + sizeof *ratios->made);
 }

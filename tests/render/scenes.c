@@ -302,7 +302,8 @@ void test_scene_open_lamplit(struct test_scene *scene, struct test_shape shape, 
 /* `point` lies on the triangle; that of `shaded` is the origin of its rays, on the smooth surface. */
 static vec3s light_of(const struct tl_shading_point *shaded, vec3s point, const struct tl_lamp *lamp)
 {
-    const struct tl_brdf brdf = tl_brdf_of(shaded->material, shaded->f0, shaded->glossiness);
+    const struct tl_brdf brdf =
+        tl_brdf_bumped(shaded->material, shaded->f0, shaded->glossiness, shaded->widening);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(shaded->normal, shaded->tangent, shaded->handedness,
                                                           shaded->side * shaded->material->gloss.rotation);
     bool is_point = lamp->kind == TL_LAMP_POINT;

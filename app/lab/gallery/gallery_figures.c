@@ -15,6 +15,7 @@
 static struct tl_brdf brdf_of(int model, float glossiness)
 {
     tl_material material = tl_material_default("figure");
+    material.glossiness = glossiness;
     material.gloss.model = model;
     struct tl_brdf brdf = tl_brdf_of(&material, material.specular, glossiness);
     if (model == TL_REFLECT_WARD)

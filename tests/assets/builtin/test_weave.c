@@ -136,8 +136,9 @@ static void test_interlacing(void **state)
 static void test_normals_match_heights(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < TL_COUNT(patterns); i++) {
-        struct tl_weave_params params = params_of(patterns[i]);
+    for (size_t i = 0; i < 2 * TL_COUNT(patterns); i++) {
+        struct tl_weave_params params = params_of(patterns[i / 2]);
+        params.section = i % 2 ? TL_YARN_FLAT : TL_YARN_ROUND;
         tl_weave weave;
         assert_true(tl_weave_create(&params, &weave));
         int side = weave.height.width, checked = 0;
@@ -241,6 +242,22 @@ static void test_yarn_values(void **state)
 }
 
 /* No crimp at all: flat yarns, no division by zero. */
+/* A quarter of a pitch from the middle of a warp yarn that is on top, a parabola lies below the ellipse. */
+static void test_sections(void **state)
+{
+    (void)state;
+    struct tl_weave_params params = params_of(TL_WEAVE_PLAIN);
+    tl_weave round, flat;
+    assert_true(tl_weave_create(&params, &round));
+    params.section = TL_YARN_FLAT;
+    assert_true(tl_weave_create(&params, &flat));
+    const double x = 16.5 / 64 / 0.56, rise = 1 - x * x;
+    assert_true(warp_on_top(&flat, 48, 32));
+    assert_near(height_at(&round, 48, 32) - height_at(&flat, 48, 32), 0.06e-3 * (sqrt(rise) - rise), 1e-9);
+    tl_weave_release(&round);
+    tl_weave_release(&flat);
+}
+
 static void test_flat_cloth(void **state)
 {
     (void)state;
@@ -264,7 +281,8 @@ int main(void)
         cmocka_unit_test(test_scale),       cmocka_unit_test(test_crests),
         cmocka_unit_test(test_interlacing), cmocka_unit_test(test_normals_match_heights),
         cmocka_unit_test(test_periodic),    cmocka_unit_test(test_mean_is_flat),
-        cmocka_unit_test(test_yarn_values), cmocka_unit_test(test_flat_cloth),
+        cmocka_unit_test(test_yarn_values), cmocka_unit_test(test_sections),
+        cmocka_unit_test(test_flat_cloth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,7 @@ static const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}
 static struct tl_brdf brdf_of(const struct gloss_case *item)
 {
     tl_material material = tl_material_default("test");
+    material.glossiness = item->glossiness;
     material.gloss.model = item->model;
     material.gloss.facets = TL_FACETS_BECKMANN;
     material.gloss.width_weft = item->weft;

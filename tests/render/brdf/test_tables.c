@@ -13,6 +13,7 @@ static const char *const names[MODELS] = {"phong", "blinn_phong", "cosine_lobe",
 static struct tl_brdf brdf_of(int model, float glossiness, int fresnel)
 {
     tl_material material = tl_material_default("test");
+    material.glossiness = glossiness;
     material.gloss.model = model;
     material.gloss.fresnel = fresnel;
     vec3s f0 = fresnel == TL_FRESNEL_SCHLICK ? (vec3s){{0.04f, 0.05f, 0.2f}} : (vec3s){{1, 1, 1}};

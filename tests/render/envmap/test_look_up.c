@@ -52,8 +52,8 @@ static int close_device(void **state)
 static tl_target mirrors_of(tl_gpu *gpu, const vec3s *directions, int count)
 {
     int height = (count + WIDTH - 1) / WIDTH;
-    const unsigned formats[TL_GBUFFER_TANGENT] = {GL_RGBA32F, GL_RGBA32F, GL_RGBA32F, GL_RGBA32F, GL_R32UI};
-    tl_target target = tl_target_create(gpu, WIDTH, height, formats, TL_GBUFFER_TANGENT, true);
+    const unsigned formats[TL_GBUFFER_WIDENING] = {GL_RGBA32F, GL_RGBA32F, GL_RGBA32F, GL_RGBA32F, GL_R32UI};
+    tl_target target = tl_target_create(gpu, WIDTH, height, formats, TL_GBUFFER_WIDENING, true);
     const float nearest = 0, nothing[4] = {0};
     const GLuint triangle[4] = {1};
     float *points = TL_NEW_ARRAY(float, (size_t)4 * WIDTH * (size_t)height);

@@ -217,14 +217,17 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     const tl_surface *surface = one->scene->listed[hit->surface];
     size_t part = tl_shade_part_at(one->materials, surface, hit->surface, hit->triangle);
     const struct tl_fan_table *fan = one->materials->parts[part].fan;
+    const bool is_faceted = one->materials->parts[part].is_faceted;
     *light = (vec3s){{0, 0, 0}};
-    assert_int_equal(fan != NULL, point->layered && point->layers.faceted);
-    if (!fan) {
+    assert_int_equal(is_faceted, point->layered && point->layers.faceted);
+    if (!is_faceted) {
         *light = glms_vec3_mul(point->glossy, exact_light(one, point->axis, point->exponent));
     } else {
         struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-        int count = tl_fan_table_look_up(fan, &point->layers.frame, point->viewer, point->f0,
-                                         point->glossiness, lobes);
+        int count = fan ? tl_fan_table_look_up(fan, &point->layers.frame, point->viewer, point->f0,
+                                               point->glossiness, lobes)
+                        : tl_lobe_fit_make(&point->layers.brdf, &point->layers.frame, point->viewer,
+                                           one->materials->parts[part].fan_count, lobes);
         for (int k = 0; k < count; k++)
             *light = glms_vec3_add(*light, glms_vec3_mul(lobes[k].weight, exact_light(one, lobes[k].direction,
                                                                                       lobes[k].exponent)));
@@ -233,10 +236,10 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
         const struct tl_sun *sun = &one->scene->suns.items[i];
         vec3s direction = tl_turn_direction(sun->direction, one->yaw);
         float broad = lobe_broadened_exponent(point->exponent, sun->radius * GLM_SQRT1_2f);
-        suns[i] =
-            fan ? tl_brdf_gloss_under_disc(&point->layers.brdf, &point->layers.frame, direction,
-                                           point->viewer, sun->radius)
-                : glms_vec3_scale(point->glossy, lobe_cosine(broad, glms_vec3_dot(direction, point->axis)));
+        suns[i] = is_faceted ? tl_brdf_gloss_under_disc(&point->layers.brdf, &point->layers.frame, direction,
+                                                        point->viewer, sun->radius)
+                             : glms_vec3_scale(point->glossy,
+                                               lobe_cosine(broad, glms_vec3_dot(direction, point->axis)));
     }
 }
 

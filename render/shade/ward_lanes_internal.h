@@ -1,0 +1,131 @@
+/* The lobes that stand for Ward's facets (render/brdf/lobe_fit.h) towards the viewers of TL_LANES pixels,
+ * whose widths differ. What the fit evaluates as a gloss divided by a pdf has a closed form here, and
+ * Schlick's term is kept apart as its two summands, so that colours come last. For pixel_lanes.c. Pure;
+ * threads: any. */
+#ifndef TOILE_RENDER_SHADE_WARD_LANES_INTERNAL_H
+#define TOILE_RENDER_SHADE_WARD_LANES_INTERNAL_H
+
+#include "render/brdf/fresnel.h"
+#include "render/brdf/lobe_fit.h"
+#include "render/brdf/slope_fan.h"
+
+struct tl_ward_lanes {
+    const struct tl_gloss *gloss;
+    /* Given: */
+    float viewer[3][TL_LANES]; /* in the frame of the threads */
+    float square[2][TL_LANES]; /* squared widths along weft and warp */
+    /* Results. Light by lobe: F0 * plain + (F90 - F0) * away, times the same of `albedo` over that of `sum`.
+     */
+    int count;                                 /* the greatest number of lobes of a lane */
+    float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* directions, unit */
+    float exponent[TL_LANES];
+    float plain[TL_LOBE_FIT_MAX][TL_LANES], away[TL_LOBE_FIT_MAX][TL_LANES];
+    float sum[2][TL_LANES], albedo[2][TL_LANES];
+};
+
+/* What a slope contributes to the gloss: see value_of_slope of lobe_fit.c. With q the squared cosine of the
+ * facet, p = t sqrt(1 / q) and a = 2 p q - b it is p q^2 sqrt(a / b) by Ward. */
+struct tl_ward_slope {
+    float value, away; /* ... and times (1 - t)^5 */
+    float towards;     /* p q */
+};
+
+TL_INLINE struct tl_ward_slope tl_ward_slope_at(const struct tl_gloss *gloss, bool schlick, float x, float y,
+                                                float z, float slope_x, float slope_y)
+{
+    float p = z + x * slope_x + y * slope_y, q = 1 / (1 + slope_x * slope_x + slope_y * slope_y);
+    float a = 2 * p * q - z, t = p * sqrtf(q), rest = 1 - tl_minf(t, 1);
+    bool is_seen = (p > 0) & (a > 0);
+    float value = p * q * q * sqrtf(tl_maxf(a, 0) / z);
+    value = is_seen ? value : 0;
+    if (!schlick)
+        value *= gloss->fresnel == TL_FRESNEL_DIELECTRIC
+                     ? tl_fresnel_dielectric(gloss->index, tl_maxf(t, 0))
+                     : tl_fresnel_conductor(gloss->index, gloss->extinction, tl_maxf(t, 0));
+    float square = rest * rest;
+    return (struct tl_ward_slope){value, schlick ? value * square * square * rest : 0, p * q};
+}
+
+TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_count, int lane_count)
+{
+    const float root_half = 0.707106781f;
+    float counts[TL_LANES], step[TL_LANES], slope[2][TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        struct tl_slope_fan fan =
+            tl_slope_fan_of(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
+                            w->viewer[0][i], w->viewer[1][i], w->viewer[2][i], max_count);
+        counts[i] = (float)fan.count;
+        step[i] = fan.step;
+        slope[0][i] = fan.slope_x;
+        slope[1][i] = fan.slope_y;
+        w->exponent[i] = tl_slope_exponent(fan.variance);
+        w->sum[0][i] = w->sum[1][i] = 0;
+    }
+    w->count = 1;
+    for (int i = 0; i < lane_count; i++)
+        w->count = counts[i] > (float)w->count ? (int)counts[i] : w->count;
+    for (int k = 0; k < w->count; k++) {
+        const float at = (float)(k - w->count / 2);
+        for (int i = 0; i < TL_LANES; i++) {
+            float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
+            float slope_x = at * slope[0][i], slope_y = at * slope[1][i], apart = at * step[i];
+            struct tl_ward_slope lobe = tl_ward_slope_at(w->gloss, schlick, x, y, z, slope_x, slope_y);
+            float fall = 2 * fabsf(at) < counts[i] ? tl_exp2(-0.72134752f * apart * apart) : 0;
+            float axis = 2 * lobe.towards - z, above = tl_slope_above(axis, w->exponent[i]);
+            w->plain[k][i] = fall * lobe.value;
+            w->away[k][i] = fall * lobe.away;
+            w->local[k][0][i] = 2 * lobe.towards * slope_x - x;
+            w->local[k][1][i] = 2 * lobe.towards * slope_y - y;
+            w->local[k][2][i] = axis;
+            w->sum[0][i] += above * w->plain[k][i];
+            w->sum[1][i] += above * w->away[k][i];
+        }
+    }
+}
+
+TL_INLINE void tl_ward_albedo(struct tl_ward_lanes *w, bool schlick)
+{
+    const float root_half = 0.707106781f;
+    float along[2][TL_LANES], across[2][TL_LANES], middle[TL_LANES], half[TL_LANES], all[TL_LANES];
+    float shares[TL_LANES];
+    for (int i = 0; i < TL_LANES; i++) {
+        struct tl_slope_quadrature nodes =
+            tl_slope_quadrature_of(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
+                                   w->viewer[0][i], w->viewer[1][i], w->viewer[2][i]);
+        along[0][i] = nodes.along_x, along[1][i] = nodes.along_y;
+        across[0][i] = nodes.across_x, across[1][i] = nodes.across_y;
+        middle[i] = nodes.middle, half[i] = nodes.half, all[i] = nodes.share;
+        w->albedo[0][i] = w->albedo[1][i] = shares[i] = 0;
+    }
+    for (int point = 0; point < TL_SLOPE_POINTS; point++)
+        for (int i = 0; i < TL_LANES; i++) {
+            float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
+            float at = middle[i] + half[i] * tl_slope_points[point], share = tl_slope_weight(point, at);
+            float slope_x = at * along[0][i], slope_y = at * along[1][i];
+            struct tl_ward_slope one =
+                tl_ward_slope_at(w->gloss, schlick, x, y, z, slope_x + across[0][i], slope_y + across[1][i]);
+            struct tl_ward_slope other =
+                tl_ward_slope_at(w->gloss, schlick, x, y, z, slope_x - across[0][i], slope_y - across[1][i]);
+            shares[i] += share;
+            w->albedo[0][i] += 0.5f * share * (one.value + other.value);
+            w->albedo[1][i] += 0.5f * share * (one.away + other.away);
+        }
+    for (int i = 0; i < TL_LANES; i++) {
+        w->albedo[0][i] *= all[i] / shares[i];
+        w->albedo[1][i] *= all[i] / shares[i];
+    }
+}
+
+/* Finds the lobes, at most `max_count`; `lane_count` lanes are used. */
+TL_INLINE void tl_ward_fit(struct tl_ward_lanes *w, int max_count, int lane_count)
+{
+    if (w->gloss->fresnel == TL_FRESNEL_SCHLICK) {
+        tl_ward_place(w, true, max_count, lane_count);
+        tl_ward_albedo(w, true);
+    } else {
+        tl_ward_place(w, false, max_count, lane_count);
+        tl_ward_albedo(w, false);
+    }
+}
+
+#endif
