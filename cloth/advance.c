@@ -120,6 +120,19 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
         tl_apart_truncate(&cloth->apart, &apart, NULL, &cloth->particles);
 }
 
+/* How near. Farther, so much passes that it cannot be untangled. */
+#define LET_PASS_M 0.02
+
+/* Joins what is near a pair that is stuck, as with a fold between its two sides: cloth may pass through
+ * itself there until the pair has met, and is untangled then. */
+static void let_pass(const tl_cloth *cloth, const struct tl_link *link, uint32_t *classes)
+{
+    const vec3d *x = cloth->particles.x;
+    for (uint32_t i = 0; i < cloth->particles.count; i++)
+        if (vec3d_distance(x[i], x[link->a]) < LET_PASS_M || vec3d_distance(x[i], x[link->b]) < LET_PASS_M)
+            tl_sets_join(classes, link->a, i);
+}
+
 /* Vertices that open seams join count as one. */
 static void prepare_apart(tl_cloth *cloth)
 {
@@ -130,6 +143,8 @@ static void prepare_apart(tl_cloth *cloth)
         classes[i] = i;
     for (size_t i = 0; i < cloth->seams.pair_count; i++)
         tl_sets_join(classes, cloth->seams.links[i].a, cloth->seams.links[i].b);
+    for (size_t i = 0; i < cloth->seams.pair_count && tl_seams_are_stuck(&cloth->seams); i++)
+        let_pass(cloth, &cloth->seams.links[i], classes);
     for (uint32_t i = 0; i < cloth->particles.count; i++)
         classes[i] = tl_sets_find(classes, i);
     const struct tl_apart_params params = apart_params(cloth, 0, 1);
@@ -146,12 +161,24 @@ static void look_around(tl_cloth *cloth, const struct tl_substep *substep)
     tl_apart_renew(&cloth->apart, &params, &cloth->particles, substep->continues_previous);
 }
 
-/* Projects positions onto the constraints that are not in the elastic energy: seams, the pull, contact. */
-static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep)
+static void draw_seams(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    const struct tl_contact_params contact = contact_params(cloth, substep);
     if (cloth->seams.pair_count > 0)
         tl_seams_solve(&cloth->seams, &cloth->particles, substep->h);
+}
+
+/* What comes last is stronger: gentle seams come before the strain limit. */
+static bool seams_come_last(const tl_cloth *cloth)
+{
+    return tl_seams_are_firm(&cloth->seams);
+}
+
+/* Projects positions onto the constraints that are not in the elastic energy: seams, the pull, contact. */
+static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep, bool draws_seams)
+{
+    const struct tl_contact_params contact = contact_params(cloth, substep);
+    if (draws_seams)
+        draw_seams(cloth, substep);
     pull_grabbed(cloth, substep);
     keep_apart(cloth, &contact);
 }
@@ -171,13 +198,15 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
     else
         tl_particles_run(&predict);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
-    bool limited = cloth->params.strain_limit > 0;
+    bool limited = cloth->params.strain_limit > 0, seams_last = seams_come_last(cloth);
+    if (!seams_last)
+        draw_seams(cloth, substep);
     tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
     if (tl_cloth_uses_symmetric_sweep(cloth))
         tl_xpbd_solve_backward(&cloth->energy, &cloth->particles);
     if (limited)
         tl_strain_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
-    apply_constraints(cloth, substep);
+    apply_constraints(cloth, substep, seams_last);
     if (!substep->continues_next)
         tl_particles_finish(&cloth->particles, substep->h);
 }
@@ -196,7 +225,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
 {
     struct tl_particles *particles = &cloth->particles;
     if (cloth->seams.pair_count > 0)
-        tl_seams_shrink(&cloth->seams, substep->h);
+        tl_seams_shrink(&cloth->seams, particles->x, substep->h);
     const struct tl_springs springs = tl_cloth_springs(cloth);
     const struct tl_implicit_problem problem = {
         .energy = &cloth->energy,
@@ -242,7 +271,7 @@ static void advance_reference(tl_cloth *cloth, const struct tl_substep *substep,
     if (!substep->continues_previous)
         tl_verlet_drift(particles, &verlet);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, particles);
-    apply_constraints(cloth, substep);
+    apply_constraints(cloth, substep, true);
     const struct tl_particle_kernel then =
         substep->continues_next ? tl_verlet_leap(particles, &verlet) : tl_verlet_kick(particles, &verlet);
     compute_forces(cloth, &then);
@@ -359,7 +388,7 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct
     }
 }
 
-static void close_seams(tl_cloth *cloth)
+static void close_seams(tl_cloth *cloth, bool was_stuck)
 {
     if (cloth->seams.pair_count == 0)
         return;
@@ -367,6 +396,8 @@ static void close_seams(tl_cloth *cloth)
     size_t count = tl_seams_close(&cloth->seams, &cloth->particles, joined);
     if (count < cloth->particles.count)
         tl_cloth_join(cloth, joined, count);
+    else if (tl_seams_are_stuck(&cloth->seams) != was_stuck)
+        tl_apart_forget(&cloth->apart);
     free(joined);
 }
 
@@ -488,6 +519,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
         return false;
     uint64_t jump_followed = cloth->jump_followed;
+    bool was_stuck = tl_seams_are_stuck(&cloth->seams);
     struct tl_particles *particles = &cloth->particles;
     size_t bytes = particles->count * sizeof(vec3d);
     cloth->good_x = tl_resize(cloth->good_x, particles->count, sizeof *cloth->good_x);
@@ -506,7 +538,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
                     ? tl_fail(error, TL_INTERRUPTED, "cloth: interrupted at %.3f s", cloth->time_s)
                     : check_state(cloth, error) && check_energy(cloth, collider, error);
     if (good) {
-        close_seams(cloth);
+        close_seams(cloth, was_stuck);
         cloth->grab_from = cloth->grab_target;
         cloth->time_s += advance->clock ? 1 / cloth->params.frame_rate : 0;
     } else {

@@ -151,7 +151,7 @@ void tl_cloth_build_state(tl_cloth *cloth)
     cloth->particles = tl_particles_create(count);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->particles.x[weld[i]] = vec3d_from(mesh->positions[i]);
-    cloth->seams = tl_seams_create(garment->seams, garment->seam_count, weld, cloth->particles.x);
+    cloth->seams = tl_seams_create(garment->seams, garment->seam_count, weld);
     free(weld);
     tl_cloth_make_pins(cloth);
     tl_cloth_set_constants(cloth);

@@ -99,6 +99,8 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     bool good = true, tried = false, carried = false;
     struct stops stops = {0};
     cloth->settled = false;
+    if (collider && cloth->seams.elapsed_s == 0)
+        tl_seams_find_ways(&cloth->seams, &cloth->topology, cloth->particles.x, collider);
     while (good && !cloth->settled && settled_s < params->settle_s) {
         if (!tried && !tl_seams_are_closing(&cloth->seams)) {
             tried = true;
@@ -107,10 +109,10 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
             phase = carried ? TL_COUNT(phases) - 1 : phase;
         }
         /* Slower slip than settle_speed counts as rest, so such contacts stick. */
-        const struct tl_advance_params advance = {.drag = phases[phase].drag,
-                                                  .contact_budget = CONTACT_BUDGET,
-                                                  .min_slip_speed =
-                                                      fmax(TL_MIN_SLIP_SPEED, params->settle_speed)};
+        const struct tl_advance_params advance = {
+            .drag = tl_seams_are_closing(&cloth->seams) ? tl_seams_drag(&cloth->seams) : phases[phase].drag,
+            .contact_budget = CONTACT_BUDGET,
+            .min_slip_speed = fmax(TL_MIN_SLIP_SPEED, params->settle_speed)};
         const struct tl_cloth_params now = params_of_phase(params, phase);
         tl_cloth_use_solver(cloth, &now);
         good = tl_cloth_advance(cloth, collider, &advance, error);

@@ -10,7 +10,7 @@
 struct head {
     size_t render_count, particle_count, pin_count, seam_count;
     struct tl_implicit_tally tally;
-    double seams_elapsed_s, unsettled_speed;
+    double seams_elapsed_s, seams_firm_s, seams_welded_s, unsettled_speed;
     uint64_t jump_followed, collider_revision;
     bool settled;
 };
@@ -22,10 +22,9 @@ struct arrays {
     bool *pinched;         /* [particle_count] */
     struct tl_pin *pins;   /* [pin_count] */
     struct tl_link *links; /* [seam_count] */
-    double *gaps;          /* [seam_count] */
 };
 
-enum { ARRAYS = 9 };
+enum { ARRAYS = 8 };
 struct span {
     void *bytes;
     size_t size;
@@ -44,7 +43,6 @@ static void list_spans(const struct head *head, const struct arrays *arrays, str
         {arrays->pinched, count * sizeof *arrays->pinched},
         {arrays->pins, head->pin_count * sizeof *arrays->pins},
         {arrays->links, head->seam_count * sizeof *arrays->links},
-        {arrays->gaps, head->seam_count * sizeof *arrays->gaps},
     };
     memcpy(out, spans, sizeof spans);
 }
@@ -67,6 +65,8 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
                               .seam_count = cloth->seams.pair_count,
                               .tally = cloth->tally,
                               .seams_elapsed_s = cloth->seams.elapsed_s,
+                              .seams_firm_s = cloth->seams.firm_s,
+                              .seams_welded_s = cloth->seams.welded_s,
                               .unsettled_speed = cloth->unsettled_speed,
                               .jump_followed = cloth->jump_followed,
                               .collider_revision = cloth->collider_revision,
@@ -75,8 +75,7 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
                                   .particles = cloth->particles,
                                   .pinched = cloth->contacts.pinched,
                                   .pins = cloth->pins,
-                                  .links = cloth->seams.links,
-                                  .gaps = cloth->seams.gaps};
+                                  .links = cloth->seams.links};
     struct span spans[ARRAYS];
     list_spans(&head, &arrays, spans);
     *size = size_of(spans);
@@ -97,8 +96,7 @@ static struct arrays make_arrays(const struct head *head)
                            .particles = tl_particles_create(head->particle_count),
                            .pinched = TL_NEW_ARRAY(bool, head->particle_count),
                            .pins = TL_NEW_ARRAY(struct tl_pin, head->pin_count),
-                           .links = TL_NEW_ARRAY(struct tl_link, head->seam_count),
-                           .gaps = TL_NEW_ARRAY(double, head->seam_count)};
+                           .links = TL_NEW_ARRAY(struct tl_link, head->seam_count)};
 }
 
 static void release_arrays(struct arrays *arrays)
@@ -108,7 +106,6 @@ static void release_arrays(struct arrays *arrays)
     free(arrays->pinched);
     free(arrays->pins);
     free(arrays->links);
-    free(arrays->gaps);
 }
 
 /* Sizes are bounded by the garment's before anything is allocated by them. */
@@ -155,12 +152,15 @@ static void take_arrays(tl_cloth *cloth, const struct head *head, struct arrays 
     cloth->particles = arrays->particles;
     arrays->particles = (struct tl_particles){0};
     tl_seams_release(&cloth->seams);
-    cloth->seams = (struct tl_seams){head->seam_count, arrays->links, arrays->gaps, head->seams_elapsed_s};
+    cloth->seams = (struct tl_seams){.pair_count = head->seam_count,
+                                     .links = arrays->links,
+                                     .elapsed_s = head->seams_elapsed_s,
+                                     .firm_s = head->seams_firm_s,
+                                     .welded_s = head->seams_welded_s};
     free(cloth->pins);
     cloth->pins = arrays->pins;
     cloth->pin_count = head->pin_count;
     arrays->links = NULL;
-    arrays->gaps = NULL;
     arrays->pins = NULL;
     tl_cloth_set_constants(cloth);
     memcpy(cloth->contacts.pinched, arrays->pinched, head->particle_count * sizeof(bool));

@@ -102,6 +102,66 @@ static void test_held_apart(void **state)
     sheet_free(&garment);
 }
 
+/* Two particles 1 m apart, held for a second while the winch draws: released, they come nearer by its speed
+ * in one substep and no more, because a thread that was held stores nothing. */
+static void test_a_held_thread_stores_nothing(void **state)
+{
+    (void)state;
+    const struct tl_seam_pair pair = {0, 1};
+    const uint32_t weld[] = {0, 1};
+    const double h = 1.0 / 1800;
+    struct tl_seams seams = tl_seams_create(&pair, 1, weld);
+    struct tl_particles particles = tl_particles_create(2);
+    for (int i = 0; i < 2; i++) {
+        particles.x[i] = particles.previous[i] = (vec3d){i, 0, 0};
+        particles.w[i] = 1;
+    }
+    for (int substep = 0; substep < 1800; substep++) {
+        tl_seams_solve(&seams, &particles, h);
+        memcpy(particles.x, particles.previous, 2 * sizeof *particles.x);
+    }
+    tl_seams_solve(&seams, &particles, h);
+    double nearer = 1 - vec3d_distance(particles.x[0], particles.x[1]);
+    assert_near(nearer, 0.6 * h, 1e-9); /* 0.33 mm */
+    tl_particles_release(&particles);
+    tl_seams_release(&seams);
+}
+
+/* A beam lies between two panels. `end` 1: their tops are sewn, 2 cm below its middle; threads that run
+ * straight pass nearer to its lower side, but the tops point up, so the seam closes above it. `end` -1: their
+ * bottoms are sewn, 2 cm above the middle of a beam, and the seam closes below it. */
+static void test_seams_close_where_the_panels_end(void **state)
+{
+    (void)state;
+    for (int end = -1; end <= 1; end += 2) {
+        tl_error error = {0};
+        tl_garment garment = two_panels(0.3);
+        const double middle = end > 0 ? 0.72 : 0.28;
+        tl_mesh beam = body_box((vec3s){{0, (float)middle, 0}}, (vec3s){{2, 0.06f, 0.06f}}, 0);
+        struct tl_cloth_fabric fabric = fabric_defaults();
+        struct tl_cloth_params params = params_defaults();
+        params.gravity = 0;
+        params.settle_s = 0.1;
+        tl_collider *collider = tl_collider_create(&beam, false, &error);
+        garment.seam_count = 0;
+        for (int column = 0; column <= COLUMNS; column++) {
+            uint32_t edge = sheet_vertex(&panel, column, end > 0 ? ROWS : 0);
+            sheet_seam(&garment, edge, edge + (uint32_t)garment.model.mesh.vertex_count / 2);
+        }
+        tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+        assert_non_null(cloth);
+        assert_ok(tl_cloth_settle(cloth, collider, &error), error);
+        assert_int_equal(tl_cloth_measure(cloth, collider).open_seams, 0);
+        for (size_t i = 0; i < garment.seam_count; i++)
+            assert_true(end * (cloth->particles.x[tl_cloth_weld(cloth)[garment.seams[i].a]].y - middle) >
+                        0.06);
+        tl_cloth_destroy(&cloth);
+        tl_collider_destroy(&collider);
+        tl_mesh_release(&beam);
+        sheet_free(&garment);
+    }
+}
+
 /* Joining keeps mass, momentum and the centre of mass. */
 static void test_joining_keeps_momentum(void **state)
 {
@@ -143,6 +203,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_panels_close_around_a_body),
         cmocka_unit_test(test_held_apart),
+        cmocka_unit_test(test_a_held_thread_stores_nothing),
+        cmocka_unit_test(test_seams_close_where_the_panels_end),
         cmocka_unit_test(test_joining_keeps_momentum),
     };
     tl_log_set_level(TL_LOG_WARN);
