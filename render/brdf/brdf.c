@@ -142,7 +142,11 @@ static float ward(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
 {
     float u = brdf->gloss.width_weft, v = brdf->gloss.width_warp;
     float x = at->h.x / (u * at->h.z), y = at->h.y / (v * at->h.z);
-    return expf(-(x * x + y * y)) / (4 * PI * u * v) * sqrtf(at->cos_a / at->cos_b);
+    float facets = expf(-(x * x + y * y)) / (4 * PI * u * v);
+    if (brdf->gloss.ward != TL_WARD_BOUNDED)
+        return facets * sqrtf(at->cos_a / at->cos_b);
+    float steep = at->cos_t * at->h.z * at->h.z;
+    return facets > 0 ? facets * at->cos_a / (steep * steep) : 0;
 }
 
 static float half_power(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)

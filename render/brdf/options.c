@@ -4,6 +4,7 @@ static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe",
                                           "ward",  "banks",       NULL};
 static const char *const facets_names[] = {"gaussian", "beckmann", NULL};
 static const char *const masking_names[] = {"smith", "v_grooves", NULL};
+static const char *const ward_names[] = {"published", "bounded", NULL};
 static const char *const fresnel_names[] = {"schlick", "dielectric", "conductor", NULL};
 
 #define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_AT_ONCE)
@@ -23,6 +24,10 @@ static const struct tl_option material_rows[] = {
                    "torrance_sparrow: distribution of the slopes of facets"),
     TL_OPTION_ENUM(material_params, masking, AFFECTS, masking_names,
                    "torrance_sparrow: masking and shadowing of facets by one another"),
+    TL_OPTION_ENUM(
+        material_params, ward, AFFECTS, ward_names,
+        "ward: as published, which grows without bound in the last degree of grazing views, or with a "
+        "bounded albedo"),
     TL_OPTION_ENUM(material_params, fresnel, AFFECTS, fresnel_names,
                    "rise of reflectance towards grazing angles: from specular, or from the index"),
     TL_OPTION_FLOAT(material_params, index, AFFECTS, 1, 200, "",

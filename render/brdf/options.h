@@ -9,7 +9,7 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     float diffuse[3];
     float specular[3];
     float glossiness;
-    int model, facets, masking, fresnel; /* as struct tl_gloss */
+    int model, facets, masking, ward, fresnel; /* as struct tl_gloss */
     float index, extinction;
     float width_weft, width_warp, rotation_deg;
     float coat, coat_glossiness;

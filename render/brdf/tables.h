@@ -14,6 +14,7 @@
  *     COSINE_LOBE       K(r.l) F(h.l)                               times_cos_a
  *     TORRANCE_SPARROW  F(h.l) D(n.h)    G(n.l, n.v) / (pi n.v)     V_GROOVES: G / (pi n.v) over (G, n.v)
  *     WARD              D(h.t, h.b)      sqrt(n.l / n.v)   F(h.l)
+ *                       as published only: in the bounded form h.l is squared below the line
  *     BANKS             K(t.l, t.v)      F(n.v)                     times_cos_a
  *
  * The axes of K and D end where these have fallen to 1e-6 of their peak, so that all texels cover the visible

@@ -1,5 +1,5 @@
-// The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING and FRESNEL are the numbers
-// of the enums of assets/base/material.h.
+// The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING, WARD_FORM and FRESNEL are
+// the numbers of the enums of assets/base/material.h.
 #include "lamp.glsl"
 #include "power.glsl"
 #include "tables.glsl"
@@ -8,6 +8,7 @@ layout(location = 71) uniform vec2 gloss_optics; // index, extinction
 
 const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
 const int GAUSSIAN = 0, BECKMANN = 1;
+const int BOUNDED = 1;
 const int SMITH = 0, V_GROOVES = 1;
 const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
 
@@ -107,7 +108,11 @@ float masked(Cosines c, float width)
 float ward(Cosines c, vec2 widths)
 {
     vec2 slope = c.half_plane / (widths * c.half_normal);
-    return exp(-dot(slope, slope)) / (4.0 * PI * widths.x * widths.y) * sqrt(c.a / c.b);
+    float facets = exp(-dot(slope, slope)) / (4.0 * PI * widths.x * widths.y);
+    float steep = c.t * c.half_normal * c.half_normal;
+    if (WARD_FORM == BOUNDED)
+        return facets > 0.0 ? facets * c.a / (steep * steep) : 0.0;
+    return facets * sqrt(c.a / c.b);
 }
 
 // The cosine of l with the nearest mirror direction of a thread, and its squared sine.

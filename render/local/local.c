@@ -117,9 +117,10 @@ static void define_all(const struct tl_local_request *request, const struct lit_
 {
     const struct tl_shading_params *params = request->params;
     const struct tl_gloss *gloss = &part->material->gloss;
-    snprintf(defines, TL_LOCAL_DEFINES_SIZE,
-             "#define MODEL %d\n#define FACETS %d\n#define MASKING %d\n#define FRESNEL %d\n", gloss->model,
-             gloss->facets, gloss->masking, gloss->fresnel);
+    snprintf(
+        defines, TL_LOCAL_DEFINES_SIZE,
+        "#define MODEL %d\n#define FACETS %d\n#define MASKING %d\n#define WARD_FORM %d\n#define FRESNEL %d\n",
+        gloss->model, gloss->facets, gloss->masking, gloss->ward, gloss->fresnel);
     define_tables(part->tables, pass, defines);
     if (params->frequency == TL_FREQUENCY_GOURAUD)
         define(defines, params->coordinates == TL_COORDINATES_MATRIX ? "GOURAUD\n#define MATRIX" : "GOURAUD");

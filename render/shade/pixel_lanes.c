@@ -324,6 +324,7 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
                         const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
 {
     const float wider = sun->radius * sun->radius / 8;
+    const bool is_bounded = lanes->look.part->material->gloss.ward == TL_WARD_BOUNDED;
     float lobe[TL_LANES], share[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(gloss->normal, i);
@@ -332,11 +333,13 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         float u = gloss->square[0][i] + wider, v = gloss->square[1][i] + wider;
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
               y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
+        float square = glms_vec3_dot(sum, sum); /* 4 cos^2 t */
+        float published = sqrtf(cos_a / cos_b), bounded = 4 * cos_a * square / (z * z * z * z);
         float value = tl_exp2(-1.44269504f * (x * x / u + y * y / v) / (z * z)) *
-                      sqrtf(cos_a / (cos_b * u * v)) * (1 / (4 * (float)M_PI));
+                      (is_bounded ? bounded : published) / (4 * (float)M_PI * sqrtf(u * v));
         bool is_seen = (cos_a > 0) & (cos_b > 0);
         lobe[i] = is_seen ? value : 0;
-        share[i] = schlick_share(0.5f * sqrtf(glms_vec3_dot(sum, sum)));
+        share[i] = schlick_share(0.5f * sqrtf(square));
     }
     for (int i = 0; i < lanes->look.count; i++)
         lit[i] += lobe[i] * schlick(lanes->look.f0[i], share[i]);

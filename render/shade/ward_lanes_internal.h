@@ -24,7 +24,8 @@ struct tl_ward_lanes {
 };
 
 /* What a slope contributes to the gloss: see value_of_slope of lobe_fit.c. With q the squared cosine of the
- * facet, p = t sqrt(1 / q) and a = 2 p q - b it is p q^2 sqrt(a / b) by Ward. */
+ * facet, p = t sqrt(1 / q) and a = 2 p q - b it is p q^2 sqrt(a / b) by Ward, and a / (p q) in the bounded
+ * form. */
 struct tl_ward_slope {
     float value, away; /* ... and times (1 - t)^5 */
     float towards;     /* p q */
@@ -36,7 +37,8 @@ TL_INLINE struct tl_ward_slope tl_ward_slope_at(const struct tl_gloss *gloss, bo
     float p = z + x * slope_x + y * slope_y, q = 1 / (1 + slope_x * slope_x + slope_y * slope_y);
     float a = 2 * p * q - z, t = p * sqrtf(q), rest = 1 - tl_minf(t, 1);
     bool is_seen = (p > 0) & (a > 0);
-    float value = p * q * q * sqrtf(tl_maxf(a, 0) / z);
+    float published = p * q * q * sqrtf(tl_maxf(a, 0) / z), bounded = a / (p * q);
+    float value = gloss->ward == TL_WARD_BOUNDED ? bounded : published;
     value = is_seen ? value : 0;
     if (!schlick)
         value *= gloss->fresnel == TL_FRESNEL_DIELECTRIC

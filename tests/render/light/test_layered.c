@@ -57,6 +57,7 @@ struct feature {
     const char *name;
     int model;
     float weft, warp, coat, transmission, openness;
+    int ward;
     double error; /* relative RMSE against the oracle at most: see test_against_the_oracle */
 };
 
@@ -64,6 +65,7 @@ static const struct feature features[] = {
     {.name = "two lobes", .error = 0.05},
     {.name = "ward", .model = TL_REFLECT_WARD, .weft = 0.35f, .warp = 0.12f, .error = 0.05},
     {.name = "ward, turned", .model = TL_REFLECT_WARD, .weft = 0.12f, .warp = 0.35f, .error = 0.05},
+    {.name = "ward, bounded", TL_REFLECT_WARD, 0.35f, 0.12f, .ward = TL_WARD_BOUNDED, .error = 0.07},
     {.name = "torrance-sparrow", .model = TL_REFLECT_TORRANCE_SPARROW, .weft = 0.25f, .error = 0.05},
     {.name = "blinn-phong", .model = TL_REFLECT_BLINN_PHONG, .error = 0.05},
     {.name = "cosine lobe", .model = TL_REFLECT_COSINE_LOBE, .error = 0.05},
@@ -71,12 +73,13 @@ static const struct feature features[] = {
     {.name = "coat", .coat = 1, .error = 0.05},
     {.name = "transmission", .transmission = 0.5f, .error = 0.05},
     {.name = "openness", .openness = 0.4f, .error = 0.05},
-    {.name = "all", TL_REFLECT_WARD, 0.35f, 0.12f, 1, 0.3f, 0.4f, 0.05},
+    {.name = "all", TL_REFLECT_WARD, 0.35f, 0.12f, 1, 0.3f, 0.4f, .error = 0.05},
 };
 
 static void set_feature(const struct feature *feature, tl_material *material)
 {
     material->gloss.model = feature->model;
+    material->gloss.ward = feature->ward;
     material->gloss.facets = TL_FACETS_BECKMANN;
     material->gloss.width_weft = feature->weft;
     material->gloss.width_warp = feature->warp;

@@ -33,6 +33,7 @@ static void equals_the_cpu(void **state)
             gloss->model = model;
             gloss->facets = variant & 1 ? TL_FACETS_BECKMANN : TL_FACETS_GAUSSIAN;
             gloss->masking = variant & 2 ? TL_MASKING_V_GROOVES : TL_MASKING_SMITH;
+            gloss->ward = variant & 2 ? TL_WARD_BOUNDED : TL_WARD_PUBLISHED;
             gloss->fresnel = variant % 3;
             gloss->index = 1.5f;
             gloss->extinction = 2;

@@ -348,11 +348,12 @@ static void be_satin(struct lanes_scene *scene)
     cloth->gloss.rotation = 0.3f;
 }
 
-/* Its widths follow the glossiness, which a map changes: the third axis of the table. */
+/* Its widths follow the glossiness, which a map changes. */
 static void be_satin_with_maps(struct lanes_scene *scene)
 {
     be_satin(scene);
     tl_material *cloth = &scene->shapes[1].material;
+    cloth->gloss.ward = TL_WARD_BOUNDED;
     cloth->gloss.width_weft = cloth->gloss.width_warp = 0;
     cloth->gloss_map = (struct tl_map){.image = &scene->data, .transform = {.scale = {3, 2}}};
     cloth->normal_map = (struct tl_map){.image = &scene->normal, .transform = {.scale = {3, 3}}};
