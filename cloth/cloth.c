@@ -202,6 +202,11 @@ size_t tl_cloth_unpin(tl_cloth *cloth)
     return count - kept;
 }
 
+bool tl_cloth_is_settled(const tl_cloth *cloth)
+{
+    return cloth->settled;
+}
+
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out)
 {
     for (size_t i = 0; i < cloth->topology.render_count; i++)

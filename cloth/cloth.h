@@ -105,6 +105,14 @@ void tl_cloth_mark_start(tl_cloth *cloth);
  * again; a vertex that was grabbed or pinned by hand is free. */
 void tl_cloth_reset(tl_cloth *cloth);
 
+/* Largest displacement of a free vertex over the last frame, as a speed in m/s. Velocities would not tell
+ * rest: a vertex that oscillates by a tenth of a millimetre between substeps has a large one and goes
+ * nowhere. 0 before the first frame. */
+double tl_cloth_frame_speed(const tl_cloth *cloth);
+
+/* Whether settling has ended at rest; false for cloth that was not settled, or not long enough. */
+bool tl_cloth_is_settled(const tl_cloth *cloth);
+
 /* Closes the seams, resolves penetration at the start and simulates until the cloth is at rest, with strong
  * damping and against a collider at rest. The clock stays at 0. Reports progress; stops early when
  * tl_interrupted() is true.

@@ -47,6 +47,15 @@ double tl_cloth_max_strain(const tl_cloth *cloth)
     return worst;
 }
 
+double tl_cloth_frame_speed(const tl_cloth *cloth)
+{
+    double farthest = 0;
+    for (size_t i = 0; cloth->good_x && i < cloth->particles.count; i++)
+        if (cloth->particles.w[i] > 0)
+            farthest = fmax(farthest, vec3d_distance(cloth->particles.x[i], cloth->good_x[i]));
+    return farthest * cloth->params.frame_rate;
+}
+
 /* Root mean square over the sides of all triangles. */
 static double rms_strain(const tl_cloth *cloth)
 {

@@ -35,18 +35,6 @@ static struct tl_cloth_params params_of_phase(const struct tl_cloth_params *chos
     return params;
 }
 
-/* Largest displacement of a free vertex over the last frame, as a speed in m/s. Velocities would not do: a
- * vertex that oscillates by a tenth of a millimetre between substeps has a large velocity and goes nowhere.
- */
-static double max_displacement_speed(const tl_cloth *cloth)
-{
-    double farthest = 0;
-    for (size_t i = 0; i < cloth->particles.count; i++)
-        if (cloth->particles.w[i] > 0)
-            farthest = fmax(farthest, vec3d_distance(cloth->particles.x[i], cloth->good_x[i]));
-    return farthest * cloth->params.frame_rate;
-}
-
 void tl_cloth_log_unsettled(const tl_cloth *cloth)
 {
     tl_info("the cloth still moves at %.3f m/s after settling for %g s: increase cloth.settle_s",
@@ -120,7 +108,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
         settled_s += elapsed_s;
         phase_s += elapsed_s;
         double min_s = carried ? CARRIED_MIN_S : phases[phase].min_s;
-        bool at_rest = phase_s > min_s && max_displacement_speed(cloth) < params->settle_speed &&
+        bool at_rest = phase_s > min_s && tl_cloth_frame_speed(cloth) < params->settle_speed &&
                        (!carried || stops.frames >= FRAMES_TO_GATHER_SPEED);
         if (carried)
             stop_at_peak(cloth, &stops);
@@ -133,7 +121,7 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     tl_progress_end(&progress);
     tl_cloth_use_solver(cloth, params);
     bool timed_out = good && !cloth->settled && params->settle_s > 0;
-    cloth->unsettled_speed = timed_out ? max_displacement_speed(cloth) : 0;
+    cloth->unsettled_speed = timed_out ? tl_cloth_frame_speed(cloth) : 0;
     if (timed_out)
         tl_cloth_log_unsettled(cloth);
     memset(cloth->particles.v, 0, cloth->particles.count * sizeof(vec3d));

@@ -43,14 +43,35 @@ static const tl_surface *find_garment(const tl_frame *frame)
     return NULL;
 }
 
+/* The garment's positions where its file has it, without a lift onto the ground. The caller frees them. */
+static vec3s *positions_in_file(const tl_session *session, const tl_surface *garment)
+{
+    vec3s *positions = TL_NEW_ARRAY(vec3s, garment->vertex_count);
+    for (size_t i = 0; i < garment->vertex_count; i++) {
+        positions[i] = garment->positions[i];
+        positions[i].y -= tl_session_lifted_m(session);
+    }
+    return positions;
+}
+
 static bool export_frame(tl_session *session, const struct tl_arguments *arguments, tl_error *error)
 {
     if (!tl_session_go_to(session, arguments->first_frame, error))
         return false;
     tl_frame frame = tl_session_frame(session);
-    if (tl_path_has_extension(arguments->output, "glb"))
-        return tl_model_export_glb(arguments->output, frame.surfaces, frame.surface_count, error);
-    return tl_model_export_obj(arguments->output, tl_session_garment(session), find_garment(&frame), error);
+    tl_surface surfaces[2]; /* as many as a frame has */
+    vec3s *positions = NULL;
+    memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
+    frame.surfaces = surfaces;
+    tl_surface *garment = (tl_surface *)find_garment(&frame);
+    if (garment)
+        garment->positions = positions = positions_in_file(session, garment);
+    bool is_glb = tl_path_has_extension(arguments->output, "glb");
+    bool written = is_glb
+                       ? tl_model_export_glb(arguments->output, surfaces, frame.surface_count, error)
+                       : tl_model_export_obj(arguments->output, tl_session_garment(session), garment, error);
+    free(positions);
+    return written;
 }
 
 static bool export_frames(tl_session *session, const struct tl_arguments *arguments,
@@ -69,7 +90,9 @@ static bool export_frames(tl_session *session, const struct tl_arguments *argume
         if (!done)
             break;
         tl_frame frame = tl_session_frame(session);
-        tl_model_points(model, find_garment(&frame)->positions, points);
+        vec3s *positions = positions_in_file(session, find_garment(&frame));
+        tl_model_points(model, positions, points);
+        free(positions);
         tl_point_cache_add(writer, points);
         tl_progress_update(&progress, number - first + 1, last - first + 1);
     }

@@ -111,7 +111,7 @@ static void describe_units(cJSON *object, const tl_model *model)
 {
     cJSON_AddStringToObject(object, "units", tl_units_names[model->units.units]);
     char *lines[] = {tl_units_describe(model->name, &model->units, "--units"),
-                     tl_units_describe_up(model->name, &model->units)};
+                     tl_units_describe_up(model->name, &model->units, "--up")};
     const char *const keys[] = {"units_note", "up_note"};
     for (size_t i = 0; i < TL_COUNT(lines); i++) {
         if (lines[i])

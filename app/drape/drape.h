@@ -1,6 +1,6 @@
-/* The drape of a garment: a cloth that has settled on its wearer and followed it into the first pose of its
- * clip, with its start marked. A drape that was made before, by any process, is taken from the cache
- * (app/drape/cache.h) and steps on as a new one would, to the bit.
+/* The drape of a garment: a cloth that has settled on its wearer, or starts as authored, and has followed it
+ * into the first pose of its clip, with its start marked. A drape that was made before, by any process, is
+ * taken from the cache (app/drape/cache.h) and steps on as a new one would, to the bit.
  *
  * Threads: one drape at a time per collider; settling uses all. */
 #ifndef TOILE_APP_DRAPE_DRAPE_H
@@ -15,6 +15,7 @@ struct tl_drape_request {
     int clip;                /* of the avatar; -1: the rest pose */
     const struct tl_cloth_fabric *fabric;
     const struct tl_cloth_params *params;
+    bool settles;     /* false: as authored; the cloth starts at the garment's own positions */
     uint64_t options; /* a hash of all options whose rows affect a drape */
 };
 

@@ -34,6 +34,27 @@ void tl_moving_restart(struct tl_moving *moving)
     tl_moving_update(moving);
 }
 
+static vec4s orthogonal_to(vec3s normal, vec4s tangent)
+{
+    vec3s along = {{tangent.x, tangent.y, tangent.z}};
+    vec3s projected = glms_vec3_sub(along, glms_vec3_scale(normal, glms_vec3_dot(normal, along)));
+    float length = glms_vec3_norm(projected);
+    if (!(length > 1e-4f))
+        return tangent;
+    projected = glms_vec3_scale(projected, 1 / length);
+    return (vec4s){{projected.x, projected.y, projected.z, tangent.w}};
+}
+
+void tl_moving_restart_as_authored(struct tl_moving *moving)
+{
+    const tl_mesh *mesh = &moving->model->mesh;
+    tl_moving_restart(moving);
+    memcpy(moving->normals, mesh->normals, mesh->vertex_count * sizeof *moving->normals);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        moving->tangents[i] =
+            mesh->tangents ? mesh->tangents[i] : orthogonal_to(moving->normals[i], moving->tangents[i]);
+}
+
 void tl_moving_release(struct tl_moving *moving)
 {
     tl_tangent_frames_destroy(&moving->frames);

@@ -22,6 +22,10 @@ void tl_moving_release(struct tl_moving *moving);
 /* Goes back to the state after tl_moving_create: the rest pose. */
 void tl_moving_restart(struct tl_moving *moving);
 
+/* The same with the file's own normals, and its tangents or, if it has none, the computed ones made
+ * orthogonal to these normals. */
+void tl_moving_restart_as_authored(struct tl_moving *moving);
+
 /* Recomputes normals and tangents after `positions` changed, and raises motion_revision. */
 void tl_moving_update(struct tl_moving *moving);
 

@@ -2,15 +2,11 @@
 
 #include "app/drape/drape.h"
 #include "app/scene/camera.h"
+#include "app/scene/load.h"
 #include "app/scene/moving.h"
 #include "app/scene/moving_light.h"
 #include "app/scene/playback.h"
 #include "assets/avatar.h"
-#include "assets/builtin/specimen.h"
-#include "assets/cut/fit.h"
-#include "assets/pattern/pattern.h"
-#include "assets/pattern/pattern_worn.h"
-#include "assets/refine.h"
 #include "cloth/energy/strain.h"
 #include "cloth/mesh/topology.h"
 #include "config/file.h"
@@ -38,6 +34,8 @@ struct tl_session {
     struct tl_moving body;
 
     tl_cloth *cloth; /* NULL: no garment, or one that is played back */
+    bool authored;   /* the cloth starts as the garment's file has it */
+    float lifted_m;  /* the garment, onto the ground */
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
@@ -66,155 +64,6 @@ struct tl_session {
     struct tl_lamp lamps[2];
 };
 
-static bool is_built_in_garment(const char *name)
-{
-    for (const char *const *known = tl_garment_names; *known; known++)
-        if (strcmp(*known, name) == 0)
-            return true;
-    return false;
-}
-
-/* Reports which units and which up axis were guessed. */
-static void report_units(const tl_model *model, const char *option)
-{
-    char *lines[] = {tl_units_describe(model->name, &model->units, option),
-                     tl_units_describe_up(model->name, &model->units)};
-    for (size_t i = 0; i < TL_COUNT(lines); i++) {
-        if (lines[i])
-            tl_info("%s", lines[i]);
-        free(lines[i]);
-    }
-}
-
-/* Whether the garment hangs on arms or legs, as patterns may. */
-static bool needs_limbs(const char *garment)
-{
-    return tl_garment_is_for_figure(garment) || tl_pattern_is_file(garment);
-}
-
-static bool load_avatar(tl_session *session, tl_error *error)
-{
-    const char *name = session->settings.scene.avatar;
-    tl_avatar loaded;
-    session->clip = -1;
-    if (strcmp(name, "none") == 0)
-        return true;
-    if (strcmp(name, "form") == 0)
-        loaded = needs_limbs(session->settings.scene.garment) ? tl_avatar_figure() : tl_avatar_form();
-    else if (strcmp(name, "figure") == 0)
-        loaded = tl_avatar_figure();
-    else if (strcmp(name, "ball") == 0)
-        loaded = tl_specimen_ball();
-    else if (!tl_avatar_load_in(name, (enum tl_units)session->settings.scene.avatar_units, &loaded, error))
-        return false;
-    report_units(&loaded.model, "scene.avatar_units");
-    session->avatar = TL_NEW(tl_avatar);
-    *session->avatar = loaded;
-    const char *clip = session->settings.scene.clip;
-    const tl_model *model = &session->avatar->model;
-    if (strcmp(clip, "none") == 0)
-        return true;
-    session->clip = tl_model_find_clip(model, clip);
-    if (session->clip >= 0 || clip[0] == '\0')
-        return true;
-    if (model->clip_count == 0)
-        return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\", nor any other: leave scene.clip out",
-                       name, clip);
-    return tl_fail(error, TL_INPUT,
-                   "%s: has no animation \"%s\": its first is \"%s\", `toile info` lists them all", name,
-                   clip, model->clips[0].name);
-}
-
-static bool plays_motion(const tl_session *session)
-{
-    return strcmp(session->settings.scene.motion, "none") != 0;
-}
-
-/* Splits long edges, across which cloth cannot fold. A garment that is played back is left as it is: its
- * motion has one position for each vertex of the file. */
-static bool refine_garment(const tl_session *session, tl_garment *garment, tl_error *error)
-{
-    float max_m = session->settings.cloth.longest_edge_m;
-    const tl_mesh *mesh = &garment->model.mesh;
-    size_t triangles = mesh->index_count / 3;
-    float longest_m = tl_mesh_longest_edge(mesh);
-    if (plays_motion(session) || !(max_m > 0) || !(longest_m > max_m))
-        return true;
-    if (!tl_garment_refine(garment, max_m, error))
-        return false;
-    tl_info("%s: edges of up to %.3g m cannot fold: %zu triangles were split into %zu with none above %g m; "
-            "cloth.longest_edge_m=0 leaves them as they are",
-            garment->model.name, (double)longest_m, triangles, mesh->index_count / 3, (double)max_m);
-    return true;
-}
-
-/* Lifts a garment without an avatar onto the ground. No body places it, and below the ground it would be
- * hidden, and pushed out at the first step. */
-static void lift_garment(const tl_session *session, tl_garment *garment)
-{
-    tl_mesh *mesh = &garment->model.mesh;
-    float lowest_m = tl_box_of(mesh->positions, mesh->vertex_count).lower.y;
-    if (session->avatar || !session->settings.image.ground || plays_motion(session) || !(lowest_m < 0))
-        return;
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        mesh->positions[i].y -= lowest_m;
-    tl_info("%s: reached %.2g m below the ground: lifted onto it; image.ground=false leaves it where it was",
-            garment->model.name, (double)-lowest_m);
-}
-
-/* Reads the garment from a file, lifts and refines it. */
-static bool read_garment(const tl_session *session, tl_garment *out, tl_error *error)
-{
-    const struct tl_scene_params *scene = &session->settings.scene;
-    if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
-        return false;
-    report_units(&out->model, "--units");
-    lift_garment(session, out);
-    if (refine_garment(session, out, error))
-        return true;
-    tl_garment_release(out);
-    return false;
-}
-
-static double distance_to_body(const void *body, const double point[3])
-{
-    const double reach_m = 0.3; /* farther points are as far as that */
-    struct tl_contact contact;
-    return tl_collider_query(body, point, reach_m, &contact) ? contact.distance_m : reach_m;
-}
-
-static bool make_garment(tl_session *session, tl_garment *out, tl_error *error)
-{
-    const char *name = session->settings.scene.garment, *wearer = session->settings.scene.avatar;
-    if (tl_specimen_make(name, session->settings.cloth.edge_m, out))
-        return true;
-    const float edge_m = session->settings.cloth.edge_m;
-    const tl_mesh *mesh = session->avatar ? &session->avatar->model.mesh : NULL;
-    if (tl_pattern_is_file(name))
-        return tl_pattern_worn(name, &(struct tl_pattern_wearer){wearer, mesh}, edge_m, out, error);
-    if (!is_built_in_garment(name))
-        return read_garment(session, out, error);
-    if (!session->avatar || strcmp(wearer, "form") == 0)
-        return tl_garment_cut(name, edge_m, out, error);
-    tl_collider *body = tl_collider_create(mesh, false, error);
-    const struct tl_wearer worn_by = {wearer, mesh, {distance_to_body, body}};
-    bool good = body && tl_garment_cut_for(name, edge_m, &worn_by, out, error);
-    tl_collider_destroy(&body);
-    return good;
-}
-
-static bool load_garment(tl_session *session, tl_error *error)
-{
-    tl_garment made;
-    if (strcmp(session->settings.scene.garment, "none") == 0)
-        return true;
-    if (!make_garment(session, &made, error))
-        return false;
-    session->garment = TL_NEW(tl_garment);
-    *session->garment = made;
-    return true;
-}
-
 static void pose_avatar(tl_session *session, double time_s)
 {
     tl_model_pose(&session->avatar->model, session->clip, time_s, session->body.positions);
@@ -229,9 +78,29 @@ static void read_back_cloth(tl_session *session)
     tl_moving_update(&session->dress);
 }
 
+/* A garment from a file stands as its maker left it; panels with open seams have to be sewn first. */
+static bool is_authored(const tl_session *session)
+{
+    const struct tl_scene_params *scene = &session->settings.scene;
+    bool sewn = session->garment->seam_count == 0;
+    return scene->drape == TL_DRAPE_AUTHORED ||
+           (scene->drape == TL_DRAPE_AUTO && sewn && tl_option_is_file_name(scene->garment));
+}
+
+/* Starts as authored: the cloth is not settled, and no image shows normals other than the file's before it
+ * has moved. */
+static void read_back_start(tl_session *session)
+{
+    if (session->authored && !tl_session_plays_clip(session))
+        tl_moving_restart_as_authored(&session->dress);
+    else
+        read_back_cloth(session);
+}
+
 static bool drape(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
+    session->authored = is_authored(session);
     const tl_mesh *body = session->avatar ? &session->avatar->model.mesh : NULL;
     const struct tl_drape_request request = {
         .garment = session->garment,
@@ -239,6 +108,7 @@ static bool drape(tl_session *session, tl_error *error)
         .clip = session->clip,
         .fabric = &settings->fabric,
         .params = &settings->cloth,
+        .settles = !session->authored,
         .options = tl_settings_hash(settings, (struct tl_option_filter){.any_of = TL_AFFECTS_DRAPE}),
     };
     session->collider = tl_collider_create(body, settings->image.ground, error);
@@ -248,7 +118,7 @@ static bool drape(tl_session *session, tl_error *error)
     if (!session->cloth)
         return false;
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
-    read_back_cloth(session);
+    read_back_start(session);
     return true;
 }
 
@@ -356,23 +226,26 @@ static bool check_files(const struct tl_scene_params *scene, tl_error *error)
 
 static bool load_all(tl_session *session, tl_error *error)
 {
-    if (!check_files(&session->settings.scene, error))
+    const struct tl_settings *settings = &session->settings;
+    if (!check_files(&settings->scene, error))
         return false;
-    const char *environment = session->settings.scene.environment;
-    if (!tl_moving_light_open(&session->light, environment, 0, error) || !load_avatar(session, error) ||
-        !load_garment(session, error))
+    const char *environment = settings->scene.environment;
+    if (!tl_moving_light_open(&session->light, environment, 0, error) ||
+        !tl_scene_load_avatar(settings, &session->avatar, &session->clip, error) ||
+        !tl_scene_load_garment(settings, session->avatar, &session->garment, &session->lifted_m, error))
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
-    if (!make_appearance(session, &session->settings, &session->appearance, error))
+    if (!make_appearance(session, settings, &session->appearance, error))
         return false;
     session->appearance_revision = ++session->appearances_made;
     if (session->avatar)
         tl_moving_create(&session->body, &session->avatar->model, NULL);
     if (session->garment) {
-        if (plays_motion(session) ? !begin_playback(session, error) : !begin_cloth(session, error))
+        if (tl_scene_plays_motion(&session->settings) ? !begin_playback(session, error)
+                                                      : !begin_cloth(session, error))
             return false;
-    } else if (plays_motion(session)) {
+    } else if (tl_scene_plays_motion(&session->settings)) {
         return tl_fail(error, TL_USAGE,
                        "scene.motion: there is no garment that could move: add --garment FILE");
     }
@@ -455,7 +328,7 @@ bool tl_session_reset(tl_session *session, tl_error *error)
     }
     if (session->cloth) {
         tl_cloth_reset(session->cloth);
-        read_back_cloth(session);
+        read_back_start(session);
     }
     return true;
 }
@@ -753,6 +626,30 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
     }
     *distance_m = nearest;
     return nearest < FLT_MAX;
+}
+
+const char *const tl_garment_state_names[] = {"", "as authored", "at rest", "moved, not at rest"};
+
+enum tl_garment_state tl_session_garment_state(const tl_session *session)
+{
+    if (!session->cloth)
+        return TL_GARMENT_IS_NOT_CLOTH;
+    if (session->frame == 0 && session->authored && session->clip < 0)
+        return TL_GARMENT_AUTHORED;
+    bool rests = session->frame == 0
+                     ? !session->authored && tl_cloth_is_settled(session->cloth)
+                     : tl_cloth_frame_speed(session->cloth) < session->settings.cloth.settle_speed;
+    return rests ? TL_GARMENT_AT_REST : TL_GARMENT_MOVED;
+}
+
+float tl_session_lifted_m(const tl_session *session)
+{
+    return session->lifted_m;
+}
+
+bool tl_session_is_authored(const tl_session *session)
+{
+    return session->cloth && session->authored;
 }
 
 bool tl_session_plays_clip(const tl_session *session)

@@ -46,15 +46,15 @@ void tl_session_destroy(tl_session **handle);
  * last tl_session_frame. Threads: the session's. */
 bool tl_session_advance(tl_session *session, tl_error *error);
 
-/* Advances to frame `number` (0: the settled start); an earlier frame is reached from the start, because
- * cloth cannot be stepped backwards. Errors: as tl_session_advance, and TL_INTERRUPTED at the frame that was
- * reached. Lifetime: ends the last tl_session_frame. Threads: the session's. */
+/* Advances to frame `number` (0: the start, settled or as authored); an earlier frame is reached from the
+ * start, because cloth cannot be stepped backwards. Errors: as tl_session_advance, and TL_INTERRUPTED at the
+ * frame that was reached. Lifetime: ends the last tl_session_frame. Threads: the session's. */
 bool tl_session_go_to(tl_session *session, int number, tl_error *error);
 
 /* The number of the present frame. Errors: none. Threads: the session's. */
 int tl_session_frame_number(const tl_session *session);
 
-/* Goes back to frame 0, the settled state, without draping again.
+/* Goes back to frame 0, settled or as authored, without draping again.
  * Errors: as tl_session_advance, without the cloth's.
  * Lifetime: ends the last tl_session_frame.
  * Threads: the session's. */
@@ -165,6 +165,26 @@ void tl_session_want_strains(tl_session *session, bool wanted);
  * *vertex is then not set. Errors: none. Threads: the session's. */
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m);
+
+/* How the garment stands in the present frame: as its file has it, at rest under gravity, or on its way. */
+enum tl_garment_state {
+    TL_GARMENT_IS_NOT_CLOTH, /* none, a solid, or one that plays a recorded motion */
+    TL_GARMENT_AUTHORED,
+    TL_GARMENT_AT_REST,
+    TL_GARMENT_MOVED, /* not at rest */
+};
+extern const char *const tl_garment_state_names[]; /* "", "as authored", ... */
+
+/* At rest: no vertex went faster in the last frame than cloth.settle_speed. Errors: none. Threads: the
+ * session's. */
+enum tl_garment_state tl_session_garment_state(const tl_session *session);
+
+/* True for cloth that starts as its file has it (scene.drape). Errors: none. Threads: the session's. */
+bool tl_session_is_authored(const tl_session *session);
+
+/* By how much the garment stands above where its file has it: one without an avatar is lifted out of the
+ * ground. Errors: none. Threads: the session's. */
+float tl_session_lifted_m(const tl_session *session);
 
 /* True when the avatar plays an animation. Errors: none. Threads: the session's. */
 bool tl_session_plays_clip(const tl_session *session);

@@ -15,7 +15,8 @@
  * assets/builtin/studio.h), and "none". */
 static const char *const garment_names[] = {"dress", "skirt",  "layers", "trousers", "shirt", "sheet",
                                             "disc",  "sphere", "torus",  "none",     NULL};
-static const char *const avatar_names[] = {"form", "figure", "ball", "none", NULL};
+static const char *const avatar_names[] = {"auto", "form", "figure", "ball", "none", NULL};
+static const char *const drape_names[] = {"auto", "authored", "settle", NULL};
 static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
@@ -23,8 +24,8 @@ static const char *const motion_names[] = {"none", NULL};
 static const char *const colourways_names[] = {OWN, "dress", "skirt", "trousers", "shirt", "composed", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
-    .garment = "dress", .avatar = "form", .motion = "none", .environment = "studio", .environment_rate = 30, \
-    .colourways = OWN, .preset = "review"
+    .garment = "dress", .avatar = "auto", .motion = "none", .environment = "studio", .environment_rate = 30, \
+    .colourways = OWN, .preset = "review", .scale = 1
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment,
@@ -34,6 +35,16 @@ static const struct tl_option scene_rows[] = {
                    tl_units_names,
                    "length unit of the garment's file and its motion; auto: metres for glTF, guessed from "
                    "the size for OBJ"),
+    TL_OPTION_ENUM(
+        struct tl_scene_params, up, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, tl_up_names,
+        "axis of the garment's file that points up; auto: y, or z for an OBJ file that stands along "
+        "it"),
+    TL_OPTION_FLOAT(struct tl_scene_params, turn_deg, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, -3600, 3600,
+                    "degrees", "turns the garment's file about the vertical, its front towards +X"),
+    TL_OPTION_FLOAT(struct tl_scene_params, scale, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
+                    0.001, 1000, "", "size of the garment's file, about its origin"),
+    TL_OPTION_VECTOR(struct tl_scene_params, move_m, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, -1000, 1000, "m",
+                     "moves the garment's file, after turn_deg and scale"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, motion, TL_AFFECTS_SCENE | TL_AFFECTS_WORK, motion_names,
                            "recorded motion of the garment, in place of simulation: a .pc2 or .mdd point "
                            "cache, or a sequence of OBJ files, frame.####.obj"),
@@ -42,9 +53,16 @@ static const struct tl_option scene_rows[] = {
         "frames of the motion per second; 0: as its file states, or one per frame of the animation"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar,
                            TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, avatar_names,
-                           "avatar that wears the garment: built in, or a glTF or OBJ file"),
+                           "avatar that wears the garment: built in, or a glTF or OBJ file; auto: form for "
+                           "built-in garments, none for garment files"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_units_names,
                    "length unit of the avatar's file, as units"),
+    TL_OPTION_ENUM(struct tl_scene_params, avatar_up, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_up_names,
+                   "axis of the avatar's file that points up, as up"),
+    TL_OPTION_ENUM(struct tl_scene_params, drape, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
+                   drape_names,
+                   "how the garment starts: authored: as its file has it; settle: at rest on its avatar; "
+                   "auto: files as authored, the rest settled"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),
@@ -213,14 +231,26 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
     return applied;
 }
 
+/* A file that holds a garment's shape, not its pattern. */
+static bool is_garment_file(const char *garment)
+{
+    return tl_option_is_file_name(garment) && !tl_pattern_is_file(garment);
+}
+
 /* A garment file has materials of its own; a built-in garment and a pattern get them from a fabric. */
 static void choose_fabric(struct tl_scene_params *scene)
 {
-    bool has_own = tl_option_is_file_name(scene->garment) && !tl_pattern_is_file(scene->garment);
     if (scene->fabric[0] == '\0')
-        strcpy(scene->fabric, has_own ? "none" : "satin");
+        strcpy(scene->fabric, is_garment_file(scene->garment) ? "none" : "satin");
     if (scene->overlay_fabric[0] == '\0')
         strcpy(scene->overlay_fabric, "none");
+}
+
+const char *tl_settings_avatar(const struct tl_scene_params *scene)
+{
+    if (strcmp(scene->avatar, "auto") != 0)
+        return scene->avatar;
+    return is_garment_file(scene->garment) ? "none" : "form";
 }
 
 /* The built-in scene that shows a built-in garment has its colourways too. */
@@ -261,7 +291,8 @@ static bool read_colourways(struct tl_settings *settings, tl_error *error)
 /* A model alone is what a motion moves, and what --units means. */
 static void choose_role(struct tl_scene_params *scene)
 {
-    bool moves = strcmp(scene->motion, "none") != 0 && strcmp(scene->garment, "none") == 0;
+    bool moves = strcmp(scene->motion, "none") != 0 && strcmp(scene->garment, "none") == 0 &&
+                 tl_option_is_file_name(scene->avatar);
     if (moves) {
         strcpy(scene->garment, scene->avatar);
         strcpy(scene->avatar, "none");

@@ -4,6 +4,7 @@
 #define TOILE_APP_SETTINGS_SETTINGS_H
 
 #include "app/settings/colourway.h"
+#include "assets/base/placing.h"
 #include "assets/builtin/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
@@ -11,12 +12,17 @@
 #include "render/local/lamp.h"
 #include "render/renderer.h"
 
+enum tl_drape_choice { TL_DRAPE_AUTO, TL_DRAPE_AUTHORED, TL_DRAPE_SETTLE };
+
 struct tl_scene_params {          /* table "scene": what to show; names of built-ins or paths */
     char garment[TL_STRING_SIZE]; /* "dress", "skirt", "layers", a specimen, "none", or a glTF or OBJ file */
-    char avatar[TL_STRING_SIZE];  /* "form", "none", or a glTF or OBJ file */
+    char avatar[TL_STRING_SIZE];  /* "auto", "form", "none", or a glTF or OBJ file */
     int units, avatar_units;      /* enum tl_units: of their files */
-    char motion[TL_STRING_SIZE];  /* point cache that moves the garment, or "none": it is simulated */
-    float motion_rate;            /* frames of it a second; 0: as its file says */
+    int drape;                    /* enum tl_drape_choice */
+    int up, avatar_up;            /* enum tl_up: of their files */
+    float turn_deg, scale, move_m[3];    /* places the garment's file */
+    char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
+    float motion_rate;                   /* frames of it a second; 0: as its file says */
     char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
     char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
@@ -98,6 +104,9 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
 /* Gives the garment's second fabric the appearance of a named one. */
 bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
+
+/* The name of the avatar, which may be chosen by the garment ("auto"). */
+const char *tl_settings_avatar(const struct tl_scene_params *scene);
 
 /* The scene that the colourways are read from, "" for none. */
 const char *tl_settings_colourways_source(const struct tl_settings *settings);

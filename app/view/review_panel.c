@@ -163,13 +163,17 @@ static char *append(char *end, const char *stop, const char *format, ...)
     return length < stop - end ? end + length : end;
 }
 
-/* Motion without input, and the key that ends it. */
+/* How the garment stands; motion without input, and the key that ends it. */
 static void describe_status(const struct tl_review *review, char *status, size_t size)
 {
     const struct tl_review_path *path = &review->path;
+    enum tl_garment_state state = tl_session_garment_state(review->session);
     const char *stop = status + size;
     char *end = status;
     *end = '\0';
+    if (state != TL_GARMENT_IS_NOT_CLOTH)
+        end = append(end, stop, "%s%s  ", tl_garment_state_names[state],
+                     state == TL_GARMENT_AUTHORED ? " (D drapes it)" : "");
     if (review->playing && review->play_speed < 0.95)
         end =
             append(end, stop, "plays at %.1f x: this machine is slower than the cloth  ", review->play_speed);

@@ -76,9 +76,9 @@ char *tl_units_describe(const char *name, const struct tl_units_reading *reading
     return line;
 }
 
-char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading)
+char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading, const char *option)
 {
     return reading->z_up
-               ? tl_format("%s: stands along Z, but is read with Y up: turn it where it was made", name)
+               ? tl_format("%s: stands along Z: turned upright; %s y leaves it as it is", name, option)
                : NULL;
 }

@@ -33,7 +33,7 @@ struct tl_units_reading {
     bool guessed;        /* from the size; else set by the file's format or an option */
     bool absurd;         /* guessed, because the format's metres give an impossible size */
     bool fits;           /* the size is that of a garment or a body */
-    bool z_up;           /* stands along Z, though it is read with Y up */
+    bool z_up;           /* stands along Z, and its format does not say that Y is up */
 };
 
 /* Decides the units of a file whose positions have this box. `wanted` other than AUTO decides; then
@@ -43,7 +43,7 @@ struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, b
 /* One line to report, such as "skirt.obj: 812 units at its longest: taken as millimetres ...; --units
  * overrides this" with `option` for --units: new string, NULL when nothing was guessed. */
 char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option);
-/* The same for a model that seems to stand along Z. */
-char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading);
+/* The same for a model that stands along Z and is therefore turned upright; `option` for --up. */
+char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading, const char *option);
 
 #endif

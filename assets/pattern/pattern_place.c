@@ -12,7 +12,7 @@
 /* How far panels at the waist are moved towards the body. */
 #define TUCK_M 0.015
 /* GarmentCode hangs a shirt so that its top is so far below the shoulders, which it then falls over. */
-#define BELOW_SHOULDER_M       0.05
+#define BELOW_SHOULDER_M 0.05
 /* Of the average body's height (GarmentCode's mean_all: 1.457 of 1.720 m). */
 #define SHOULDER_SHARE 0.847
 /* The vertical part of a panel's y axis: less, and it is turned. */

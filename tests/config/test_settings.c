@@ -43,7 +43,8 @@ static void test_built_in_scene(void **state)
     tl_error error = {0};
     assert_ok(load(NULL, NULL, 0, &error), error);
     assert_string_equal(settings.scene.garment, "dress");
-    assert_string_equal(settings.scene.avatar, "form");
+    assert_string_equal(settings.scene.avatar, "auto");
+    assert_string_equal(tl_settings_avatar(&settings.scene), "form");
     assert_string_equal(settings.scene.environment, "studio");
     assert_string_equal(settings.scene.fabric, "satin");
     assert_string_equal(settings.scene.preset, "review");

@@ -172,7 +172,7 @@ static void a_failure_keeps_what_was(void **state)
     strcpy(settings.scene.avatar, "nowhere.glb");
     assert_false(tl_session_apply(session, &settings, &error));
     assert_true(sum_of_frame(session) == before);
-    assert_string_equal(tl_session_settings(session)->scene.avatar, "form");
+    assert_string_equal(tl_session_settings(session)->scene.avatar, "auto");
     tl_session_destroy(&session);
 }
 

@@ -1,0 +1,225 @@
+#include "app/scene/load.h"
+
+#include "assets/base/placing.h"
+#include "assets/builtin/specimen.h"
+#include "assets/cut/fit.h"
+#include "assets/garment.h"
+#include "assets/pattern/pattern.h"
+#include "assets/pattern/pattern_worn.h"
+#include "assets/refine.h"
+#include "cloth/contact/collider.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_built_in_garment(const char *name)
+{
+    for (const char *const *known = tl_garment_names; *known; known++)
+        if (strcmp(*known, name) == 0)
+            return true;
+    return false;
+}
+
+static void report_line(char *line)
+{
+    if (line)
+        tl_info("%s", line);
+    free(line);
+}
+
+/* The option's up axis, or the one that the geometry shows. A recorded motion, or a rig, moves vertices in
+ * the file's own axes: such models are not turned unless they are told to. */
+static bool is_z_up(const tl_model *model, int up, bool moves, const char *option)
+{
+    if (up != TL_UP_AUTO || moves || !model->units.z_up)
+        return up == TL_UP_Z;
+    report_line(tl_units_describe_up(model->name, &model->units, option));
+    return true;
+}
+
+static bool place_avatar(const struct tl_settings *settings, tl_avatar *avatar, tl_error *error)
+{
+    int up = settings->scene.avatar_up;
+    bool has_rig = avatar->model.rig != NULL;
+    if (has_rig && up == TL_UP_Z)
+        return tl_fail(error, TL_USAGE, "scene.avatar_up: %s has a rig, which moves it with Y up",
+                       avatar->model.name);
+    const struct tl_placing placing = {.z_up = is_z_up(&avatar->model, up, has_rig, "scene.avatar_up"),
+                                       .scale = 1};
+    tl_placing_apply(&placing, &avatar->model.mesh);
+    return true;
+}
+
+/* Whether the garment hangs on arms or legs, as patterns may. */
+static bool needs_limbs(const char *garment)
+{
+    return tl_garment_is_for_figure(garment) || tl_pattern_is_file(garment);
+}
+
+/* Makes or reads the avatar that the scene names, which is not "none". */
+static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error)
+{
+    const char *name = tl_settings_avatar(&settings->scene);
+    if (strcmp(name, "form") == 0)
+        *out = needs_limbs(settings->scene.garment) ? tl_avatar_figure() : tl_avatar_form();
+    else if (strcmp(name, "figure") == 0)
+        *out = tl_avatar_figure();
+    else if (strcmp(name, "ball") == 0)
+        *out = tl_specimen_ball();
+    else if (!tl_avatar_load_in(name, (enum tl_units)settings->scene.avatar_units, out, error))
+        return false;
+    report_line(tl_units_describe(out->model.name, &out->model.units, "scene.avatar_units"));
+    if (place_avatar(settings, out, error))
+        return true;
+    tl_avatar_release(out);
+    return false;
+}
+
+/* Finds the clip that the scene names; -1: the rest pose. */
+static bool find_clip(const struct tl_settings *settings, const tl_model *model, int *clip, tl_error *error)
+{
+    const char *name = settings->scene.clip;
+    *clip = -1;
+    if (strcmp(name, "none") == 0)
+        return true;
+    *clip = tl_model_find_clip(model, name);
+    if (*clip >= 0 || name[0] == '\0')
+        return true;
+    const char *file = settings->scene.avatar;
+    if (model->clip_count == 0)
+        return tl_fail(error, TL_INPUT, "%s: has no animation \"%s\", nor any other: leave scene.clip out",
+                       file, name);
+    return tl_fail(error, TL_INPUT,
+                   "%s: has no animation \"%s\": its first is \"%s\", `toile info` lists them all", file,
+                   name, model->clips[0].name);
+}
+
+bool tl_scene_load_avatar(const struct tl_settings *settings, tl_avatar **out, int *clip, tl_error *error)
+{
+    tl_avatar loaded;
+    *out = NULL;
+    *clip = -1;
+    if (strcmp(tl_settings_avatar(&settings->scene), "none") == 0)
+        return true;
+    if (!make_avatar(settings, &loaded, error))
+        return false;
+    *out = TL_NEW(tl_avatar);
+    **out = loaded;
+    return find_clip(settings, &loaded.model, clip, error);
+}
+
+bool tl_scene_plays_motion(const struct tl_settings *settings)
+{
+    return strcmp(settings->scene.motion, "none") != 0;
+}
+
+/* Splits long edges, across which cloth cannot fold. A garment that is played back is left as it is: its
+ * motion has one position for each vertex of the file. */
+static bool refine_garment(const struct tl_settings *settings, tl_garment *garment, tl_error *error)
+{
+    float max_m = settings->cloth.longest_edge_m;
+    const tl_mesh *mesh = &garment->model.mesh;
+    size_t triangles = mesh->index_count / 3;
+    float longest_m = tl_mesh_longest_edge(mesh);
+    if (tl_scene_plays_motion(settings) || !(max_m > 0) || !(longest_m > max_m))
+        return true;
+    if (!tl_garment_refine(garment, max_m, error))
+        return false;
+    tl_info("%s: edges of up to %.3g m cannot fold: %zu triangles were split into %zu with none above %g m; "
+            "cloth.longest_edge_m=0 leaves them as they are",
+            garment->model.name, (double)longest_m, triangles, mesh->index_count / 3, (double)max_m);
+    return true;
+}
+
+/* Lifts a garment without an avatar onto the ground. No body places it, and below the ground it would be
+ * hidden, and pushed out at the first step. Returns by how much, in metres. */
+static float lift_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *garment)
+{
+    tl_mesh *mesh = &garment->model.mesh;
+    float lowest_m = tl_box_of(mesh->positions, mesh->vertex_count).lower.y;
+    if (wearer || !settings->image.ground || tl_scene_plays_motion(settings) || !(lowest_m < 0))
+        return 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->positions[i].y -= lowest_m;
+    tl_info("%s: reached %.2g m below the ground: lifted onto it; image.ground=false leaves it where it was",
+            garment->model.name, (double)-lowest_m);
+    return -lowest_m;
+}
+
+static bool place_garment(const struct tl_settings *settings, tl_garment *garment, tl_error *error)
+{
+    const struct tl_scene_params *scene = &settings->scene;
+    const struct tl_placing placing = {
+        .z_up = is_z_up(&garment->model, scene->up, tl_scene_plays_motion(settings), "--up"),
+        .scale = scene->scale,
+        .turn_deg = scene->turn_deg,
+        .move_m = {{scene->move_m[0], scene->move_m[1], scene->move_m[2]}},
+    };
+    if (tl_scene_plays_motion(settings) && tl_placing_moves(&placing))
+        return tl_fail(error, TL_USAGE,
+                       "scene.motion: plays where it was recorded: leave up, turn_deg, scale and move_m out");
+    tl_placing_apply(&placing, &garment->model.mesh);
+    return true;
+}
+
+/* Reads the garment from a file, places, lifts and refines it. */
+static bool read_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
+                         float *lifted_m, tl_error *error)
+{
+    const struct tl_scene_params *scene = &settings->scene;
+    if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
+        return false;
+    report_line(tl_units_describe(out->model.name, &out->model.units, "--units"));
+    bool placed = place_garment(settings, out, error);
+    if (placed)
+        *lifted_m = lift_garment(settings, wearer, out);
+    if (placed && refine_garment(settings, out, error))
+        return true;
+    tl_garment_release(out);
+    return false;
+}
+
+static double distance_to_body(const void *body, const double point[3])
+{
+    const double reach_m = 0.3; /* farther points are as far as that */
+    struct tl_contact contact;
+    return tl_collider_query(body, point, reach_m, &contact) ? contact.distance_m : reach_m;
+}
+
+static bool make_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
+                         float *lifted_m, tl_error *error)
+{
+    const char *name = settings->scene.garment, *wearer_name = tl_settings_avatar(&settings->scene);
+    const float edge_m = settings->cloth.edge_m;
+    const tl_mesh *mesh = wearer ? &wearer->model.mesh : NULL;
+    if (tl_specimen_make(name, edge_m, out))
+        return true;
+    if (tl_pattern_is_file(name))
+        return tl_pattern_worn(name, &(struct tl_pattern_wearer){wearer_name, mesh}, edge_m, out, error);
+    if (!is_built_in_garment(name))
+        return read_garment(settings, wearer, out, lifted_m, error);
+    if (!wearer || strcmp(wearer_name, "form") == 0)
+        return tl_garment_cut(name, edge_m, out, error);
+    tl_collider *body = tl_collider_create(mesh, false, error);
+    const struct tl_wearer worn_by = {wearer_name, mesh, {distance_to_body, body}};
+    bool good = body && tl_garment_cut_for(name, edge_m, &worn_by, out, error);
+    tl_collider_destroy(&body);
+    return good;
+}
+
+bool tl_scene_load_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment **out,
+                           float *lifted_m, tl_error *error)
+{
+    tl_garment made;
+    *out = NULL;
+    *lifted_m = 0;
+    if (strcmp(settings->scene.garment, "none") == 0)
+        return true;
+    if (!make_garment(settings, wearer, &made, lifted_m, error))
+        return false;
+    *out = TL_NEW(tl_garment);
+    **out = made;
+    return true;
+}

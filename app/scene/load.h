@@ -1,0 +1,24 @@
+/* Loads what a scene names: its avatar and its garment, from files or built in; places them, lifts a garment
+ * onto the ground, splits edges across which cloth could not fold; logs what was guessed. Metres, world axes
+ * with y up. Threads: any. */
+#ifndef TOILE_APP_SCENE_LOAD_H
+#define TOILE_APP_SCENE_LOAD_H
+
+#include "app/settings/settings.h"
+#include "assets/avatar.h"
+#include "assets/base/garment.h"
+
+/* Whether the garment plays a recorded motion in place of being simulated. */
+bool tl_scene_plays_motion(const struct tl_settings *settings);
+
+/* *out is NULL when the scene has no avatar; `clip` is the animation that it plays, -1: the rest pose.
+ * Errors: TL_INPUT for a file or a clip, TL_USAGE for an option without meaning; *out may be set then.
+ * Lifetime: the caller releases and frees *out. */
+bool tl_scene_load_avatar(const struct tl_settings *settings, tl_avatar **out, int *clip, tl_error *error);
+
+/* `wearer` NULL: nobody wears it. *out is NULL when the scene has no garment; it was lifted by *lifted_m.
+ * Errors: as above. Lifetime: the caller releases and frees *out. */
+bool tl_scene_load_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment **out,
+                           float *lifted_m, tl_error *error);
+
+#endif

@@ -1,0 +1,36 @@
+#include "assets/base/placing.h"
+
+const char *const tl_up_names[] = {"auto", "y", "z", NULL};
+
+bool tl_placing_moves(const struct tl_placing *placing)
+{
+    const vec3s *move = &placing->move_m;
+    return placing->z_up || placing->scale != 1 || placing->turn_deg != 0 || move->x != 0 || move->y != 0 ||
+           move->z != 0;
+}
+
+static vec3s turned(const struct tl_placing *placing, float sine, float cosine, vec3s v)
+{
+    if (placing->z_up)
+        v = (vec3s){{v.x, v.z, -v.y}};
+    return (vec3s){{cosine * v.x + sine * v.z, v.y, cosine * v.z - sine * v.x}};
+}
+
+void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh)
+{
+    float angle = glm_rad(placing->turn_deg), sine = sinf(angle), cosine = cosf(angle);
+    if (!tl_placing_moves(placing))
+        return;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        vec3s scaled = glms_vec3_scale(mesh->positions[i], placing->scale);
+        mesh->positions[i] = glms_vec3_add(turned(placing, sine, cosine, scaled), placing->move_m);
+        mesh->normals[i] = turned(placing, sine, cosine, mesh->normals[i]);
+        if (mesh->tangents) {
+            vec4s *tangent = &mesh->tangents[i];
+            vec3s along = turned(placing, sine, cosine, (vec3s){{tangent->x, tangent->y, tangent->z}});
+            *tangent = (vec4s){{along.x, along.y, along.z, tangent->w}};
+        }
+    }
+    for (size_t i = 0; i < mesh->part_count; i++)
+        mesh->parts[i].uv_metres *= placing->scale;
+}

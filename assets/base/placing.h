@@ -1,0 +1,26 @@
+/* Placing a model in the scene: which of its file's axes points up, its size, direction and place. Metres,
+ * world axes with y up. */
+#ifndef TOILE_ASSETS_BASE_PLACING_H
+#define TOILE_ASSETS_BASE_PLACING_H
+
+#include "assets/base/mesh.h"
+
+#include <stdbool.h>
+
+enum tl_up { TL_UP_AUTO, TL_UP_Y, TL_UP_Z };
+extern const char *const tl_up_names[]; /* "auto", "y", "z"; NULL-terminated */
+
+struct tl_placing {
+    bool z_up;      /* +Z of the file becomes up, its -Y the front */
+    float scale;    /* about the origin */
+    float turn_deg; /* about the vertical; positive turns the front, +Z, towards +X */
+    vec3s move_m;   /* last of all */
+};
+
+/* Whether the placing changes anything. Threads: pure. */
+bool tl_placing_moves(const struct tl_placing *placing);
+
+/* Places positions, normals and tangents. Threads: one per mesh. */
+void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh);
+
+#endif
