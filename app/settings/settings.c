@@ -237,11 +237,15 @@ static bool is_garment_file(const char *garment)
     return tl_option_is_file_name(garment) && !tl_pattern_is_file(garment);
 }
 
-/* A garment file has materials of its own; a built-in garment and a pattern get them from a fabric. */
+const char *tl_settings_own_fabric(const char *garment)
+{
+    return is_garment_file(garment) ? "none" : "satin";
+}
+
 static void choose_fabric(struct tl_scene_params *scene)
 {
     if (scene->fabric[0] == '\0')
-        strcpy(scene->fabric, is_garment_file(scene->garment) ? "none" : "satin");
+        strcpy(scene->fabric, tl_settings_own_fabric(scene->garment));
     if (scene->overlay_fabric[0] == '\0')
         strcpy(scene->overlay_fabric, "none");
 }

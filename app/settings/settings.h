@@ -105,6 +105,10 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
 bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
 
+/* The fabric of a garment for which none is named: a garment file has materials of its own, a built-in
+ * garment and a pattern get theirs from a fabric. */
+const char *tl_settings_own_fabric(const char *garment);
+
 /* The name of the avatar, which may be chosen by the garment ("auto"). */
 const char *tl_settings_avatar(const struct tl_scene_params *scene);
 

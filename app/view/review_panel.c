@@ -171,7 +171,11 @@ static void describe_status(const struct tl_review *review, char *status, size_t
     const char *stop = status + size;
     char *end = status;
     *end = '\0';
-    if (state != TL_GARMENT_IS_NOT_CLOTH)
+    bool drapes =
+        review->loader && state == TL_GARMENT_AUTHORED && review->wanted.scene.drape == TL_DRAPE_SETTLE;
+    if (drapes)
+        end = append(end, stop, "draping  ");
+    else if (state != TL_GARMENT_IS_NOT_CLOTH)
         end = append(end, stop, "%s%s  ", tl_garment_state_names[state],
                      state == TL_GARMENT_AUTHORED ? " (D drapes it)" : "");
     if (review->playing && review->play_speed < 0.95)

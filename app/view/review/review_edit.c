@@ -42,13 +42,17 @@ static void apply_named(struct tl_review *review, apply_name *apply, const char 
 void tl_review_apply_names(struct tl_review *review)
 {
     const struct tl_scene_params *wanted = &review->wanted.scene, *good = &review->good.scene;
+    bool is_new = strcmp(wanted->garment, good->garment) != 0;
+    bool was_own = strcmp(good->fabric, tl_settings_own_fabric(good->garment)) == 0;
     if (strcmp(wanted->fabric, good->fabric) != 0)
         apply_named(review, tl_settings_apply_fabric, wanted->fabric);
+    else if (is_new && was_own && strcmp(wanted->fabric, tl_settings_own_fabric(wanted->garment)) != 0)
+        apply_named(review, tl_settings_apply_fabric, tl_settings_own_fabric(wanted->garment));
     if (strcmp(wanted->overlay_fabric, good->overlay_fabric) != 0)
         apply_named(review, tl_settings_apply_overlay, wanted->overlay_fabric);
     if (strcmp(wanted->preset, good->preset) != 0)
         apply_named(review, tl_settings_apply_preset, wanted->preset);
-    if (strcmp(wanted->garment, good->garment) != 0)
+    if (is_new)
         apply_named(review, tl_settings_apply_colourway, ""); /* colourways belong to one garment */
     else if (strcmp(wanted->colourway, good->colourway) != 0 ||
              strcmp(wanted->colourways, good->colourways) != 0)

@@ -38,6 +38,7 @@ answers() {
 drops light.exr "view: environment .*/light.exr"
 answers "bleu é 100%.yaml" 2 "view: fabric .*/bleu é 100%.yaml"
 answers skirt.obj 1 "view: garment .*/skirt.obj"
+press d "view: loads .*/skirt.obj"
 answers scene.yaml 1 "view: garment dress"
 
 drops letter.txt "warning: view: .*letter.txt: cannot be used here"
