@@ -121,7 +121,7 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
 }
 
 /* How near. Farther, so much passes that it cannot be untangled. */
-#define LET_PASS_M 0.02
+#define LET_PASS_M 0.012
 
 /* Joins what is near a pair that is stuck, as with a fold between its two sides: cloth may pass through
  * itself there until the pair has met, and is untangled then. */

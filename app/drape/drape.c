@@ -66,6 +66,16 @@ static void log_depth(const struct tl_drape_request *request, const tl_collider 
                 1000 * deepest_m);
 }
 
+/* Seams whose sides something holds apart: the body, or a fold of the cloth between them. */
+static void log_open_seams(const struct tl_cloth_params *params, const tl_cloth *cloth)
+{
+    size_t count = params->settle_s > 0 ? tl_cloth_measure(cloth, NULL).open_seams : 0;
+    if (count > 0)
+        tl_info("the seams are not closed: %zu pairs of stitches are still apart: is this the body that the "
+                "garment was cut for?",
+                count);
+}
+
 /* ---- Into the clip's first pose ---- */
 
 static bool has_pose(const struct tl_drape_request *request)
@@ -125,6 +135,7 @@ static struct tl_cache_key key_of(const struct tl_drape_request *request)
     ADD(&key, garment->model.colours, count);
     ADD(&key, garment->seams, garment->seam_count);
     ADD(&key, garment->pins, garment->pin_count);
+    tl_cache_key_add(&key, &garment->welds_seams_only, sizeof garment->welds_seams_only);
     if (request->avatar)
         add_mesh(&key, &request->avatar->model.mesh);
     if (has_pose(request)) {
@@ -207,7 +218,9 @@ tl_cloth *tl_drape(const struct tl_drape_request *request, tl_collider *collider
             store(&key, cloth, strain);
     } else
         cloth = make(request, collider, &strain, error);
-    if (cloth && request->settles)
+    if (cloth && request->settles) {
         log_crossings(request->params, cloth);
+        log_open_seams(request->params, cloth);
+    }
     return cloth;
 }
