@@ -34,8 +34,7 @@ const struct tl_review_command tl_review_commands[] = {
     {"play or pause", tl_act_play, TL_SECTION_CLOTH, .keys = {KEY(SPACE)},
      .button = "Play", .button_on = "Pause", .is_on = is_playing},
     {"one frame further", tl_act_step, TL_SECTION_CLOTH, .keys = {KEY(PERIOD)}, .repeats = true, .button = "Step"},
-    {"drape the garment: at rest on its avatar", tl_act_drape, TL_SECTION_CLOTH, .keys = {KEY(D)},
-     .button = "Drape"},
+    {"drape the garment: at rest on its avatar", tl_act_drape, TL_SECTION_CLOTH, .keys = {KEY(D)}},
     {"back to the start", tl_act_reset, TL_SECTION_CLOTH, .keys = {KEY(R)}, .button = "Reset"},
     {"pin what is pulled; else remove all pins", tl_act_pin, TL_SECTION_CLOTH, .keys = {KEY(P)}},
 

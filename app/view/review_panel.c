@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MEASURES_MAX 12
+#define MEASURES_MAX 13
 #define HELP_MAX     96
 
 static const char *const favourites[] = {
@@ -102,6 +102,7 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
                  1000 * report->critical_step_s);
         add_line(lines, &count, "strain", "%.1f %% at most", 100 * report->max_strain);
         add_line(lines, &count, "speed", "%.2f m/s at most", report->max_speed);
+        add_line(lines, &count, "crossing", "%zu pairs of triangles", report->crossing_count);
     }
     struct tl_render_memory memory = tl_renderer_memory(review->renderer);
     add_line(lines, &count, "GL memory", "%.0f MB: light %.0f, maps %.0f, image %.0f",
