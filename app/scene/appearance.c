@@ -5,6 +5,7 @@
 #include "config/memory.h"
 #include "config/words.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,6 +54,10 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
     memcpy(material->diffuse.raw, params->diffuse, sizeof material->diffuse.raw);
     memcpy(material->specular.raw, params->specular, sizeof material->specular.raw);
     memcpy(material->transmission.raw, params->transmission, sizeof material->transmission.raw);
+    for (int c = 0; c < 3; c++) { /* light from inside a thread is gloss of the thread's colour */
+        material->specular.raw[c] = fminf(params->specular[c] + params->thread * params->diffuse[c], 1);
+        material->diffuse.raw[c] = (1 - params->thread) * params->diffuse[c];
+    }
     material->glossiness = params->glossiness;
     material->gloss = gloss_of(params);
     material->coat = params->coat;
@@ -172,8 +177,8 @@ static bool finish(struct tl_appearance *appearance, const struct making *making
         made.weave = weave;
     if (making->is_plain)
         drop_print(appearance, &made);
-    if (making->is_dyed || making->is_plain)
-        memcpy(made.diffuse.raw, making->params.diffuse, sizeof made.diffuse.raw);
+    for (int c = 0; c < 3 && (making->is_dyed || making->is_plain); c++)
+        made.diffuse.raw[c] = (1 - making->params.thread) * making->params.diffuse[c];
     *out = made;
     return true;
 }

@@ -17,6 +17,10 @@ static const struct tl_option material_rows[] = {
     TL_OPTION_COLOUR(material_params, specular, AFFECTS, 0, 1,
                      "reflectance at normal incidence; 0.04 for most fibres; larger: shinier"),
     TL_OPTION_FLOAT(
+        material_params, thread, AFFECTS, 0, 1, "",
+        "share of the diffuse colour that threads send back as gloss, because light has been inside "
+        "them; larger: more contrast, as of satin"),
+    TL_OPTION_FLOAT(
         material_params, glossiness, AFFECTS, 0, 1, "",
         "0: reflects in all directions, 1: a mirror; the exponent of the lobe is 1 / (1 - glossiness)"),
     TL_OPTION_ENUM(material_params, model, AFFECTS, model_names, "reflectance model of the glossy lobe"),

@@ -8,6 +8,7 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
     float diffuse[3];
     float specular[3];
+    float thread; /* share of `diffuse` that is sent back as gloss */
     float glossiness;
     int model, facets, masking, ward, fresnel; /* as struct tl_gloss */
     float index, extinction;

@@ -13,7 +13,7 @@ struct garment_case {
 };
 
 static const struct garment_case cases[] = {
-    {"satin", "scene.fabric=satin", NULL, 0.026, 0.098},
+    {"satin", "scene.fabric=satin", NULL, 0.041, 0.159},
     {"denim", "scene.fabric=denim", NULL, 0.0225, 0.086},
     {"cotton", "scene.fabric=cotton_plain", NULL, 0.0275, 0.131},
     {"casual suit", "scene.garment=", "garments/mh_male_casualsuit06.glb", 0.049, 0.225},

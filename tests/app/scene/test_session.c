@@ -71,6 +71,11 @@ static void colourways_change_looks_only(void **state)
     memcpy(before, dress.positions, bytes);
     const tl_cloth *cloth = tl_session_cloth(session);
     float blue = dress.materials[0].diffuse.z;
+    const struct tl_material_params *satin = &settings.material;
+    for (int c = 0; c < 3; c++) { /* what is sent back by threads is gloss */
+        assert_near(dress.materials[0].diffuse.raw[c], 0.26f * satin->diffuse[c], 1e-6);
+        assert_near(dress.materials[0].specular.raw[c], 0.045f + 0.74f * satin->diffuse[c], 1e-6);
+    }
 
     assert_ok(tl_settings_apply_colourway(&settings, names[0], &error), error);
     assert_ok(tl_session_apply(session, &settings, &error), error);
