@@ -50,7 +50,9 @@ static void log_depth(const struct tl_drape_request *request, const tl_collider 
     const tl_mesh *mesh = &request->garment->model.mesh;
     double deepest_m = 0;
     size_t count = 0;
-    for (size_t i = 0; request->avatar && i < mesh->vertex_count; i++) {
+    if (!request->avatar)
+        return;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
         const vec3s at = mesh->positions[i];
         const double point[3] = {(double)at.x, (double)at.y, (double)at.z};
         struct tl_contact contact;

@@ -111,7 +111,8 @@ static bool has_arms(const tl_mesh *mesh, double y)
 static void measure_chest(struct tl_body *body, double step)
 {
     bool arms = false;
-    for (double y = body->waist_y; y < 0.9 * body->height; y += step) {
+    for (int level = 0; body->waist_y + level * step < 0.9 * body->height; level++) {
+        double y = body->waist_y + level * step;
         bool here = has_arms(body->mesh, y);
         if (arms && !here)
             break;
@@ -126,7 +127,8 @@ static void measure_chest(struct tl_body *body, double step)
 static void measure_neck(struct tl_body *body, double step)
 {
     body->neck = INFINITY;
-    for (double y = body->underarm_y; y < 0.9 * body->height; y += step) {
+    for (int level = 0; body->underarm_y + level * step < 0.9 * body->height; level++) {
+        double y = body->underarm_y + level * step;
         const struct tl_plane plane = tl_plane_level((float)y);
         struct tl_section *sections;
         size_t count = tl_mesh_sections(body->mesh, &plane, &sections);

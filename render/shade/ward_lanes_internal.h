@@ -66,8 +66,9 @@ TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_coun
     w->count = 1;
     for (int i = 0; i < lane_count; i++)
         w->count = counts[i] > (float)w->count ? (int)counts[i] : w->count;
+    const int middle = w->count / 2;
     for (int k = 0; k < w->count; k++) {
-        const float at = (float)(k - w->count / 2);
+        const float at = (float)(k - middle);
         for (int i = 0; i < TL_LANES; i++) {
             float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
             float slope_x = at * slope[0][i], slope_y = at * slope[1][i], apart = at * step[i];

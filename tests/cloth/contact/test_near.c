@@ -139,7 +139,8 @@ static void test_bounds(void **state)
             vec3d along = scattered(&seed, size);
             for (int i = 0; i < 4; i++) { /* near one line, some on one another */
                 vec3d off = scattered(&seed, size * thin);
-                p[lane][i] = vec3d_muladd(off, along, (k + lane) % 3 == 0 ? i / 2 : 2 * noise(&seed));
+                int half = i / 2;
+                p[lane][i] = vec3d_muladd(off, along, (k + lane) % 3 == 0 ? half : 2 * noise(&seed));
                 if ((k + lane) % 5 == 0)
                     p[lane][i] = scattered(&seed, size);
                 lanes.point[i][0][lane] = (float)p[lane][i].x;

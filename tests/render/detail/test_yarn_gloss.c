@@ -124,7 +124,8 @@ static double highlight_error(tl_renderer *renderer, enum path path, int plane)
     set_path(&scene, path);
     printf("%-12s %s:", paths[path].name, plane == 0 ? "across the floats" : "along the floats ");
     for (int i = 0; i < DIRECTIONS; i++) {
-        float degrees = -LIGHT_DEG + 12 * (float)(i - DIRECTIONS / 2);
+        int from_mirror = i - DIRECTIONS / 2;
+        float degrees = -LIGHT_DEG + 12 * (float)from_mirror;
         double near = seen(&scene, renderer, path, degrees, NEAR_M, repeats_m, NEAR_SIZE);
         double far = seen(&scene, renderer, path, degrees, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
         printf("  %.4f/%.4f", far, near);
