@@ -18,9 +18,33 @@ struct gltf_buffer {
     size_t size;
 };
 
+/* EXT_meshopt_compression: where a view's bytes are in compressed form, and what they become. */
+enum gltf_meshopt_mode {
+    GLTF_MESHOPT_NONE, /* not compressed */
+    GLTF_MESHOPT_ATTRIBUTES,
+    GLTF_MESHOPT_TRIANGLES,
+    GLTF_MESHOPT_INDICES,
+    GLTF_MESHOPT_OTHER_MODE
+};
+enum gltf_meshopt_filter {
+    GLTF_FILTER_NONE,
+    GLTF_FILTER_OCTAHEDRAL,
+    GLTF_FILTER_QUATERNION,
+    GLTF_FILTER_EXPONENTIAL,
+    GLTF_FILTER_OTHER
+};
+struct gltf_meshopt {
+    enum gltf_meshopt_mode mode;
+    enum gltf_meshopt_filter filter;
+    int buffer;
+    size_t offset, size;  /* of the compressed bytes */
+    size_t stride, count; /* of the elements */
+};
+
 struct gltf_view {
     int buffer;
     size_t offset, size, stride; /* bytes; stride 0: tightly packed */
+    struct gltf_meshopt meshopt; /* read by gltf_unpack alone */
 };
 
 struct gltf_accessor {
@@ -54,11 +78,18 @@ struct gltf_mapping {
 
 enum { GLTF_MODE_TRIANGLES = 4, GLTF_MODE_STRIP = 5, GLTF_MODE_FAN = 6 }; /* GL's */
 
+/* KHR_draco_mesh_compression: the view of a primitive's stream, and its attributes' ids in the stream. */
+struct gltf_draco {
+    int view; /* -1: not compressed */
+    int ids[GLTF_ATTRIBUTE_COUNT];
+};
+
 struct gltf_primitive {
     int attributes[GLTF_ATTRIBUTE_COUNT]; /* accessors */
     int indices, material, mode;
     size_t first_mapping, mapping_count;
-    bool has_targets, has_second_uvs, has_second_joints, is_draco;
+    bool has_targets, has_second_uvs, has_second_joints;
+    struct gltf_draco draco; /* read by gltf_unpack alone */
 };
 
 struct gltf_mesh {
@@ -136,8 +167,7 @@ struct gltf_image {
 typedef struct gltf_document {
     const char *path; /* for messages; borrowed */
     size_t buffer_count, view_count, accessor_count, primitive_count, mesh_count, node_count, skin_count,
-        channel_count, animation_count, material_count, image_count, root_count, used_count, required_count,
-        variant_count;
+        channel_count, animation_count, material_count, image_count, root_count, used_count, variant_count;
     const struct gltf_buffer *buffers;
     const struct gltf_view *views;
     const struct gltf_accessor *accessors;
@@ -153,20 +183,43 @@ typedef struct gltf_document {
     const int *mapped_variants;
     const char *const *variants; /* names; "": none given */
     bool has_scene;
-    const int *roots;                          /* nodes of the scene */
-    const char *const *used, *const *required; /* extensions */
+    const int *roots;        /* nodes of the scene */
+    const char *const *used; /* extensions */
     bool has_cameras, has_lights;
-    void *owner; /* the shim's */
+    void *owner;                    /* the shim's */
+    struct gltf_unpacked *unpacked; /* what gltf_unpack made, or NULL */
 } gltf_document;
+
+static inline uint32_t gltf_little_endian(const uint8_t *bytes)
+{
+    /* A false positive: the analyser assumes that a check failed but the function went on. */
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference)
+    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
 
 /* Parses JSON and gathers its buffers and images; `binary` is the GLB's BIN chunk or NULL. Nothing of
  * `json` and `binary` is kept. (gltf_shim.cpp; callers use gltf_open.) */
 bool gltf_parse(const char *path, const char *json, size_t json_size, const uint8_t *binary,
                 size_t binary_size, gltf_document *out, tl_error *error);
+void gltf_parse_release(gltf_document *document);
+
+/* The JSON text of a compressed file as tinygltf takes it, a new string for free(); NULL where nothing is to
+ * be changed, and where the text is not sound. */
+char *gltf_prepare_json(const char *json, size_t size);
+
+/* Decompresses the streams of EXT_meshopt_compression and KHR_draco_mesh_compression: `document` then has
+ * buffers, views and accessors as an uncompressed file has, which gltf_close releases. Broken streams, and
+ * streams that would become larger than their bytes can be meant to, are refused. */
+bool gltf_unpack(gltf_document *document, tl_error *error);
+void gltf_unpack_release(gltf_document *document);
 
 /* Reads a .gltf or .glb file, after checks of its container; gltf_close releases the document. */
 bool gltf_open(const char *path, gltf_document *out, tl_error *error);
 void gltf_close(gltf_document *document);
+
+/* `size` bytes of a buffer; false (with a message that names `what`) when they are not all there. */
+bool gltf_buffer_bytes(const gltf_document *document, int buffer, size_t offset, size_t size,
+                       const char *what, const uint8_t **bytes, tl_error *error);
 
 /* Bytes of a view within its buffer; false (with a message that names `what`) when they are not all there. */
 bool gltf_view_bytes(const gltf_document *document, int view, const char *what, const uint8_t **bytes,

@@ -1,137 +1,36 @@
 #include "assets/gltf/gltf_internal.h"
 
-#include "config/file.h"
 #include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- The container: a GLB's lengths are checked against the file before they are used ---- */
-
-static uint32_t little_endian(const uint8_t *bytes)
+bool gltf_buffer_bytes(const gltf_document *document, int buffer, size_t offset, size_t size,
+                       const char *what, const uint8_t **bytes, tl_error *error)
 {
-    /* A false positive: the analyser assumes that a check failed but the function went on. */
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference)
-    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
-
-struct chunks {
-    const uint8_t *json, *binary;
-    size_t json_size, binary_size;
-};
-
-#define GLB_MAGIC      0x46546c67u /* "glTF" */
-#define GLB_CHUNK_JSON 0x4e4f534au
-#define GLB_CHUNK_BIN  0x004e4942u
-
-static bool find_chunks(const char *path, const uint8_t *data, size_t size, struct chunks *chunks,
-                        tl_error *error)
-{
-    if (size < 20)
-        return tl_fail(error, TL_INPUT, "%s: is cut short: a GLB has at least 20 bytes: fetch it again",
-                       path);
-    uint32_t version = little_endian(data + 4), length = little_endian(data + 8);
-    if (version != 2)
-        return tl_fail(error, TL_INPUT, "%s: is GLB version %u: export it as glTF 2.0", path, version);
-    if (length > size)
-        return tl_fail(error, TL_INPUT, "%s: claims %u bytes but has %zu: it is cut short, fetch it again",
-                       path, length, size);
-    for (size_t at = 12; at + 8 <= length;) {
-        size_t chunk = little_endian(data + at);
-        uint32_t type = little_endian(data + at + 4);
-        if (chunk > length - at - 8)
-            return tl_fail(error, TL_INPUT,
-                           "%s: a chunk claims %zu bytes but %zu are left: it is cut short, fetch it again",
-                           path, chunk, length - at - 8);
-        if (type == GLB_CHUNK_JSON && !chunks->json) {
-            chunks->json = data + at + 8;
-            chunks->json_size = chunk;
-        } else if (type == GLB_CHUNK_BIN && !chunks->binary) {
-            chunks->binary = data + at + 8;
-            chunks->binary_size = chunk;
-        }
-        at += 8 + chunk;
-    }
-    if (!chunks->json)
-        return tl_fail(error, TL_INPUT, "%s: has no JSON chunk: export it again", path);
+    if (buffer < 0 || (size_t)buffer >= document->buffer_count)
+        return tl_fail(error, TL_INPUT, "%s: %s: buffer %d does not exist: export the file again",
+                       document->path, what, buffer);
+    const struct gltf_buffer *from = &document->buffers[buffer];
+    if (offset > from->size || size > from->size - offset)
+        return tl_fail(error, TL_INPUT,
+                       "%s: %s: wants %zu bytes from byte %zu of a buffer of %zu: the file is cut short or "
+                       "damaged, export it again",
+                       document->path, what, size, offset, from->size);
+    *bytes = from->data + offset;
     return true;
-}
-
-/* The parser is recursive, so depth is limited; real files are nested a dozen levels deep. */
-static bool is_nested_too_deep(const uint8_t *json, size_t size)
-{
-    const int limit = 128;
-    int depth = 0;
-    bool quoted = false;
-    for (size_t i = 0; i < size; i++) {
-        if (quoted) {
-            if (json[i] == '\\')
-                i++;
-            else
-                quoted = json[i] != '"';
-        } else if (json[i] == '"')
-            quoted = true;
-        else if (json[i] == '{' || json[i] == '[') {
-            if (++depth > limit)
-                return true;
-        } else if (json[i] == '}' || json[i] == ']')
-            depth--;
-    }
-    return false;
-}
-
-bool gltf_open(const char *path, gltf_document *out, tl_error *error)
-{
-    *out = (gltf_document){0};
-    char *data;
-    size_t size;
-    if (!tl_file_read(path, &data, &size, error))
-        return false;
-    const uint8_t *bytes = (const uint8_t *)data;
-    struct chunks chunks = {0};
-    bool binary = size >= 4 && little_endian(bytes) == GLB_MAGIC, opened = false;
-    if (!binary)
-        chunks = (struct chunks){.json = bytes, .json_size = size};
-    else if (!find_chunks(path, bytes, size, &chunks, error))
-        goto done;
-    size_t start = 0;
-    while (start < chunks.json_size && strchr(" \t\r\n", chunks.json[start]) && chunks.json[start])
-        start++;
-    if (start == chunks.json_size || chunks.json[start] != '{')
-        tl_fail(error, TL_INPUT, "%s: is not glTF: neither a GLB nor a JSON object: export it as glTF 2.0",
-                path);
-    else if (is_nested_too_deep(chunks.json, chunks.json_size))
-        tl_fail(error, TL_INPUT, "%s: its JSON is nested more than 128 deep: export it again", path);
-    else
-        opened = gltf_parse(path, (const char *)chunks.json, chunks.json_size, chunks.binary,
-                            chunks.binary_size, out, error);
-done:
-    free(data);
-    return opened;
 }
 
 bool gltf_view_bytes(const gltf_document *document, int view, const char *what, const uint8_t **bytes,
                      size_t *size, tl_error *error)
 {
-    const char *path = document->path;
     if (view < 0 || (size_t)view >= document->view_count)
-        return tl_fail(error, TL_INPUT, "%s: %s: buffer view %d does not exist: export the file again", path,
-                       what, view);
-    const struct gltf_view *v = &document->views[view];
-    if (v->buffer < 0 || (size_t)v->buffer >= document->buffer_count)
-        return tl_fail(error, TL_INPUT, "%s: %s: buffer %d does not exist: export the file again", path, what,
-                       v->buffer);
-    const struct gltf_buffer *buffer = &document->buffers[v->buffer];
-    if (v->offset > buffer->size || v->size > buffer->size - v->offset)
-        return tl_fail(
-            error, TL_INPUT,
-            "%s: %s: buffer view %d wants %zu bytes from byte %zu of a buffer of %zu: the file is cut "
-            "short or damaged, export it again",
-            path, what, view, v->size, v->offset, buffer->size);
-    *bytes = buffer->data + v->offset;
-    *size = v->size;
-    return true;
+        return tl_fail(error, TL_INPUT, "%s: %s: buffer view %d does not exist: export the file again",
+                       document->path, what, view);
+    const struct gltf_view *from = &document->views[view];
+    *size = from->size;
+    return gltf_buffer_bytes(document, from->buffer, from->offset, from->size, what, bytes, error);
 }
 
 static size_t component_size(int type)
@@ -212,7 +111,7 @@ static uint32_t integer_at(const uint8_t *bytes, int type)
     case 2:
         return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8;
     default:
-        return little_endian(bytes);
+        return gltf_little_endian(bytes);
     }
 }
 

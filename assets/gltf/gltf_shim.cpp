@@ -34,7 +34,7 @@ struct Owner {
     std::vector<gltf_mapping> mappings;
     std::vector<int> mapped_variants;
     std::vector<std::string> variant_names;
-    std::vector<const char *> used, required, variants;
+    std::vector<const char *> used, variants;
 };
 
 /* tinygltf's own callbacks are not used: its path expansion hands names from the file to a shell
@@ -124,6 +124,61 @@ int attribute_of(const tinygltf::Primitive &primitive, const char *name)
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
+/* A member of an extension, which is raw JSON; null where there is none. */
+const tinygltf::Value &member(const tinygltf::Value &object, const char *name)
+{
+    static const tinygltf::Value none;
+    return object.IsObject() && object.Has(name) ? object.Get(name) : none;
+}
+
+int index_of(const tinygltf::Value &value)
+{
+    return value.IsInt() ? value.GetNumberAsInt() : -1;
+}
+
+size_t offset_of(int value)
+{
+    return value < 0 ? SIZE_MAX : static_cast<size_t>(value); /* refused by the bounds check */
+}
+
+void copy_draco(const tinygltf::Primitive &from, gltf_draco &to, const char *const names[])
+{
+    auto found = from.extensions.find("KHR_draco_mesh_compression");
+    to.view = found == from.extensions.end() ? -1 : index_of(member(found->second, "bufferView"));
+    for (int i = 0; i < GLTF_ATTRIBUTE_COUNT; i++)
+        to.ids[i] = to.view < 0 ? -1 : index_of(member(member(found->second, "attributes"), names[i]));
+    if (to.view >= 0 && to.ids[GLTF_PIN] < 0)
+        to.ids[GLTF_PIN] = index_of(member(member(found->second, "attributes"), "_pin"));
+}
+
+gltf_meshopt copy_meshopt(const tinygltf::BufferView &from)
+{
+    static const char *const modes[] = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
+    static const char *const filters[] = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
+    gltf_meshopt to = {};
+    auto found = from.extensions.find("EXT_meshopt_compression");
+    if (found == from.extensions.end())
+        found = from.extensions.find("KHR_meshopt_compression");
+    if (found == from.extensions.end())
+        return to;
+    const tinygltf::Value &packed = found->second, &mode = member(packed, "mode"),
+                          &filter = member(packed, "filter");
+    to.mode = GLTF_MESHOPT_OTHER_MODE;
+    for (int i = 0; i < 3; i++)
+        if (mode.IsString() && mode.Get<std::string>() == modes[i])
+            to.mode = static_cast<gltf_meshopt_mode>(GLTF_MESHOPT_ATTRIBUTES + i);
+    to.filter = filter.IsString() ? GLTF_FILTER_OTHER : GLTF_FILTER_NONE;
+    for (int i = 0; i < 4; i++)
+        if (filter.IsString() && filter.Get<std::string>() == filters[i])
+            to.filter = static_cast<gltf_meshopt_filter>(i);
+    to.buffer = index_of(member(packed, "buffer"));
+    to.offset = packed.Has("byteOffset") ? offset_of(index_of(packed.Get("byteOffset"))) : 0;
+    to.size = offset_of(index_of(member(packed, "byteLength")));
+    to.stride = offset_of(index_of(member(packed, "byteStride")));
+    to.count = offset_of(index_of(member(packed, "count")));
+    return to;
+}
+
 gltf_primitive copy_primitive(const tinygltf::Primitive &from)
 {
     static const char *const names[GLTF_ATTRIBUTE_COUNT] = {"POSITION", "NORMAL",    "TANGENT", "TEXCOORD_0",
@@ -139,7 +194,7 @@ gltf_primitive copy_primitive(const tinygltf::Primitive &from)
     to.has_targets = !from.targets.empty();
     to.has_second_uvs = attribute_of(from, "TEXCOORD_1") >= 0;
     to.has_second_joints = attribute_of(from, "JOINTS_1") >= 0;
-    to.is_draco = from.extensions.count("KHR_draco_mesh_compression") > 0;
+    copy_draco(from, to.draco, names);
     return to;
 }
 
@@ -163,11 +218,6 @@ gltf_node copy_node(const tinygltf::Node &from)
     copy_floats(to.rotation, 4, from.rotation);
     copy_floats(to.scale, 3, from.scale);
     return to;
-}
-
-size_t offset_of(int value)
-{
-    return value < 0 ? SIZE_MAX : static_cast<size_t>(value); /* refused by the bounds check */
 }
 
 gltf_accessor copy_accessor(const tinygltf::Accessor &from)
@@ -250,13 +300,6 @@ template <typename Info> gltf_texture copy_texture(const tinygltf::Model &model,
             to.uv_set = transform.Get("texCoord").GetNumberAsInt();
     }
     return to;
-}
-
-/* A member of an extension, which is raw JSON; null where there is none. */
-const tinygltf::Value &member(const tinygltf::Value &object, const char *name)
-{
-    static const tinygltf::Value none;
-    return object.IsObject() && object.Has(name) ? object.Get(name) : none;
 }
 
 void copy_colour(float to[3], const tinygltf::Value &from)
@@ -359,11 +402,6 @@ gltf_image copy_image(const tinygltf::Image &from)
     return to;
 }
 
-int index_of(const tinygltf::Value &value)
-{
-    return value.IsInt() ? value.GetNumberAsInt() : -1;
-}
-
 void copy_mappings(Owner &owner, const tinygltf::Primitive &from, gltf_primitive &to)
 {
     auto found = from.extensions.find("KHR_materials_variants");
@@ -403,7 +441,8 @@ void copy_geometry(Owner &owner)
     for (const tinygltf::Buffer &buffer : model.buffers)
         owner.buffers.push_back({buffer.data.data(), buffer.data.size()});
     for (const tinygltf::BufferView &view : model.bufferViews)
-        owner.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
+        owner.views.push_back(
+            {view.buffer, view.byteOffset, view.byteLength, view.byteStride, copy_meshopt(view)});
     for (const tinygltf::Accessor &accessor : model.accessors)
         owner.accessors.push_back(copy_accessor(accessor));
     for (const tinygltf::Mesh &mesh : model.meshes) {
@@ -435,8 +474,6 @@ void copy_looks(Owner &owner)
     copy_variants(owner);
     for (const std::string &name : model.extensionsUsed)
         owner.used.push_back(name.c_str());
-    for (const std::string &name : model.extensionsRequired)
-        owner.required.push_back(name.c_str());
 }
 
 void point_to(const Owner &owner, gltf_document &out)
@@ -456,7 +493,6 @@ void point_to(const Owner &owner, gltf_document &out)
     out.mapped_variants = owner.mapped_variants.data();
     out.variants = owner.variants.data(), out.variant_count = owner.variants.size();
     out.used = owner.used.data(), out.used_count = owner.used.size();
-    out.required = owner.required.data(), out.required_count = owner.required.size();
     const tinygltf::Model &model = owner.model;
     size_t scene = model.defaultScene < 0 ? 0 : static_cast<size_t>(model.defaultScene);
     out.has_scene = scene < model.scenes.size();
@@ -512,7 +548,7 @@ bool gltf_parse(const char *path, const char *json, size_t json_size, const uint
     return false;
 }
 
-void gltf_close(gltf_document *document)
+void gltf_parse_release(gltf_document *document)
 {
     delete static_cast<Owner *>(document->owner);
     *document = gltf_document{};

@@ -210,9 +210,6 @@ static bool add_primitive(struct gltf_builder *builder, const struct gltf_primit
         model_ignore(builder->model, "points and lines");
         return true;
     }
-    if (from->is_draco)
-        return tl_fail(error, TL_INPUT, "%s: is compressed with Draco: export it without compression",
-                       builder->document->path);
     if (from->attributes[GLTF_POSITION] < 0) {
         model_ignore(builder->model, "primitives without positions");
         return true;
@@ -347,20 +344,15 @@ static bool finish(struct gltf_builder *builder, enum tl_units wanted, tl_error 
 
 /* ---- The whole ---- */
 
-static bool check_extensions(const gltf_document *document, tl_model *model, tl_error *error)
+static void note_extensions(const gltf_document *document, tl_model *model)
 {
     static const char *const known[] = {"KHR_materials_variants",     "KHR_texture_transform",
                                         "KHR_mesh_quantization",      "KHR_materials_anisotropy",
                                         "KHR_materials_clearcoat",    "KHR_materials_ior",
                                         "KHR_materials_sheen",        "KHR_materials_specular",
-                                        "KHR_materials_transmission", "KHR_materials_diffuse_transmission"};
-    static const char *const compressed[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                             "KHR_meshopt_compression"};
-    for (size_t i = 0; i < document->required_count; i++)
-        for (size_t k = 0; k < TL_COUNT(compressed); k++)
-            if (strcmp(document->required[i], compressed[k]) == 0)
-                return tl_fail(error, TL_INPUT, "%s: needs %s: export it without compression", document->path,
-                               compressed[k]);
+                                        "KHR_materials_transmission", "KHR_materials_diffuse_transmission",
+                                        "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                                        "KHR_meshopt_compression"};
     for (size_t i = 0; i < document->used_count; i++) {
         bool has_effect = false;
         for (size_t k = 0; k < TL_COUNT(known); k++)
@@ -372,7 +364,6 @@ static bool check_extensions(const gltf_document *document, tl_model *model, tl_
         model_ignore(model, "cameras");
     if (document->has_lights)
         model_ignore(model, "KHR_lights_punctual");
-    return true;
 }
 
 static void name_clips(const gltf_document *document, tl_model *model)
@@ -413,7 +404,8 @@ bool gltf_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_e
                                    .skin_slots = TL_NEW_ARRAY(uint32_t, document.skin_count)};
     for (size_t i = 0; i < document.skin_count; i++)
         builder.skin_slots[i] = NO_SLOT;
-    bool loaded = check_extensions(&document, out, error) && rig_read(&document, out->rig, error);
+    note_extensions(&document, out);
+    bool loaded = rig_read(&document, out->rig, error);
     if (loaded) {
         model_read_materials(&document, out);
         loaded = add_scene(&builder, error) && finish(&builder, wanted, error) &&
