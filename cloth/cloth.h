@@ -50,6 +50,7 @@ struct tl_cloth_params {
     double settle_speed;    /* m/s: the cloth is settled when no vertex moves faster over a frame */
     bool cages;             /* settling begins on coarser versions of a fine cloth: cloth/coarser.h */
     float edge_m;           /* target edge length of built-in garments */
+    int rest;               /* enum tl_rest_choice: of garments from files */
     float longest_edge_m;   /* longer edges of garments from files are halved; 0: never */
 };
 extern const struct tl_option_table tl_cloth_options;

@@ -55,6 +55,9 @@ static const struct tl_option cloth_rows[] = {
                    "settles coarser versions of a fine cloth first, from which it comes to rest sooner"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, TL_AFFECTS_SCENE | AFFECTS | TL_AFFECTS_WORK, 0.001f, 1,
                     "m", "target edge length of built-in garments; larger: coarser, faster"),
+    TL_OPTION_ENUM(struct tl_cloth_params, rest, TL_AFFECTS_SCENE | AFFECTS, tl_rest_names,
+                   "rest shape, grain and strain of a garment's file: uv: its UVs are its pattern, at one "
+                   "scale; mesh: its first shape; auto: uv where they are one, which `toile info` tells"),
     TL_OPTION_FLOAT(struct tl_cloth_params, longest_edge_m, TL_AFFECTS_SCENE | AFFECTS, 0, 1000, "m",
                     "longer edges of a garment's file are halved, so that it can fold; 0: never"),
 };

@@ -1,5 +1,6 @@
 /* toile info: prints what a file holds and how it is read, or what is built in. */
 #include "app/batch/commands.h"
+#include "app/batch/info_garment.h"
 #include "app/cli/json.h"
 #include "app/settings/settings.h"
 #include "assets/builtin/specimen.h"
@@ -179,6 +180,7 @@ static cJSON *describe_model(const tl_model *model)
     describe_units(object, model);
     cJSON_AddItemToObject(object, "lower_m", describe_vector(box.lower));
     cJSON_AddItemToObject(object, "upper_m", describe_vector(box.upper));
+    tl_info_describe_garment(object, model);
     cJSON *materials = cJSON_AddArrayToObject(object, "materials");
     for (size_t i = 0; i < model->material_count; i++)
         cJSON_AddItemToArray(materials, describe_material(&model->materials[i]));

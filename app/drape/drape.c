@@ -134,6 +134,7 @@ static struct tl_cache_key key_of(const struct tl_drape_request *request)
     tl_cache_key_add(&key, &request->options, sizeof request->options);
     add_mesh(&key, &garment->model.mesh);
     ADD(&key, garment->pattern, count);
+    ADD(&key, garment->modelled, garment->model.mesh.index_count / 3);
     ADD(&key, garment->model.colours, count);
     ADD(&key, garment->seams, garment->seam_count);
     ADD(&key, garment->pins, garment->pin_count);

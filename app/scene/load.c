@@ -2,6 +2,7 @@
 
 #include "assets/base/placing.h"
 #include "assets/builtin/specimen.h"
+#include "assets/charts/rest.h"
 #include "assets/cut/fit.h"
 #include "assets/garment.h"
 #include "assets/pattern/pattern.h"
@@ -133,6 +134,18 @@ static bool refine_garment(const struct tl_settings *settings, tl_garment *garme
     return true;
 }
 
+/* Decides between UVs and mesh, for the mesh as it stands and is split. */
+static bool take_rest(const struct tl_settings *settings, tl_garment *garment, tl_error *error)
+{
+    struct tl_charts charts = tl_charts_find(&garment->model.mesh);
+    enum tl_rest_choice choice = (enum tl_rest_choice)settings->cloth.rest;
+    bool taken = tl_rest_take(choice, &charts, garment, error);
+    if (taken && choice == TL_REST_AUTO && charts.whole.verdict == TL_CHART_IS_PATTERN)
+        report_line(tl_rest_describe(garment->model.name, &charts));
+    tl_charts_release(&charts);
+    return taken;
+}
+
 /* Lifts a garment without an avatar onto the ground. No body places it, and below the ground it would be
  * hidden, and pushed out at the first step. Returns by how much, in metres. */
 static float lift_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *garment)
@@ -175,7 +188,7 @@ static bool read_garment(const struct tl_settings *settings, const tl_avatar *we
     bool placed = place_garment(settings, out, error);
     if (placed)
         *lifted_m = lift_garment(settings, wearer, out);
-    if (placed && refine_garment(settings, out, error))
+    if (placed && refine_garment(settings, out, error) && take_rest(settings, out, error))
         return true;
     tl_garment_release(out);
     return false;

@@ -4,6 +4,8 @@
 
 #include <stdlib.h>
 
+const char *const tl_rest_names[] = {"auto", "uv", "mesh", NULL};
+
 void tl_garment_take_pins(tl_garment *garment)
 {
     const tl_model *model = &garment->model;
@@ -21,6 +23,7 @@ void tl_garment_release(tl_garment *garment)
 {
     tl_model_release(&garment->model);
     free(garment->pattern);
+    free(garment->modelled);
     free(garment->seams);
     free(garment->pins);
     *garment = (tl_garment){0};

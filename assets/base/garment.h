@@ -11,12 +11,17 @@ struct tl_seam_pair {
     uint32_t a, b;
 }; /* render vertices that sewing pulls together and then welds */
 
+/* What is the rest shape of a garment from a file (assets/charts/rest.h). */
+enum tl_rest_choice { TL_REST_AUTO, TL_REST_UV, TL_REST_MESH };
+extern const char *const tl_rest_names[]; /* "auto", "uv", "mesh"; NULL-terminated */
+
 typedef struct tl_garment {
     tl_model model; /* mesh.positions is where the cloth starts */
     /* Rest shape as flat cloth, metres: x along the weft, y along the warp, one per render vertex; NULL when
      * the file has no pattern: then each triangle's start shape is its rest shape and UV directions give warp
      * and weft. */
     vec2s *pattern;
+    bool *modelled; /* [triangle] has no pattern of its own, as without one; NULL: none with a pattern */
     size_t seam_count;
     struct tl_seam_pair *seams;
     bool

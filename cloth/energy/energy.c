@@ -61,7 +61,7 @@ static void flatten(const tl_garment *garment, const uint32_t *vertices, vec2s o
 void tl_rest_shape(const tl_garment *garment, size_t triangle, vec2s out[3])
 {
     const uint32_t *vertices = &garment->model.mesh.indices[3 * triangle];
-    if (garment->pattern)
+    if (garment->pattern && !(garment->modelled && garment->modelled[triangle]))
         for (int i = 0; i < 3; i++)
             out[i] = garment->pattern[vertices[i]];
     else
