@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#define MARGIN 1.08f
+#define MARGIN 1.12f
 
 /* Distance at which the box's vertical extent and its widest horizontal radius fit, so that turning does not
  * zoom. */

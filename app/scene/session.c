@@ -58,7 +58,7 @@ struct tl_session {
     } spares[2]; /* the newest first: comparisons alternate between two */
 
     int frame;
-    struct tl_box framed; /* what the camera frames: all there is at frame 0 */
+    struct tl_box framed; /* what the camera frames, at frame 0 */
     tl_surface surfaces[2];
     size_t surface_count;
     struct tl_lamp lamps[2];
@@ -178,19 +178,30 @@ static double light_position(const struct tl_settings *settings, int number)
     return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;
 }
 
-static void frame_everything(tl_session *session)
+static struct tl_box box_of_moving(const struct tl_moving *moving)
 {
-    struct tl_box box = {{{FLT_MAX, FLT_MAX, FLT_MAX}}, {{-FLT_MAX, -FLT_MAX, -FLT_MAX}}};
-    const struct tl_moving *shown[] = {session->avatar ? &session->body : NULL,
-                                       session->garment ? &session->dress : NULL};
-    for (size_t i = 0; i < TL_COUNT(shown); i++) {
-        if (!shown[i])
-            continue;
-        struct tl_box part = tl_box_of(shown[i]->positions, shown[i]->model->mesh.vertex_count);
-        box.lower = glms_vec3_minv(box.lower, part.lower);
-        box.upper = glms_vec3_maxv(box.upper, part.upper);
+    return tl_box_of(moving->positions, moving->model->mesh.vertex_count);
+}
+
+/* A body that stands out of its garment by less than this, as a share of the garment's height, is framed with
+ * it: a head that is cut off looks like a mistake, the foot of a dress form does not. */
+#define FRAMED_WITH_BODY 1.6f
+
+/* What the camera frames: the garment, which is what is judged; without one, the body. */
+static void frame_garment(tl_session *session)
+{
+    session->framed = (struct tl_box){0};
+    if (session->avatar)
+        session->framed = box_of_moving(&session->body);
+    if (!session->garment)
+        return;
+    struct tl_box garment = box_of_moving(&session->dress), all = garment;
+    if (session->avatar) {
+        all.lower = glms_vec3_minv(all.lower, session->framed.lower);
+        all.upper = glms_vec3_maxv(all.upper, session->framed.upper);
     }
-    session->framed = box;
+    bool with_body = all.upper.y - all.lower.y < FRAMED_WITH_BODY * (garment.upper.y - garment.lower.y);
+    session->framed = with_body ? all : garment;
 }
 
 struct tl_session_models tl_session_models(const tl_session *session)
@@ -253,7 +264,7 @@ static bool load_all(tl_session *session, tl_error *error)
         return tl_fail(error, TL_INTERRUPTED, "stopped while the scene was made ready");
     if (session->avatar)
         pose_avatar(session, 0);
-    frame_everything(session);
+    frame_garment(session);
     return true;
 }
 

@@ -16,6 +16,8 @@ typedef struct tl_environment {
     char *name; /* file name or "studio" */
     enum tl_env_layout layout;
     tl_image image;                              /* F32, RGB */
+    tl_image backdrop;                           /* the same in size, without the lamps that a picture should
+                                                    not show behind the figure; no texels: `image` */
     size_t negative_count, nan_count, inf_count; /* channel values cleaned on reading */
     float peak;                                  /* largest channel value */
 } tl_environment;

@@ -58,11 +58,12 @@ static float coverage(const struct tl_studio_light *light, const struct tl_studi
            (1 - smooth_step(light->half_height - light->edge, light->half_height + light->edge, along));
 }
 
+/* Without `axes`: of the empty room. */
 static vec3s studio_radiance(vec3s direction, const struct tl_studio_axes *axes)
 {
     float room = tl_studio_room(direction);
     vec3s radiance = {{room, room, room}};
-    for (size_t i = 0; i < tl_studio_light_count; i++) {
+    for (size_t i = 0; axes && i < tl_studio_light_count; i++) {
         float seen = coverage(&tl_studio_lights[i], &axes[i], direction);
         radiance = glms_vec3_add(radiance, glms_vec3_scale(tl_studio_lights[i].radiance, seen));
     }
@@ -98,15 +99,10 @@ static float peak_of(const tl_image *image)
     return peak;
 }
 
-tl_environment tl_environment_studio(void)
+static tl_image studio_image(const struct tl_studio_axes *axes)
 {
-    struct tl_studio_axes axes[TL_COUNT(tl_studio_lights)];
-    for (size_t i = 0; i < tl_studio_light_count; i++)
-        axes[i] = tl_studio_light_axes(&tl_studio_lights[i]);
-    tl_environment environment = {.name = tl_copy_string("studio"),
-                                  .layout = TL_ENV_LATLONG,
-                                  .image = tl_image_create(STUDIO_WIDTH, STUDIO_HEIGHT, 3, TL_IMAGE_F32)};
-    float *texels = tl_image_floats(&environment.image);
+    tl_image image = tl_image_create(STUDIO_WIDTH, STUDIO_HEIGHT, 3, TL_IMAGE_F32);
+    float *texels = tl_image_floats(&image);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < STUDIO_HEIGHT; y++) {
         for (int x = 0; x < STUDIO_WIDTH; x++) {
@@ -115,6 +111,18 @@ tl_environment tl_environment_studio(void)
                 texels[((size_t)y * STUDIO_WIDTH + (size_t)x) * 3 + (size_t)c] = texel.raw[c];
         }
     }
+    return image;
+}
+
+tl_environment tl_environment_studio(void)
+{
+    struct tl_studio_axes axes[TL_COUNT(tl_studio_lights)];
+    for (size_t i = 0; i < tl_studio_light_count; i++)
+        axes[i] = tl_studio_light_axes(&tl_studio_lights[i]);
+    tl_environment environment = {.name = tl_copy_string("studio"),
+                                  .layout = TL_ENV_LATLONG,
+                                  .image = studio_image(axes),
+                                  .backdrop = studio_image(NULL)};
     environment.peak = peak_of(&environment.image);
     return environment;
 }

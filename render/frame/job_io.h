@@ -434,7 +434,8 @@
     IO(WRITES, standard_error)
 
 #define TL_BACKDROP_JOB(IO)                                                                                  \
-    IO(AFTER, TL_INPUT_ENVIRONMENT)                                                                          \
+    IO(READS, environment)                                                                                   \
+    IO(READS, pem_size)                                                                                      \
     IO(READS, cube)                                                                                          \
     IO(READS, filter)                                                                                        \
     IO(WRITES_IN, present, TL_MADE_BACKDROP)

@@ -97,6 +97,15 @@ bool tl_run_lights(const struct tl_lights_job *job, tl_error *error)
 bool tl_run_backdrop(const struct tl_backdrop_job *job, tl_error *error)
 {
     (void)error;
-    tl_backdrop_set(&job->present->backdrop, job->cube, *job->filter);
+    const tl_environment *map = job->environment->map;
+    struct tl_backdrop *backdrop = &job->present->backdrop;
+    if (tl_image_floats(&map->backdrop)) {
+        const tl_environment room = {.name = map->name, .layout = map->layout, .image = map->backdrop};
+        tl_cube cube = tl_cube_from_environment(&room, *job->pem_size);
+        tl_backdrop_set(backdrop, &cube, *job->filter);
+        tl_cube_release(&cube);
+    } else {
+        tl_backdrop_set(backdrop, job->cube, *job->filter);
+    }
     return true;
 }

@@ -124,6 +124,31 @@ static void test_large_environment(void **state)
     test_scene_close(&scene);
 }
 
+/* The blurred studio is a room: no lamp is behind the figure, whichever way the camera looks. */
+static void test_no_lamp_behind(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, tl_environment_studio(), 96, 96);
+    scene.settings.image.background = TL_BACKGROUND_BLURRED;
+    scene.frame.environment_yaw = 0;
+    for (int yaw = 0; yaw < 360; yaw += 30) {
+        float azimuth = glm_rad((float)yaw);
+        scene.frame.camera.target = (vec3s){{0, 3, 0}}; /* over the heads of ball and sheet */
+        scene.frame.camera.eye = (vec3s){{sinf(azimuth), 3, cosf(azimuth)}};
+        device->renderer->resources.valid &= ~TL_BIT(TL_MADE_IMAGE);
+        tl_image drawn = test_scene_draw(&scene, device->renderer), shown = show(device->renderer);
+        int brightest = 0;
+        for (size_t i = 0; i < (size_t)3 * 96 * 96; i++)
+            brightest = tl_image_bytes(&shown)[i] > brightest ? tl_image_bytes(&shown)[i] : brightest;
+        print_message("from %d degrees the backdrop is %d of 255 at most\n", yaw, brightest);
+        assert_in_range(brightest, 60, 170); /* a lamp is white */
+        tl_image_release(&drawn);
+        tl_image_release(&shown);
+    }
+    test_scene_close(&scene);
+}
+
 /* The studio as a cube. */
 static tl_environment cube_studio(void)
 {
@@ -132,6 +157,7 @@ static tl_environment cube_studio(void)
     const struct tl_sphere_map to = {TL_LAYOUT_CUBE, 128, 6 * 128};
     tl_image cube = tl_image_convert(&studio.image, &from, &to, NULL);
     tl_image_release(&studio.image);
+    tl_image_release(&studio.backdrop);
     studio.image = cube;
     studio.layout = TL_ENV_CUBE;
     return studio;
@@ -164,9 +190,8 @@ static void test_views(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_backgrounds),
-        cmocka_unit_test(test_large_environment),
-        cmocka_unit_test(test_cube),
+        cmocka_unit_test(test_backgrounds),    cmocka_unit_test(test_large_environment),
+        cmocka_unit_test(test_no_lamp_behind), cmocka_unit_test(test_cube),
         cmocka_unit_test(test_views),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);

@@ -167,6 +167,21 @@ static void test_backdrop(void **state)
     assert_true(middle[1] > texel(&studio.image, x0, y0)[1] && middle[1] > texel(&studio.image, x1, y1)[1]);
 }
 
+/* The backdrop is the room alone: what the lamps add to the image is not behind the figure, from any side. */
+static void test_backdrop_without_lamps(void **state)
+{
+    (void)state;
+    double brightest = 0;
+    assert_int_equal(studio.backdrop.width, studio.image.width);
+    for (int y = 0; y < studio.image.height; y++)
+        for (int x = 0; x < studio.image.width; x++) {
+            double room = (double)tl_studio_room(texel_direction(&studio.image, x, y));
+            assert_near(texel(&studio.backdrop, x, y)[1], room, 0.01 * room);
+            brightest = fmax(brightest, (double)texel(&studio.backdrop, x, y)[1]);
+        }
+    assert_true(brightest < 0.5);
+}
+
 static void test_constant(void **state)
 {
     (void)state;
@@ -186,7 +201,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_solid_angles), cmocka_unit_test(test_irradiance),
         cmocka_unit_test(test_exposure),     cmocka_unit_test(test_lamp),
-        cmocka_unit_test(test_backdrop),     cmocka_unit_test(test_constant),
+        cmocka_unit_test(test_backdrop),     cmocka_unit_test(test_backdrop_without_lamps),
+        cmocka_unit_test(test_constant),
     };
     return cmocka_run_group_tests(tests, make_studio, drop_studio);
 }
