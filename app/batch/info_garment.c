@@ -1,6 +1,7 @@
 #include "app/batch/info_garment.h"
 
 #include "assets/charts/rest.h"
+#include "cloth/contact/crossings.h"
 
 #include <stdlib.h>
 
@@ -31,5 +32,6 @@ static void describe_rest(cJSON *object, const tl_model *model)
 
 void tl_info_describe_garment(cJSON *object, const tl_model *model)
 {
+    add_count(object, "crossings", tl_crossings_of_mesh(&model->mesh, model->mesh.positions, NULL));
     describe_rest(object, model);
 }

@@ -7,6 +7,7 @@
 #include "app/scene/moving_light.h"
 #include "app/scene/playback.h"
 #include "assets/avatar.h"
+#include "cloth/contact/crossings.h"
 #include "cloth/energy/strain.h"
 #include "cloth/mesh/topology.h"
 #include "config/file.h"
@@ -46,6 +47,11 @@ struct tl_session {
         vec3s *of_vertices; /* of the garment */
         uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
     } strain;
+
+    struct {
+        bool *triangles;   /* of the garment, those that cross others; made when first asked for */
+        uint64_t revision; /* dress.motion_revision that they are of; 0: none */
+    } crossed;
 
     struct tl_appearance appearance;
     uint64_t appearance_revision; /* of meshes and materials; the renderer sees another one as new */
@@ -296,6 +302,7 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_light_release(&session->light);
     tl_strains_destroy(&session->strain.rest);
     free(session->strain.of_vertices);
+    free(session->crossed.triangles);
     tl_appearance_release(&session->appearance);
     for (size_t i = 0; i < TL_COUNT(session->spares); i++)
         tl_appearance_release(&session->spares[i].appearance);
@@ -532,6 +539,20 @@ static const vec3s *strains_of_garment(tl_session *session)
     return session->strain.of_vertices;
 }
 
+/* The garment's triangles that cross others, while the image shows them; else NULL. */
+static const bool *crossed_of_garment(tl_session *session)
+{
+    const tl_mesh *mesh = &session->garment->model.mesh;
+    if (session->settings.image.view != TL_VIEW_CROSSING)
+        return NULL;
+    if (!session->crossed.triangles)
+        session->crossed.triangles = TL_NEW_ARRAY(bool, mesh->index_count / 3);
+    if (session->crossed.revision != session->dress.motion_revision)
+        tl_crossings_of_mesh(mesh, session->dress.positions, session->crossed.triangles);
+    session->crossed.revision = session->dress.motion_revision;
+    return session->crossed.triangles;
+}
+
 void tl_session_want_strains(tl_session *session, bool wanted)
 {
     session->strain.wanted = wanted;
@@ -553,6 +574,7 @@ tl_frame tl_session_frame(tl_session *session)
         tl_surface *garment = &session->surfaces[session->surface_count++];
         *garment = tl_moving_surface(&session->dress, TL_SURFACE_GARMENT, &session->appearance.garment);
         garment->strains = strains_of_garment(session);
+        garment->crossed = crossed_of_garment(session);
     }
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->appearance_revision;

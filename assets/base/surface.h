@@ -18,6 +18,8 @@ typedef struct tl_surface {
     const vec2s *uvs;
     const vec3s *strains; /* along the warp, along the weft (length over rest length, less 1), shear (cosine
                              of the angle between them); NULL: unknown or not requested */
+    const bool *crossed; /* [index_count / 3] triangles that pass through others of the surface; NULL: unknown
+                            or not requested */
     size_t index_count;
     const uint32_t *indices;
     size_t part_count;

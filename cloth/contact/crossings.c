@@ -3,6 +3,7 @@
 #include "config/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Six times the volume of a tetrahedron; positive where d lies on the side of a b c that its normal points
  * to. */
@@ -72,17 +73,48 @@ void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topo
     free(found);
 }
 
-size_t tl_crossings_count(const struct tl_topology *topology, const vec3d *x)
+/* `pairs` is replaced. */
+static void find_as_drawn(const struct tl_topology *topology, const vec3d *x, struct tl_near_pairs *pairs)
 {
     vec3d *drawn = TL_NEW_ARRAY(vec3d, topology->vertex_count);
     for (size_t i = 0; i < topology->vertex_count; i++)
         drawn[i] = vec3d_from(vec3d_to_float(x[i]));
     struct tl_near_tree tree = tl_near_tree_create(topology, drawn);
-    struct tl_near_pairs pairs = {0};
-    tl_crossings_find(&tree, topology, drawn, &pairs);
-    size_t count = pairs.count;
-    tl_near_pairs_release(&pairs);
+    tl_crossings_find(&tree, topology, drawn, pairs);
     tl_near_tree_release(&tree);
     free(drawn);
+}
+
+size_t tl_crossings_count(const struct tl_topology *topology, const vec3d *x)
+{
+    struct tl_near_pairs pairs = {0};
+    find_as_drawn(topology, x, &pairs);
+    size_t count = pairs.count;
+    tl_near_pairs_release(&pairs);
+    return count;
+}
+
+size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed)
+{
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    size_t places = tl_weld_positions(positions, mesh->vertex_count, weld);
+    struct tl_topology topology =
+        tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, places);
+    vec3d *x = TL_NEW_ARRAY(vec3d, places);
+    struct tl_near_pairs pairs = {0};
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        x[weld[i]] = vec3d_from(positions[i]);
+    if (topology.triangle_count > 0)
+        find_as_drawn(&topology, x, &pairs);
+    if (crossed)
+        memset(crossed, 0, mesh->index_count / 3 * sizeof *crossed);
+    for (size_t i = 0; crossed && i < pairs.count; i++)
+        for (int side = 0; side < 2; side++)
+            crossed[topology.source[pairs.pairs[i][side]]] = true;
+    size_t count = pairs.count;
+    tl_near_pairs_release(&pairs);
+    tl_topology_release(&topology);
+    free(x);
+    free(weld);
     return count;
 }

@@ -7,6 +7,7 @@
 #ifndef TOILE_CLOTH_CONTACT_CROSSINGS_H
 #define TOILE_CLOTH_CONTACT_CROSSINGS_H
 
+#include "assets/base/mesh.h"
 #include "cloth/contact/near_tree.h"
 
 #include <stdbool.h>
@@ -25,5 +26,10 @@ void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topo
 /* The number of crossing pairs of positions as they are drawn, that is, rounded to single precision. Builds
  * its own tree. */
 size_t tl_crossings_count(const struct tl_topology *topology, const vec3d *x);
+
+/* The same for a mesh whose vertices are at `positions` [vertex_count]; those at the same place are one.
+ * Where `crossed` is not NULL, sets crossed[t] for each triangle [index_count / 3] that crosses another one,
+ * and clears it for all others. 8 ms for 6,000 triangles. */
+size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed);
 
 #endif

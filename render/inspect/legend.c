@@ -226,6 +226,10 @@ void tl_legend_make(const struct tl_legend_source *source, struct tl_legend *out
     case TL_VIEW_STRAIN_SHEAR:
         describe_strain(source, out);
         break;
+    case TL_VIEW_CROSSING:
+        snprintf(out->title, sizeof out->title, "cloth that passes through itself");
+        add_entry(out, tl_legend_crossing, "triangles that cross");
+        break;
     case TL_VIEW_LIGHT:
     case TL_VIEW_COUNT:
         break;
@@ -245,6 +249,7 @@ vec3s tl_legend_colour(const struct tl_legend *legend, float value)
                           place - (float)before);
 }
 
+const vec3s tl_legend_crossing = {{0.85f, 0.2f, 0.1f}};
 const vec3s tl_legend_unknown = {{0.36f, 0.36f, 0.36f}};
 
 vec3s tl_checker_colour(int block, int square)

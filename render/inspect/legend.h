@@ -57,6 +57,7 @@ int tl_view_strain_axis(int view);
 
 /* The colour of surfaces without the value that a view shows: no strain, no UVs. It is shaded by the angle to
  * the viewer. */
+extern const vec3s tl_legend_crossing; /* of triangles that cross */
 extern const vec3s tl_legend_unknown;
 
 /* The checker of the UV view: squares within blocks, each even (0) or odd (1). */

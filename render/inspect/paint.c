@@ -37,6 +37,7 @@ static float linear_of(const struct palette *palette, float encoded)
 struct surface_point {
     const tl_sample *sample;
     const tl_surface *surface;
+    uint32_t triangle; /* of the surface */
     uint32_t corners[3];
     float uv_metres;
 };
@@ -48,8 +49,8 @@ static struct surface_point find_surface_point(const struct tl_paint_request *re
     uint32_t number = sample->triangle & ~TL_SAMPLE_BACK;
     size_t index;
     surface_point.surface = tl_triangle_find(request->ranges, number, surface_point.corners, &index);
-    surface_point.uv_metres =
-        tl_triangle_part(surface_point.surface, number - request->ranges->first[index])->uv_metres;
+    surface_point.triangle = number - request->ranges->first[index];
+    surface_point.uv_metres = tl_triangle_part(surface_point.surface, surface_point.triangle)->uv_metres;
     return surface_point;
 }
 
@@ -168,6 +169,14 @@ static vec3s strain_colour(const struct tl_paint_request *request, const struct 
     return tl_legend_colour(request->legend, 100 * strain.raw[tl_view_strain_axis(request->view)]);
 }
 
+static vec3s crossing_colour(const struct tl_paint_request *request,
+                             const struct surface_point *surface_point)
+{
+    const bool *crossed = surface_point->surface->crossed;
+    return crossed && crossed[surface_point->triangle] ? tl_legend_crossing
+                                                       : unknown(request, surface_point->sample);
+}
+
 static vec3s visibility_colour(const struct tl_paint_request *request, const struct palette *palette,
                                size_t index)
 {
@@ -201,9 +210,10 @@ static vec3s colour_of(const struct tl_paint_request *request, const struct pale
         break;
     }
     struct surface_point surface_point = find_surface_point(request, sample);
-    return request->view == TL_VIEW_UV        ? uv_colour(request, palette, &surface_point)
-           : request->view == TL_VIEW_TANGENT ? tangent_colour(request, &surface_point)
-                                              : strain_colour(request, &surface_point);
+    return request->view == TL_VIEW_UV         ? uv_colour(request, palette, &surface_point)
+           : request->view == TL_VIEW_TANGENT  ? tangent_colour(request, &surface_point)
+           : request->view == TL_VIEW_CROSSING ? crossing_colour(request, &surface_point)
+                                               : strain_colour(request, &surface_point);
 }
 
 static vec3s linear_colour(const struct tl_paint_request *request, const struct palette *palette,

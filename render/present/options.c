@@ -8,8 +8,8 @@
 typedef struct tl_image_params image_params;
 static const char *const background_names[] = {"environment", "blurred", "grey", NULL};
 const char *const tl_image_view_names[] = {
-    "light",      "normal", "smooth",      "tangent",     "uv",           "albedo", "gloss",
-    "visibility", "region", "strain_warp", "strain_weft", "strain_shear", NULL};
+    "light",      "normal", "smooth",      "tangent",     "uv",           "albedo",   "gloss",
+    "visibility", "region", "strain_warp", "strain_weft", "strain_shear", "crossing", NULL};
 
 static const struct tl_option image_rows[] = {
     TL_OPTION_INT(image_params, width, TL_AFFECTS_SIZE | TL_AFFECTS_AT_ONCE | TL_AFFECTS_WORK, 1, 16384,

@@ -20,6 +20,7 @@ enum tl_image_view {
     TL_VIEW_STRAIN_WARP,
     TL_VIEW_STRAIN_WEFT,
     TL_VIEW_STRAIN_SHEAR,
+    TL_VIEW_CROSSING, /* triangles that pass through others of their surface */
     TL_VIEW_COUNT
 };
 extern const char *const tl_image_view_names[]; /* "light", "normal" ...; NULL-terminated */

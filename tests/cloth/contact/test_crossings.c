@@ -124,6 +124,16 @@ static void test_real_garment(void **state)
     struct tl_topology topology =
         tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, count);
     check_count("casual suit", &topology, x, 100);
+    /* As a mesh: the same pairs, and each marked triangle crosses some other one. */
+    bool *crossed = TL_NEW_ARRAY(bool, mesh->index_count / 3);
+    assert_int_equal(tl_crossings_of_mesh(mesh, mesh->positions, crossed), oracle_crossings(&topology, x));
+    for (size_t t = 0; t < topology.triangle_count; t++) {
+        bool crosses = false;
+        for (size_t other = 0; other < topology.triangle_count && !crosses; other++)
+            crosses = other != t && tl_triangles_cross(topology.triangles[t], topology.triangles[other], x);
+        assert_int_equal(crossed[topology.source[t]], crosses);
+    }
+    free(crossed);
     tl_topology_release(&topology);
     free(x);
     free(weld);

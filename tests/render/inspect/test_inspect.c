@@ -26,6 +26,7 @@ struct scene {
     struct test_shape shapes[2];
     tl_surface surfaces[2];
     vec3s *strains;
+    bool *crossed;
     tl_frame frame;
     struct tl_render_settings settings;
 };
@@ -46,6 +47,10 @@ static void scene_open(struct scene *scene)
     for (size_t i = 0; i < sheet->vertex_count; i++)
         scene->strains[i] = (vec3s){{0.1f * sheet->positions[i].x, -0.02f, 0.05f}};
     scene->surfaces[1].strains = scene->strains;
+    scene->crossed = TL_NEW_ARRAY(bool, sheet->index_count / 3);
+    for (size_t i = 0; i < sheet->index_count / 3; i += 3)
+        scene->crossed[i] = true;
+    scene->surfaces[1].crossed = scene->crossed;
     scene->frame = test_frame((vec3s){{0.6f, 1.8f, 2}}, (vec3s){{0, 0.75f, 0}}, 40, scene->surfaces, 2,
                               &scene->environment);
     scene->frame.still = true;
@@ -62,6 +67,7 @@ static void scene_close(struct scene *scene)
     test_shape_release(&scene->shapes[0]);
     test_shape_release(&scene->shapes[1]);
     free(scene->strains);
+    free(scene->crossed);
 }
 
 /* As a still image, through all rounds. */
@@ -299,6 +305,34 @@ static void visibility_is_that_of_the_points(void **state)
     scene_close(&scene);
 }
 
+static void triangles_that_cross_are_painted(void **state)
+{
+    struct test_device *device = *state;
+    struct scene scene;
+    scene_open(&scene);
+    tl_image image = show(device->renderer, &scene, TL_VIEW_CROSSING);
+    int painted = 0, plain = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            struct tl_inspection under;
+            if (!tl_renderer_inspect(device->renderer, x, y, &under) || strcmp(under.surface, "ground") == 0)
+                continue;
+            const bool *crossed = scene.surfaces[under.surface_index].crossed;
+            bool is_painted = crossed && crossed[under.triangle];
+            painted += is_painted;
+            plain += !is_painted;
+            const uint8_t *byte = byte_at(&image, x, y);
+            for (int c = 0; c < 3; c++)
+                if (is_painted)
+                    assert_near(byte[c] / 255.0, tl_legend_crossing.raw[c], 1 / 255.0);
+                else
+                    assert_int_equal(byte[c], byte[0]); /* grey */
+        }
+    assert_true(painted > 100 && plain > 300);
+    tl_image_release(&image);
+    scene_close(&scene);
+}
+
 static void strains_are_those_of_the_surface(void **state)
 {
     struct test_device *device = *state;
@@ -448,6 +482,7 @@ int main(void)
         cmocka_unit_test(nothing_runs_that_is_not_needed),
         cmocka_unit_test(visibility_is_that_of_the_points),
         cmocka_unit_test(strains_are_those_of_the_surface),
+        cmocka_unit_test(triangles_that_cross_are_painted),
         cmocka_unit_test(a_ray_finds_what_samples_hold),
         cmocka_unit_test(aovs_tell_what_is_under_each_pixel),
     };
