@@ -2,6 +2,7 @@
 
 #include "assets/gltf/gltf_model.h"
 #include "assets/obj/wavefront.h"
+#include "assets/scan/scan.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -17,6 +18,7 @@ bool tl_model_load_in(const char *path, enum tl_units wanted, tl_model *out, tl_
     const char *slash = strrchr(path, '/');
     *out = (tl_model){.name = tl_copy_string(slash ? slash + 1 : path)};
     bool loaded = tl_path_has_extension(path, "obj") ? wave_load_model(path, wanted, out, error)
+                  : scan_is_file(path)               ? scan_load_model(path, wanted, out, error)
                                                      : gltf_load_model(path, wanted, out, error);
     if (!loaded)
         tl_model_release(out);
@@ -26,5 +28,5 @@ bool tl_model_load_in(const char *path, enum tl_units wanted, tl_model *out, tl_
 bool tl_model_is_file(const char *path)
 {
     return tl_path_has_extension(path, "glb") || tl_path_has_extension(path, "gltf") ||
-           tl_path_has_extension(path, "obj");
+           tl_path_has_extension(path, "obj") || scan_is_file(path);
 }

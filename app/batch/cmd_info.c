@@ -192,6 +192,7 @@ static cJSON *describe_model(const tl_model *model)
         cJSON_AddNumberToObject(clip, "duration_s", model->clips[i].duration_s);
         cJSON_AddItemToArray(clips, clip);
     }
+    describe_notes(object, "defects", model->defects, model->defect_count);
     describe_notes(object, "approximated", model->approximated, model->approximated_count);
     describe_notes(object, "ignored", model->ignored, model->ignored_count);
     return object;
@@ -388,7 +389,8 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
         tl_environment_release(&environment);
     } else {
         return tl_fail(error, TL_INPUT,
-                       "%s: unknown kind of file: expected .glb, .gltf, .obj, .json (a sewing pattern), "
+                       "%s: unknown kind of file: expected .glb, .gltf, .obj, .ply, .stl, .off, .json (a "
+                       "sewing pattern), "
                        ".pc2, .mdd, .exr, "
                        ".hdr or a scene's .yaml",
                        path);

@@ -72,6 +72,8 @@ static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_e
     else if (!tl_avatar_load_in(name, (enum tl_units)settings->scene.avatar_units, out, error))
         return false;
     report_line(tl_units_describe(out->model.name, &out->model.units, "scene.avatar_units"));
+    for (size_t i = 0; i < out->model.defect_count; i++)
+        tl_info("%s: %s", out->model.name, out->model.defects[i]);
     if (place_avatar(settings, out, error))
         return true;
     tl_avatar_release(out);

@@ -61,7 +61,8 @@ char *tl_contact_plain(const char *text, size_t length)
 char *tl_contact_slug(const char *text)
 {
     const char *slash = strrchr(text, '/'), *last = slash ? slash + 1 : text;
-    static const char *const extensions[] = {"glb", "gltf", "obj", "exr", "hdr", "yaml", "yml"};
+    static const char *const extensions[] = {"glb", "gltf", "obj", "ply",  "stl",
+                                             "off", "exr",  "hdr", "yaml", "yml"};
     size_t length = strlen(last);
     for (size_t i = 0; i < TL_COUNT(extensions); i++)
         if (tl_path_has_extension(last, extensions[i]))

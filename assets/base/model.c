@@ -74,6 +74,9 @@ void tl_model_release(tl_model *model)
     for (size_t i = 0; i < model->approximated_count; i++)
         free(model->approximated[i]);
     free(model->approximated);
+    for (size_t i = 0; i < model->defect_count; i++)
+        free(model->defects[i]);
+    free(model->defects);
     free(model->images);
     free(model->materials);
     free(model->clips);

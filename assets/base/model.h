@@ -45,6 +45,8 @@ typedef struct tl_model {
     vec3s *colours; /* [vertex_count] 0 to 1 */
     size_t ignored_count;
     char **ignored; /* features of the file without effect: "morph targets", ...; each once */
+    size_t defect_count;
+    char **defects; /* of a scan's mesh: "2 open borders, the longest 0.41 m around"; each once */
     size_t approximated_count;
     char **approximated; /* features shown differently from the file: "KHR_materials_sheen: ..."; each once */
 } tl_model;

@@ -12,6 +12,9 @@ void model_ignore(tl_model *model, const char *format, ...) __attribute__((forma
 /* Notes a feature that is shown differently from what the file specifies; each text once. */
 void model_approximate(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Notes what is wrong with the mesh itself, or may be; each text once. */
+void model_defect(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
 /* Decides the file's units and converts mesh.positions to metres. Refuses positions that are not finite or
  * more than 100 km away. */
 bool model_take_units(const char *path, enum tl_units wanted, bool is_metric, tl_model *model,

@@ -31,3 +31,11 @@ void model_approximate(tl_model *model, const char *format, ...)
     note(&model->approximated, &model->approximated_count, format, arguments);
     va_end(arguments);
 }
+
+void model_defect(tl_model *model, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    note(&model->defects, &model->defect_count, format, arguments);
+    va_end(arguments);
+}

@@ -1,6 +1,7 @@
 #include "assets/base/model_build.h"
 #include "assets/image/image_file.h"
 #include "assets/obj/wavefront_internal.h"
+#include "assets/text/text.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -17,7 +18,7 @@
 
 /* The state of reading. */
 struct mtl_reader {
-    struct wave_text text;
+    struct tl_text text;
     const struct wave_object *object;
     tl_model *model;
     char **image_paths; /* [model->image_count] */
@@ -46,7 +47,7 @@ static int option_arguments(const char *option)
 }
 
 /* -o and -s take one to three numbers, of which two are used; the word after them is not consumed. */
-static void read_pair(struct wave_text *text, float out[2])
+static void read_pair(struct tl_text *text, float out[2])
 {
     for (int i = 0; i < 3; i++) {
         char *before = text->word, *end;
@@ -62,13 +63,13 @@ static void read_pair(struct wave_text *text, float out[2])
 }
 
 /* The file name at the end of a map statement, after its options; "" when there is none. */
-static const char *read_map_name(struct wave_text *text, struct tl_map *map)
+static const char *read_map_name(struct tl_text *text, struct tl_map *map)
 {
     for (;;) {
         char *start = text->word + strspn(text->word, " \t");
         if (*start != '-')
             break;
-        char *option = wave_word(text);
+        char *option = tl_text_word(text);
         float pair[2] = {0, 0};
         bool is_scale = strcmp(option, "-s") == 0;
         if (is_scale || strcmp(option, "-o") == 0 || strcmp(option, "-t") == 0) {
@@ -79,12 +80,12 @@ static const char *read_map_name(struct wave_text *text, struct tl_map *map)
             continue;
         }
         for (int i = option_arguments(option); i > 0; i--) {
-            const char *argument = wave_word(text);
+            const char *argument = tl_text_word(text);
             if (strcmp(option, "-clamp") == 0 && argument)
                 map->clamp_u = map->clamp_v = strcmp(argument, "on") == 0;
         }
     }
-    return wave_rest(text);
+    return tl_text_rest(text);
 }
 
 /* OBJ's v runs up, ours runs down. A map's transform is for the former:
@@ -160,7 +161,7 @@ static void read_map(struct mtl_reader *reader, struct tl_map *map, bool linear)
 /* Starts a material. Of several definitions of one material the last is used. */
 static void begin_material(struct mtl_reader *reader)
 {
-    const char *name = wave_rest(&reader->text);
+    const char *name = tl_text_rest(&reader->text);
     reader->current = NULL;
     for (size_t i = 0; i < reader->object->material_count; i++)
         if (strcmp(reader->object->materials[i], name) == 0) {
@@ -196,18 +197,18 @@ static bool read_statement(struct mtl_reader *reader, const char *keyword, tl_er
     } else if (!material) {
         return true;
     } else if (strcmp(keyword, "Kd") == 0 || strcmp(keyword, "Ks") == 0) {
-        if (!wave_numbers(&reader->text, keyword, 3, value, error))
+        if (!tl_text_numbers(&reader->text, keyword, 3, value, error))
             return false;
         if (keyword[1] == 's')
             read_highlight(reader, value);
         for (int i = 0; keyword[1] == 'd' && i < 3; i++)
             material->diffuse.raw[i] = unit(value[i]);
     } else if (strcmp(keyword, "Ns") == 0) {
-        if (!wave_numbers(&reader->text, keyword, 1, value, error))
+        if (!tl_text_numbers(&reader->text, keyword, 1, value, error))
             return false;
         material->glossiness = 1 - 1 / fmaxf(value[0] / 4, 1);
     } else if (strcmp(keyword, "illum") == 0) {
-        if (!wave_numbers(&reader->text, keyword, 1, value, error))
+        if (!tl_text_numbers(&reader->text, keyword, 1, value, error))
             return false;
         if (value[0] < 2) /* colour, or colour and diffuse light: no highlight */
             read_highlight(reader, (const float[3]){0, 0, 0});
@@ -220,7 +221,7 @@ static bool read_statement(struct mtl_reader *reader, const char *keyword, tl_er
     } else if (strcmp(keyword, "map_d") == 0) {
         read_alpha_map(reader);
     } else if (strcmp(keyword, "d") == 0) {
-        if (!wave_numbers(&reader->text, keyword, 1, value, error))
+        if (!tl_text_numbers(&reader->text, keyword, 1, value, error))
             return false;
         if (value[0] < 1)
             model_ignore(reader->model, "transparency of a material");
@@ -233,13 +234,13 @@ static bool read_statement(struct mtl_reader *reader, const char *keyword, tl_er
 static void read_library(struct mtl_reader *reader, const char *path)
 {
     tl_error error;
-    bool good = wave_open(path, &reader->text, &error);
-    for (const char *keyword; good && (keyword = wave_line(&reader->text));)
+    bool good = tl_text_open(path, &reader->text, &error);
+    for (const char *keyword; good && (keyword = tl_text_line(&reader->text));)
         good = read_statement(reader, keyword, &error);
     reader->current = NULL;
     if (!good)
         model_ignore(reader->model, "%s", error.message);
-    wave_close(&reader->text);
+    tl_text_close(&reader->text);
 }
 
 void wave_read_materials(const char *path, const struct wave_object *object, tl_model *model)

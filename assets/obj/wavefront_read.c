@@ -1,4 +1,5 @@
 #include "assets/obj/wavefront_internal.h"
+#include "assets/text/text.h"
 
 #include "config/memory.h"
 
@@ -14,7 +15,7 @@
 
 /* The state of reading. */
 struct obj_reader {
-    struct wave_text text;
+    struct tl_text text;
     struct wave_object *object;
     size_t position_capacity, uv_capacity, normal_capacity, corner_capacity, face_capacity;
     uint32_t group, material; /* of the next face */
@@ -42,8 +43,8 @@ static bool read_uv(struct obj_reader *reader)
     if (object->uv_count == TL_LIMIT_MESH_VERTICES)
         return fail_limit(reader, "texture coordinates", TL_LIMIT_MESH_VERTICES);
     object->uvs = grow(object->uvs, object->uv_count, &reader->uv_capacity, sizeof(vec2s));
-    return wave_numbers(&reader->text, "texture coordinate", 2, object->uvs[object->uv_count++].raw,
-                        reader->error);
+    return tl_text_numbers(&reader->text, "texture coordinate", 2, object->uvs[object->uv_count++].raw,
+                           reader->error);
 }
 
 /* Exporters write nan for the normal of a triangle without area; such a normal is computed instead. */
@@ -58,7 +59,7 @@ static bool read_normal(struct obj_reader *reader)
         *normal = (vec3s){{0, 0, 0}};
         return true;
     }
-    return wave_numbers(&reader->text, "normal", 3, normal->raw, reader->error);
+    return tl_text_numbers(&reader->text, "normal", 3, normal->raw, reader->error);
 }
 
 /* Reads one index of v/vt/vn at *at: from 1, or backwards from -1. A positive index may refer to a later
@@ -96,7 +97,7 @@ static bool read_face(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
     size_t first = object->corner_count;
-    for (char *word; (word = wave_word(&reader->text)) && word[0] != '#';) {
+    for (char *word; (word = tl_text_word(&reader->text)) && word[0] != '#';) {
         if (object->corner_count == TL_LIMIT_MESH_INDICES)
             return fail_limit(reader, "corners of faces", TL_LIMIT_MESH_INDICES);
         if (object->corner_count - first == LIMIT_FACE_CORNERS)
@@ -137,8 +138,8 @@ static size_t find_or_add(char ***strings, size_t *count, size_t limit, const ch
 static bool use_material(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
-    size_t index =
-        find_or_add(&object->materials, &object->material_count, LIMIT_MATERIALS, wave_rest(&reader->text));
+    size_t index = find_or_add(&object->materials, &object->material_count, LIMIT_MATERIALS,
+                               tl_text_rest(&reader->text));
     reader->material = (uint32_t)index;
     return index < LIMIT_MATERIALS || fail_limit(reader, "materials", LIMIT_MATERIALS);
 }
@@ -153,7 +154,7 @@ static void begin_group(struct obj_reader *reader)
 static void add_library(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
-    const char *name = wave_rest(&reader->text);
+    const char *name = tl_text_rest(&reader->text);
     if (name[0])
         find_or_add(&object->libraries, &object->library_count, LIMIT_LIBRARIES, name);
 }
@@ -178,10 +179,10 @@ static bool read_position(struct obj_reader *reader)
         return fail_limit(reader, "vertices", TL_LIMIT_MESH_VERTICES);
     object->positions =
         grow(object->positions, object->position_count, &reader->position_capacity, sizeof(vec3s));
-    if (!wave_numbers(&reader->text, "vertex", 3, object->positions[object->position_count++].raw,
-                      reader->error))
+    if (!tl_text_numbers(&reader->text, "vertex", 3, object->positions[object->position_count++].raw,
+                         reader->error))
         return false;
-    const char *more = wave_word(&reader->text);
+    const char *more = tl_text_word(&reader->text);
     if (more && more[0] != '#')
         ignore(reader, "vertex colours or weights");
     return true;
@@ -230,14 +231,14 @@ bool wave_read(const char *path, struct wave_object *out, tl_error *error)
 {
     *out = (struct wave_object){0};
     struct obj_reader reader = {.object = out, .error = error};
-    if (!wave_open(path, &reader.text, error))
+    if (!tl_text_open(path, &reader.text, error))
         return false;
     find_or_add(&out->materials, &out->material_count, LIMIT_MATERIALS, "");
     bool good = true;
-    for (const char *keyword; good && (keyword = wave_line(&reader.text));)
+    for (const char *keyword; good && (keyword = tl_text_line(&reader.text));)
         good = read_line(&reader, keyword);
     good = good && check_corners(&reader);
-    wave_close(&reader.text);
+    tl_text_close(&reader.text);
     if (!good)
         wave_release(out);
     return good;

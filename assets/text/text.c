@@ -1,4 +1,4 @@
-#include "assets/obj/wavefront_internal.h"
+#include "assets/text/text.h"
 
 #include "config/file.h"
 
@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool wave_open(const char *path, struct wave_text *out, tl_error *error)
+bool tl_text_open(const char *path, struct tl_text *out, tl_error *error)
 {
     size_t size;
-    *out = (struct wave_text){.path = path};
+    *out = (struct tl_text){.path = path};
     if (!tl_file_read(path, &out->data, &size, error))
         return false;
     out->next = out->data;
@@ -18,12 +18,12 @@ bool wave_open(const char *path, struct wave_text *out, tl_error *error)
     return true;
 }
 
-void wave_close(struct wave_text *text)
+void tl_text_close(struct tl_text *text)
 {
     if (text->plain)
         freelocale(text->plain);
     free(text->data);
-    *text = (struct wave_text){0};
+    *text = (struct tl_text){0};
 }
 
 static bool is_blank(char c)
@@ -32,7 +32,7 @@ static bool is_blank(char c)
 }
 
 /* Ends the line at `next` with a NUL and moves beyond it. */
-static void cut_line(struct wave_text *text)
+static void cut_line(struct tl_text *text)
 {
     char *c = text->next;
     text->word = c;
@@ -54,18 +54,24 @@ static void cut_line(struct wave_text *text)
     }
 }
 
-char *wave_line(struct wave_text *text)
+bool tl_text_next(struct tl_text *text)
 {
     while (text->next < text->end) {
         cut_line(text);
-        char *word = wave_word(text);
-        if (word && word[0] != '#')
-            return word;
+        while (*text->word && is_blank(*text->word))
+            text->word++;
+        if (*text->word && *text->word != '#')
+            return true;
     }
-    return NULL;
+    return false;
 }
 
-char *wave_word(struct wave_text *text)
+char *tl_text_line(struct tl_text *text)
+{
+    return tl_text_next(text) ? tl_text_word(text) : NULL;
+}
+
+char *tl_text_word(struct tl_text *text)
 {
     char *word = text->word;
     while (*word && is_blank(*word))
@@ -80,7 +86,7 @@ char *wave_word(struct wave_text *text)
     return word;
 }
 
-char *wave_rest(struct wave_text *text)
+char *tl_text_rest(struct tl_text *text)
 {
     char *rest = text->word;
     while (*rest && is_blank(*rest))
@@ -92,10 +98,10 @@ char *wave_rest(struct wave_text *text)
     return rest;
 }
 
-bool wave_numbers(struct wave_text *text, const char *what, int count, float *out, tl_error *error)
+bool tl_text_numbers(struct tl_text *text, const char *what, int count, float *out, tl_error *error)
 {
     for (int i = 0; i < count; i++) {
-        char *word = wave_word(text), *end = word;
+        char *word = tl_text_word(text), *end = word;
         if (!word)
             return tl_fail(error, TL_INPUT, "%s: line %zu: %s of %d numbers, not %d: export the file again",
                            text->path, text->line, what, i, count);
