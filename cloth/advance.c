@@ -1,5 +1,6 @@
 #include "cloth/advance.h"
 
+#include "assets/connect/sets.h"
 #include "cloth/build.h"
 #include "cloth/contact/caught.h"
 #include "cloth/drive/hand.h"
@@ -138,9 +139,7 @@ static void prepare_apart(tl_cloth *cloth)
 {
     if (cloth->apart.made)
         return;
-    uint32_t *classes = TL_NEW_ARRAY(uint32_t, cloth->particles.count);
-    for (uint32_t i = 0; i < cloth->particles.count; i++)
-        classes[i] = i;
+    uint32_t *classes = tl_sets_create(cloth->particles.count);
     for (size_t i = 0; i < cloth->seams.pair_count; i++)
         tl_sets_join(classes, cloth->seams.links[i].a, cloth->seams.links[i].b);
     for (size_t i = 0; i < cloth->seams.pair_count && tl_seams_are_stuck(&cloth->seams); i++)

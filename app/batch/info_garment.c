@@ -1,9 +1,16 @@
 #include "app/batch/info_garment.h"
 
+#include "assets/base/placing.h"
 #include "assets/charts/rest.h"
+#include "assets/openings/openings.h"
 #include "cloth/contact/crossings.h"
+#include "cloth/mesh/topology.h"
+#include "config/memory.h"
 
 #include <stdlib.h>
+
+/* A body scan may have thousands of holes. */
+#define MOST_OPENINGS 40
 
 static void add_count(cJSON *object, const char *key, size_t count)
 {
@@ -30,8 +37,36 @@ static void describe_rest(cJSON *object, const tl_model *model)
     tl_charts_release(&charts);
 }
 
+/* Lengths of the openings in mm, of the mesh as it will be placed. */
+static void describe_openings(cJSON *object, const tl_model *model)
+{
+    const struct tl_placing placing = {.z_up = model->units.z_up, .scale = 1};
+    const tl_mesh *mesh = &model->mesh;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    size_t count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
+    struct tl_topology topology =
+        tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, count);
+    vec3s *positions = TL_NEW_ARRAY(vec3s, count);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        positions[weld[i]] = tl_placing_point(&placing, mesh->positions[i]);
+    const struct tl_opening_mesh welded = {count, topology.triangle_count, positions,
+                                           (const uint32_t(*)[3])topology.triangles};
+    struct tl_openings openings;
+    cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
+    tl_openings_find(&welded, &openings);
+    for (size_t i = 0; i < openings.count && i < MOST_OPENINGS; i++)
+        cJSON_AddNumberToObject(lengths, openings.items[i].name, 1e3 * openings.items[i].length);
+    if (openings.count > MOST_OPENINGS)
+        add_count(object, "openings_not_listed", openings.count - MOST_OPENINGS);
+    tl_openings_release(&openings);
+    tl_topology_release(&topology);
+    free(positions);
+    free(weld);
+}
+
 void tl_info_describe_garment(cJSON *object, const tl_model *model)
 {
     add_count(object, "crossings", tl_crossings_of_mesh(&model->mesh, model->mesh.positions, NULL));
     describe_rest(object, model);
+    describe_openings(object, model);
 }

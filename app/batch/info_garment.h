@@ -1,4 +1,4 @@
-/* What `toile info` prints of a model as a garment: its rest shape. Threads: pure. */
+/* What `toile info` prints of a model as a garment: its rest shape and its openings. Threads: pure. */
 #ifndef TOILE_APP_BATCH_INFO_GARMENT_H
 #define TOILE_APP_BATCH_INFO_GARMENT_H
 

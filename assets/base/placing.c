@@ -16,14 +16,25 @@ static vec3s turned(const struct tl_placing *placing, float sine, float cosine, 
     return (vec3s){{cosine * v.x + sine * v.z, v.y, cosine * v.z - sine * v.x}};
 }
 
+static vec3s placed(const struct tl_placing *placing, float sine, float cosine, vec3s point)
+{
+    return glms_vec3_add(turned(placing, sine, cosine, glms_vec3_scale(point, placing->scale)),
+                         placing->move_m);
+}
+
+vec3s tl_placing_point(const struct tl_placing *placing, vec3s point)
+{
+    float angle = glm_rad(placing->turn_deg);
+    return tl_placing_moves(placing) ? placed(placing, sinf(angle), cosf(angle), point) : point;
+}
+
 void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh)
 {
     float angle = glm_rad(placing->turn_deg), sine = sinf(angle), cosine = cosf(angle);
     if (!tl_placing_moves(placing))
         return;
     for (size_t i = 0; i < mesh->vertex_count; i++) {
-        vec3s scaled = glms_vec3_scale(mesh->positions[i], placing->scale);
-        mesh->positions[i] = glms_vec3_add(turned(placing, sine, cosine, scaled), placing->move_m);
+        mesh->positions[i] = placed(placing, sine, cosine, mesh->positions[i]);
         mesh->normals[i] = turned(placing, sine, cosine, mesh->normals[i]);
         if (mesh->tangents) {
             vec4s *tangent = &mesh->tangents[i];

@@ -20,6 +20,9 @@ struct tl_placing {
 /* Whether the placing changes anything. Threads: pure. */
 bool tl_placing_moves(const struct tl_placing *placing);
 
+/* A point of the file, placed. Threads: pure. */
+vec3s tl_placing_point(const struct tl_placing *placing, vec3s point);
+
 /* Places positions, normals and tangents. Threads: one per mesh. */
 void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh);
 

@@ -1,5 +1,6 @@
 #include "assets/charts/charts.h"
 
+#include "assets/connect/sets.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -71,32 +72,18 @@ static struct chart_side *sort_sides(const tl_mesh *mesh)
     return sides;
 }
 
-static uint32_t find_root(uint32_t *parents, uint32_t member)
-{
-    while (parents[member] != member) {
-        parents[member] = parents[parents[member]];
-        member = parents[member];
-    }
-    return member;
-}
-
 /* Numbers the charts; `charts` has triangle_count. */
 static void number_charts(const tl_mesh *mesh, struct tl_charts *charts)
 {
-    uint32_t *parents = TL_NEW_ARRAY(uint32_t, charts->triangle_count);
+    uint32_t *parents = tl_sets_create(charts->triangle_count);
     charts->of_triangle = TL_NEW_ARRAY(uint32_t, charts->triangle_count);
-    for (size_t t = 0; t < charts->triangle_count; t++)
-        parents[t] = (uint32_t)t;
     struct chart_side *sides = sort_sides(mesh);
-    for (size_t i = 1; i < 3 * charts->triangle_count; i++) {
-        if (sides[i].a != sides[i - 1].a || sides[i].b != sides[i - 1].b)
-            continue;
-        uint32_t p = find_root(parents, sides[i].triangle), q = find_root(parents, sides[i - 1].triangle);
-        parents[p > q ? p : q] = p > q ? q : p; /* roots are the lowest of their set */
-    }
+    for (size_t i = 1; i < 3 * charts->triangle_count; i++)
+        if (sides[i].a == sides[i - 1].a && sides[i].b == sides[i - 1].b)
+            tl_sets_join(parents, sides[i].triangle, sides[i - 1].triangle);
     free(sides);
     for (size_t t = 0; t < charts->triangle_count; t++) {
-        uint32_t root = find_root(parents, (uint32_t)t);
+        uint32_t root = tl_sets_find(parents, (uint32_t)t); /* the lowest */
         charts->of_triangle[t] = root == t ? (uint32_t)charts->count++ : charts->of_triangle[root];
     }
     free(parents);

@@ -1,5 +1,6 @@
 #include "cloth/contact/layers.h"
 
+#include "assets/connect/sets.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

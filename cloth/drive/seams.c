@@ -1,5 +1,6 @@
 #include "cloth/drive/seams.h"
 
+#include "assets/connect/sets.h"
 #include "cloth/solvers/xpbd.h"
 #include "config/memory.h"
 
@@ -159,10 +160,8 @@ static void note_progress(struct tl_seams *seams, bool welded)
 
 size_t tl_seams_close(struct tl_seams *seams, const struct tl_particles *particles, uint32_t *joined)
 {
-    uint32_t *parents = TL_NEW_ARRAY(uint32_t, particles->count);
+    uint32_t *parents = tl_sets_create(particles->count);
     bool is_due = seams->elapsed_s >= seams->next_close_s;
-    for (size_t i = 0; i < particles->count; i++)
-        parents[i] = (uint32_t)i;
     for (size_t i = 0; is_due && i < seams->pair_count; i++) {
         const struct tl_link *link = &seams->links[i];
         if (vec3d_distance(particles->x[link->a], particles->x[link->b]) < CLOSED_M)

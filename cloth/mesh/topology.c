@@ -49,25 +49,6 @@ size_t tl_weld_positions(const vec3s *positions, size_t count, uint32_t *weld)
     return welded;
 }
 
-uint32_t tl_sets_find(uint32_t *parents, uint32_t member)
-{
-    while (parents[member] != member) {
-        parents[member] = parents[parents[member]];
-        member = parents[member];
-    }
-    return member;
-}
-
-void tl_sets_join(uint32_t *parents, uint32_t a, uint32_t b)
-{
-    a = tl_sets_find(parents, a);
-    b = tl_sets_find(parents, b);
-    if (a < b)
-        parents[b] = a;
-    else
-        parents[a] = b;
-}
-
 struct sorted_triangle {
     uint32_t corners[3]; /* ascending */
     uint32_t index;

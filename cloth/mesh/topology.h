@@ -65,9 +65,4 @@ struct tl_batches tl_batches_build(const uint32_t *corners, size_t stride, size_
                                    size_t vertex_count);
 void tl_batches_release(struct tl_batches *batches);
 
-/* Disjoint sets (union-find): the representative of a set is its lowest member. `parents` starts as
- * parents[i] = i. */
-uint32_t tl_sets_find(uint32_t *parents, uint32_t member);
-void tl_sets_join(uint32_t *parents, uint32_t a, uint32_t b);
-
 #endif

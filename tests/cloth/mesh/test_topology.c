@@ -1,4 +1,5 @@
 /* Welding and connectivity, on meshes small enough to check by hand. */
+#include "assets/connect/sets.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "tests/testing.h"
@@ -102,13 +103,14 @@ static void test_batches_share_no_vertex(void **state)
 static void test_sets(void **state)
 {
     (void)state;
-    uint32_t parents[] = {0, 1, 2, 3, 4, 5};
+    uint32_t *parents = tl_sets_create(6);
     tl_sets_join(parents, 4, 2);
     tl_sets_join(parents, 5, 4);
     tl_sets_join(parents, 0, 1);
     const uint32_t expected[] = {0, 0, 2, 3, 2, 2};
     for (uint32_t i = 0; i < 6; i++)
         assert_int_equal(tl_sets_find(parents, i), expected[i]);
+    free(parents);
 }
 
 int main(void)
