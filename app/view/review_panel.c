@@ -172,8 +172,8 @@ static void describe_status(const struct tl_review *review, char *status, size_t
     const char *stop = status + size;
     char *end = status;
     *end = '\0';
-    bool drapes =
-        review->loader && state == TL_GARMENT_AUTHORED && review->wanted.scene.drape == TL_DRAPE_SETTLE;
+    bool drapes = review->loader && (review->drapes_again || (state == TL_GARMENT_AUTHORED &&
+                                                              review->wanted.scene.drape == TL_DRAPE_SETTLE));
     if (drapes)
         end = append(end, stop, "draping  ");
     else if (state != TL_GARMENT_IS_NOT_CLOTH)

@@ -78,6 +78,9 @@ struct tl_review {
     tl_renderer *renderer;
     tl_session *session;
     tl_loader *loader;                    /* NULL: nothing is loading */
+    struct tl_cloth_fabric draped;        /* that the garment hangs in, or that it was last draped in without
+                                             success */
+    bool drapes_again;                    /* the loader drapes the present scene in another fabric */
     struct tl_settings loaded_appearance; /* the settings of the last one */
 
     struct tl_settings

@@ -89,12 +89,29 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
     return lights;
 }
 
+/* Whether the garment hangs as it was draped, and does not set out to move. */
+static bool hangs(const struct tl_review *review)
+{
+    return !review->playing && tl_session_frame_number(review->session) == 0 &&
+           tl_session_cloth(review->session) && !tl_session_is_authored(review->session);
+}
+
+/* Whether the garment hangs in another fabric than it was draped in: it would hang otherwise. Cloth that
+ * moves takes a new fabric up as it moves on; of two appearances that are compared only one could hang as it
+ * should. */
+static bool wants_drape(const struct tl_review *review)
+{
+    return hangs(review) && !review->wipe.renderer &&
+           memcmp(&review->draped, &review->wanted.fabric, sizeof review->draped) != 0;
+}
+
 static enum tl_load what_to_load(const struct tl_review *review)
 {
     const struct tl_settings *present = tl_session_settings(review->session);
     return tl_session_needs_scene(present, &review->wanted)   ? TL_LOAD_SCENE
            : tl_session_needs_light(present, &review->wanted) ? TL_LOAD_LIGHT
-                                                              : TL_LOAD_APPEARANCE;
+           : needs_appearance(review, &review->wanted)        ? TL_LOAD_APPEARANCE
+                                                              : TL_LOAD_SCENE;
 }
 
 static void start(struct tl_review *review)
@@ -105,7 +122,10 @@ static void start(struct tl_review *review)
     review->loader =
         tl_loader_start(kind, &review->wanted, &models, &lights, loader_threads(), tl_window_wake);
     const struct tl_scene_params *scene = &review->wanted.scene;
-    if (kind != TL_LOAD_APPEARANCE)
+    review->drapes_again = kind == TL_LOAD_SCENE && !is_slow(review, &review->wanted);
+    if (review->drapes_again)
+        tl_info("view: drapes %s in %s", scene->garment, scene->fabric);
+    else if (kind != TL_LOAD_APPEARANCE)
         tl_info("view: loads %s", kind == TL_LOAD_SCENE ? scene->garment : scene->environment);
 }
 
@@ -113,8 +133,11 @@ static void start(struct tl_review *review)
 static bool is_outdated(const struct tl_review *review)
 {
     const struct tl_settings *made = tl_loader_settings(review->loader);
+    if (review->drapes_again &&
+        (!hangs(review) || memcmp(&made->fabric, &review->wanted.fabric, sizeof made->fabric) != 0))
+        return true;
     return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
-           (tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE &&
+           ((review->drapes_again || tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE) &&
             tl_session_needs_appearance(made, &review->wanted));
 }
 
@@ -135,7 +158,10 @@ static void finish(struct tl_review *review)
     const char *environment = review->wanted.scene.environment;
     struct tl_loaded loaded;
     tl_error error;
-    if (!tl_loader_take(&review->loader, &loaded, &error)) {
+    bool is_loaded = tl_loader_take(&review->loader, &loaded, &error);
+    if (kind == TL_LOAD_SCENE && (is_loaded || review->drapes_again))
+        review->draped = made_of.fabric; /* what cannot be draped is not tried again */
+    if (!is_loaded) {
         keep_present(review, &review->wanted);
         tl_review_report_error(review, &error);
     } else if (kind == TL_LOAD_APPEARANCE) {
@@ -145,6 +171,8 @@ static void finish(struct tl_review *review)
     } else if (kind == TL_LOAD_SCENE) {
         tl_session_replace(review->session, &loaded.session);
         take_lights(review, &loaded);
+        if (review->drapes_again)
+            tl_info("view: %s hangs in %s", made_of.scene.garment, made_of.scene.fabric);
         review->reported_frame = -1;
         review->drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
     } else {
@@ -167,18 +195,23 @@ void tl_review_load(struct tl_review *review)
             finish(review);
         review->changed = true;
     }
-    if (!review->loader && review->changed && !review->editing && is_slow(review, &review->wanted))
+    bool waits = review->loader || review->editing;
+    if (!waits && ((review->changed && is_slow(review, &review->wanted)) || wants_drape(review)))
         start(review);
 }
 
 bool tl_review_stop_loading(struct tl_review *review)
 {
-    if (!review->loader || !is_slow(review, &review->wanted))
+    if (!review->loader || (!review->drapes_again && !is_slow(review, &review->wanted)))
         return false; /* the loader, if any, is stopped already, or prepares what nothing waits for */
     tl_loader_stop(review->loader);
-    keep_present(review, &review->wanted);
+    if (review->drapes_again)
+        review->draped = review->wanted.fabric;
+    else
+        keep_present(review, &review->wanted);
     review->changed = true;
-    tl_review_report(review, "loading was stopped: the scene is unchanged");
+    tl_review_report(review, review->drapes_again ? "draping was stopped: the garment hangs as before"
+                                                  : "loading was stopped: the scene is unchanged");
     return true;
 }
 
@@ -198,7 +231,8 @@ struct tl_panel_progress tl_review_progress(const struct tl_review *review, char
     if (kind == TL_LOAD_APPEARANCE && progress.seconds < unseen_s)
         return (struct tl_panel_progress){0};
     bool is_known = progress.what[0] != '\0';
-    snprintf(text, size, "Loading %.100s%s%s", slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
+    snprintf(text, size, "%s %.100s%s%s", review->drapes_again ? "Draping" : "Loading",
+             slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
     return (struct tl_panel_progress){.what = text,
                                       .share = is_known ? (float)progress.share : -1,
                                       .hint = review->session ? "Esc stops it" : "Esc leaves"};
@@ -217,6 +251,7 @@ bool tl_review_finish_first(struct tl_review *review, tl_error *error)
         return false;
     review->session = loaded.session;
     loaded.session = NULL;
+    review->draped = review->wanted.fabric;
     take_lights(review, &loaded);
     tl_loaded_release(&loaded);
     return true;

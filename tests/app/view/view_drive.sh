@@ -65,8 +65,11 @@ logged "edited: scene.yaml" 2
 
 round() {
     press ctrl+5 "view: fabric silk"
+    logged "view: dress hangs in silk" "$1" # draped again, for it hangs at rest
     press e "view: environment studio"
     shoot
+    local drapes
+    drapes=$(grep -c "view: drapes" log)
     press space "plays at"
     drag 1 450 400 380 420
     xdotool keydown ctrl; drag 1 440 480 560 440; xdotool keyup ctrl
@@ -76,6 +79,7 @@ round() {
     shoot
     press period "view: frame"
     press r "view: reset"
+    [ "$(grep -c "view: drapes" log)" = "$drapes" ] || fail "the cloth was draped again while it moved"
     xdotool key h Tab; sleep 0.3; xdotool key h Tab
     press w "compares: A"
     press ctrl+3 "view: fabric satin"
