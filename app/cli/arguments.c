@@ -39,7 +39,8 @@ struct flag {
 
 static const struct flag flags_known[] = {
     {"--garment", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.garment", "NAME|FILE",
-     "dress, skirt, trousers, shirt, none, a .glb, .gltf or .obj file, or a pattern, .json"},
+     "dress, skirt, trousers, shirt, none, a .glb, .gltf, .obj, .ply, .stl or .off file, or a pattern, "
+     ".json"},
     {"--units", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.units", "UNITS",
      "of the garment's file: auto, m, dm, cm, mm or in"},
     {"--up", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.up", "AXIS",
@@ -51,9 +52,9 @@ static const struct flag flags_known[] = {
     {"--move", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.move_m", "X,Y,Z",
      "moves the garment's file, in metres"},
     {"--motion", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.motion", "FILE",
-     "plays a point cache on the garment: .pc2, .mdd, or frame.####.obj"},
+     "moves the garment: a point cache, .pc2, .mdd or frame.####.obj, or a .glb file with a clip"},
     {"--avatar", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.avatar", "NAME|FILE",
-     "form, figure, none, or a .glb, .gltf or .obj file"},
+     "form, figure, none, or a .glb, .gltf, .obj, .ply, .stl or .off file"},
     {"--env", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.environment", "NAME|FILE",
      "studio, an .exr or .hdr file, or a sequence of them: sky.####.exr"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.fabric", "NAME|FILE",

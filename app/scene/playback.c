@@ -1,6 +1,7 @@
 #include "app/scene/playback.h"
 
 #include "assets/motion/point_cache.h"
+#include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -8,14 +9,18 @@
 
 struct tl_playback {
     const tl_model *model;
-    tl_point_cache *cache;
-    vec3s *points; /* [point_count] */
+    tl_point_cache *cache; /* NULL: a clip of `moving` plays */
+    vec3s *points;         /* [point_count] */
+    tl_model moving;
+    int clip;
 };
 
 static bool check_count(const tl_playback *playback, const char *name, tl_error *error)
 {
-    size_t wanted = tl_model_point_count(playback->model);
-    size_t found = tl_point_cache_facts(playback->cache)->point_count;
+    size_t wanted =
+        playback->cache ? tl_model_point_count(playback->model) : playback->model->mesh.vertex_count;
+    size_t found = playback->cache ? tl_point_cache_facts(playback->cache)->point_count
+                                   : playback->moving.mesh.vertex_count;
     if (found == wanted)
         return true;
     return tl_fail(error, TL_INPUT,
@@ -31,18 +36,43 @@ static void log_missing_frames(const tl_playback *playback, const char *name)
                 facts->sample_count, facts->first, facts->last);
 }
 
+static bool plays_clips(const char *name)
+{
+    return tl_path_has_extension(name, "glb") || tl_path_has_extension(name, "gltf");
+}
+
+static bool open_clip(const struct tl_settings *settings, tl_playback *playback, tl_error *error)
+{
+    const struct tl_scene_params *scene = &settings->scene;
+    if (!tl_model_load_in(scene->motion, (enum tl_units)scene->units, &playback->moving, error))
+        return false;
+    int named = tl_model_find_clip(&playback->moving, scene->clip);
+    playback->clip = named >= 0 ? named : 0;
+    return playback->moving.clip_count > 0 ||
+           tl_fail(error, TL_INPUT,
+                   "%s: has no animation that could move the garment: leave scene.motion out", scene->motion);
+}
+
+static bool open_cache(const struct tl_settings *settings, tl_playback *playback, tl_error *error)
+{
+    const char *name = settings->scene.motion;
+    playback->cache = tl_point_cache_open(name, tl_units_metres(playback->model->units.units), error);
+    if (!playback->cache)
+        return false;
+    playback->points = TL_NEW_ARRAY(vec3s, tl_point_cache_facts(playback->cache)->point_count);
+    log_missing_frames(playback, name);
+    return true;
+}
+
 tl_playback *tl_playback_open(const struct tl_settings *settings, const tl_model *model, tl_error *error)
 {
     const char *name = settings->scene.motion;
     tl_playback *playback = TL_NEW(tl_playback);
     playback->model = model;
-    playback->cache = tl_point_cache_open(name, tl_units_metres(model->units.units), error);
-    if (!playback->cache || !check_count(playback, name, error)) {
+    bool opened =
+        plays_clips(name) ? open_clip(settings, playback, error) : open_cache(settings, playback, error);
+    if (!opened || !check_count(playback, name, error))
         tl_playback_close(&playback);
-        return NULL;
-    }
-    playback->points = TL_NEW_ARRAY(vec3s, tl_model_point_count(model));
-    log_missing_frames(playback, name);
     return playback;
 }
 
@@ -52,6 +82,7 @@ void tl_playback_close(tl_playback **handle)
     if (!playback)
         return;
     tl_point_cache_destroy(&playback->cache);
+    tl_model_release(&playback->moving);
     free(playback->points);
     free(playback);
     *handle = NULL;
@@ -59,13 +90,24 @@ void tl_playback_close(tl_playback **handle)
 
 float tl_playback_lowest(const tl_playback *playback)
 {
-    return tl_point_cache_facts(playback->cache)->box.lower.y;
+    if (playback->cache)
+        return tl_point_cache_facts(playback->cache)->box.lower.y;
+    size_t count = playback->moving.mesh.vertex_count;
+    vec3s *start = TL_NEW_ARRAY(vec3s, count);
+    tl_model_pose(&playback->moving, playback->clip, 0, start);
+    float lowest = tl_box_of(start, count).lower.y;
+    free(start);
+    return lowest;
 }
 
 bool tl_playback_pose(tl_playback *playback, const struct tl_settings *settings, int number, vec3s *positions,
                       tl_error *error)
 {
     double frame_rate = settings->cloth.frame_rate;
+    if (!playback->cache) {
+        tl_model_pose(&playback->moving, playback->clip, number / frame_rate, positions);
+        return true;
+    }
     double position = tl_point_cache_position(playback->cache, number / frame_rate, frame_rate,
                                               (double)settings->scene.motion_rate);
     if (!tl_point_cache_read(playback->cache, position, playback->points, error))

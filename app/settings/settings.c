@@ -47,14 +47,16 @@ static const struct tl_option scene_rows[] = {
                      "moves the garment's file, after turn_deg and scale"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, motion, TL_AFFECTS_SCENE | TL_AFFECTS_WORK, motion_names,
                            "recorded motion of the garment, in place of simulation: a .pc2 or .mdd point "
-                           "cache, or a sequence of OBJ files, frame.####.obj"),
-    TL_OPTION_FLOAT(
-        struct tl_scene_params, motion_rate, TL_AFFECTS_SCENE, 0, 100000, "1/s",
-        "frames of the motion per second; 0: as its file states, or one per frame of the animation"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, avatar,
-                           TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, avatar_names,
-                           "avatar that wears the garment: built in, or a glTF or OBJ file; auto: form for "
-                           "built-in garments, none for garment files"),
+                           "cache, a sequence of OBJ files, frame.####.obj, or a glTF file whose clip moves "
+                           "the same vertices"),
+    TL_OPTION_FLOAT(struct tl_scene_params, motion_rate, TL_AFFECTS_SCENE, 0, 100000, "1/s",
+                    "frames of the motion per second; 0: as its file states, or one per frame of the "
+                    "animation; glTF files "
+                    "state seconds"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, avatar, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK, avatar_names,
+        "avatar that wears the garment: built in, or a glTF, OBJ, PLY, STL or OFF file; auto: form for "
+        "built-in garments, none for garment files"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_units, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_units_names,
                    "length unit of the avatar's file, as units"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_up, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_up_names,

@@ -40,13 +40,12 @@ void tl_model_pose(const tl_model *model, int clip, double time_s, vec3s *positi
         memcpy(positions, model->mesh.positions, model->mesh.vertex_count * sizeof *positions);
         return;
     }
-    mat4s *world = TL_NEW_ARRAY(mat4s, model->rig->node_count);
-    rig_world(model->rig, clip, time_s, world);
-    rig_place(model->rig, world, positions);
+    struct rig_pose pose = rig_pose_at(model->rig, clip, time_s);
+    rig_place(model->rig, &pose, positions);
     float metres = (float)tl_units_metres(model->units.units);
     for (size_t i = 0; i < model->mesh.vertex_count; i++)
         positions[i] = glms_vec3_scale(positions[i], metres);
-    free(world);
+    rig_pose_release(&pose);
 }
 
 int tl_model_find_clip(const tl_model *model, const char *name)

@@ -84,16 +84,23 @@ struct gltf_draco {
     int ids[GLTF_ATTRIBUTE_COUNT];
 };
 
+struct gltf_target {
+    int positions, normals; /* accessors of offsets; -1: none */
+};
+
 struct gltf_primitive {
     int attributes[GLTF_ATTRIBUTE_COUNT]; /* accessors */
     int indices, material, mode;
     size_t first_mapping, mapping_count;
-    bool has_targets, has_second_uvs, has_second_joints;
+    size_t first_target, target_count;
+    bool has_second_uvs, has_second_joints;
     struct gltf_draco draco; /* read by gltf_unpack alone */
 };
 
 struct gltf_mesh {
     size_t first_primitive, primitive_count;
+    const double *weights; /* of its morph targets */
+    size_t weight_count;
 };
 
 struct gltf_node {
@@ -103,6 +110,8 @@ struct gltf_node {
     bool has_matrix;
     float matrix[16]; /* column-major */
     float translation[3], rotation[4], scale[3];
+    const double *weights; /* in place of its mesh's */
+    size_t weight_count;
 };
 
 struct gltf_skin {
@@ -172,6 +181,7 @@ typedef struct gltf_document {
     const struct gltf_view *views;
     const struct gltf_accessor *accessors;
     const struct gltf_primitive *primitives;
+    const struct gltf_target *targets;
     const struct gltf_mesh *meshes;
     const struct gltf_node *nodes;
     const struct gltf_skin *skins;

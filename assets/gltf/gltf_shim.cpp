@@ -10,6 +10,7 @@ extern "C" {
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct Owner {
     std::vector<gltf_view> views;
     std::vector<gltf_accessor> accessors;
     std::vector<gltf_primitive> primitives;
+    std::vector<gltf_target> targets;
     std::vector<gltf_mesh> meshes;
     std::vector<gltf_node> nodes;
     std::vector<gltf_skin> skins;
@@ -118,10 +120,10 @@ std::string folder_of(const std::string &path)
     return slash == std::string::npos ? "." : path.substr(0, slash ? slash : 1);
 }
 
-int attribute_of(const tinygltf::Primitive &primitive, const char *name)
+int member_of(const std::map<std::string, int> &accessors, const char *name)
 {
-    auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
+    auto found = accessors.find(name);
+    return found == accessors.end() ? -1 : found->second;
 }
 
 /* A member of an extension, which is raw JSON; null where there is none. */
@@ -185,15 +187,14 @@ gltf_primitive copy_primitive(const tinygltf::Primitive &from)
                                                             "JOINTS_0", "WEIGHTS_0", "COLOR_0", "_PIN"};
     gltf_primitive to = {};
     for (int i = 0; i < GLTF_ATTRIBUTE_COUNT; i++)
-        to.attributes[i] = attribute_of(from, names[i]);
+        to.attributes[i] = member_of(from.attributes, names[i]);
     if (to.attributes[GLTF_PIN] < 0)
-        to.attributes[GLTF_PIN] = attribute_of(from, "_pin");
+        to.attributes[GLTF_PIN] = member_of(from.attributes, "_pin");
     to.indices = from.indices;
     to.material = from.material;
     to.mode = from.mode;
-    to.has_targets = !from.targets.empty();
-    to.has_second_uvs = attribute_of(from, "TEXCOORD_1") >= 0;
-    to.has_second_joints = attribute_of(from, "JOINTS_1") >= 0;
+    to.has_second_uvs = member_of(from.attributes, "TEXCOORD_1") >= 0;
+    to.has_second_joints = member_of(from.attributes, "JOINTS_1") >= 0;
     copy_draco(from, to.draco, names);
     return to;
 }
@@ -217,6 +218,8 @@ gltf_node copy_node(const tinygltf::Node &from)
     copy_floats(to.translation, 3, from.translation);
     copy_floats(to.rotation, 4, from.rotation);
     copy_floats(to.scale, 3, from.scale);
+    to.weights = from.weights.data();
+    to.weight_count = from.weights.size();
     return to;
 }
 
@@ -247,6 +250,7 @@ gltf_channel copy_channel(const tinygltf::AnimationChannel &from, const tinygltf
     to.path = from.target_path == "translation" ? RIG_TRANSLATION
               : from.target_path == "rotation"  ? RIG_ROTATION
               : from.target_path == "scale"     ? RIG_SCALE
+              : from.target_path == "weights"   ? RIG_WEIGHTS
                                                 : RIG_OTHER_PATH;
     to.times = to.values = -1;
     if (from.sampler >= 0 && static_cast<size_t>(from.sampler) < animation.samplers.size()) {
@@ -446,10 +450,15 @@ void copy_geometry(Owner &owner)
     for (const tinygltf::Accessor &accessor : model.accessors)
         owner.accessors.push_back(copy_accessor(accessor));
     for (const tinygltf::Mesh &mesh : model.meshes) {
-        owner.meshes.push_back({owner.primitives.size(), mesh.primitives.size()});
+        owner.meshes.push_back(
+            {owner.primitives.size(), mesh.primitives.size(), mesh.weights.data(), mesh.weights.size()});
         for (const tinygltf::Primitive &primitive : mesh.primitives) {
             owner.primitives.push_back(copy_primitive(primitive));
             copy_mappings(owner, primitive, owner.primitives.back());
+            owner.primitives.back().first_target = owner.targets.size();
+            owner.primitives.back().target_count = primitive.targets.size();
+            for (const std::map<std::string, int> &target : primitive.targets)
+                owner.targets.push_back({member_of(target, "POSITION"), member_of(target, "NORMAL")});
         }
     }
     for (const tinygltf::Node &node : model.nodes)
@@ -482,6 +491,7 @@ void point_to(const Owner &owner, gltf_document &out)
     out.views = owner.views.data(), out.view_count = owner.views.size();
     out.accessors = owner.accessors.data(), out.accessor_count = owner.accessors.size();
     out.primitives = owner.primitives.data(), out.primitive_count = owner.primitives.size();
+    out.targets = owner.targets.data();
     out.meshes = owner.meshes.data(), out.mesh_count = owner.meshes.size();
     out.nodes = owner.nodes.data(), out.node_count = owner.nodes.size();
     out.skins = owner.skins.data(), out.skin_count = owner.skins.size();

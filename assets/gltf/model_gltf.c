@@ -18,8 +18,9 @@ struct gltf_builder {
     vec3s *normals;       /* [vertex_count] before any transform; zero where the file has none */
     uint32_t *skin_slots; /* [skin_count] first slot of each skin, or NO_SLOT */
     /* The vertices added last: primitives of one mesh often share one set. */
-    const int *last_attributes;
+    const struct gltf_primitive *last_primitive;
     const struct gltf_primitive **sources; /* [part_count] the primitive of each part */
+    struct morph_reading morphs;
     int last_node;
     size_t last_base, last_count;
     size_t vertex_capacity, index_capacity, part_capacity, slot_capacity;
@@ -77,8 +78,6 @@ static bool add_skin(struct gltf_builder *builder, int index, tl_error *error)
 
 static void note_ignored(struct gltf_builder *builder, const struct gltf_primitive *primitive)
 {
-    if (primitive->has_targets)
-        model_ignore(builder->model, "morph targets");
     if (primitive->attributes[GLTF_COLOUR] >= 0)
         model_ignore(builder->model, "vertex colours");
     if (primitive->has_second_uvs)
@@ -168,14 +167,27 @@ static void append_part(struct gltf_builder *builder, const struct gltf_vertices
     mesh->index_count += from->index_count;
 }
 
+/* Whether two primitives have the same vertices, morph targets included. */
+static bool has_same_vertices(const gltf_document *document, const struct gltf_primitive *a,
+                              const struct gltf_primitive *b)
+{
+    const struct gltf_target *targets = document->targets;
+    if (a->target_count != b->target_count || memcmp(a->attributes, b->attributes, sizeof a->attributes) != 0)
+        return false;
+    for (size_t i = 0; i < a->target_count; i++)
+        if (memcmp(&targets[a->first_target + i], &targets[b->first_target + i], sizeof *targets) != 0)
+            return false;
+    return true;
+}
+
 /* Appends the triangles of `from` at a node; skin: that of the node, or NULL. */
 static bool append_primitive(struct gltf_builder *builder, const struct gltf_primitive *from, int node,
                              const struct gltf_skin *skin, struct gltf_vertices *primitive, tl_error *error)
 {
     const gltf_document *document = builder->document;
     tl_mesh *mesh = &builder->model->mesh;
-    bool shared = builder->last_attributes && builder->last_node == node &&
-                  memcmp(builder->last_attributes, from->attributes, sizeof from->attributes) == 0;
+    bool shared = builder->last_primitive && builder->last_node == node &&
+                  has_same_vertices(document, builder->last_primitive, from);
     if (shared)
         primitive->vertex_count = builder->last_count;
     else if (!gltf_primitive_read_vertices(document, from, skin ? skin->joint_count : 0, primitive, error))
@@ -191,13 +203,16 @@ static bool append_primitive(struct gltf_builder *builder, const struct gltf_pri
         return true;
     reserve(builder, added, primitive->index_count);
     if (!shared) {
-        builder->last_attributes = from->attributes;
+        builder->last_primitive = from;
         builder->last_node = node;
         builder->last_base = mesh->vertex_count;
         builder->last_count = primitive->vertex_count;
         append_vertices(builder, primitive,
                         primitive->weights ? builder->skin_slots[document->nodes[node].skin]
                                            : add_slot(builder, node, glms_mat4_identity()));
+        if (!rig_read_morphs(document, from, node, builder->last_base, builder->last_count, &builder->morphs,
+                             builder->rig, builder->normals, error))
+            return false;
     }
     append_part(builder, primitive, from);
     return true;
@@ -328,17 +343,16 @@ static bool finish(struct gltf_builder *builder, enum tl_units wanted, tl_error 
                        builder->document->path);
     mesh->positions = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
     mesh->normals = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
-    mat4s *world = TL_NEW_ARRAY(mat4s, builder->rig->node_count);
-    rig_world(builder->rig, -1, 0, world);
-    rig_place(builder->rig, world, mesh->positions);
+    struct rig_pose rest = rig_pose_at(builder->rig, -1, 0);
+    rig_place(builder->rig, &rest, mesh->positions);
     bool good = model_take_units(builder->document->path, wanted, true, builder->model, error);
     if (good) {
-        repair_winding(builder, world);
-        place_normals(builder, world);
+        repair_winding(builder, rest.world);
+        place_normals(builder, rest.world);
         model_smooth_normals(mesh);
         tl_mesh_measure_uvs(mesh);
     }
-    free(world);
+    rig_pose_release(&rest);
     return good;
 }
 

@@ -1,5 +1,6 @@
-/* The steps of gltf_load_model: the rig (rig_read.c), primitives (model_primitive.c), materials
- * (model_materials.c, model_texture.c, model_extensions.c), variants (model_variants.c). */
+/* The steps of gltf_load_model: the rig (rig_read.c), morph targets (model_morphs.c), primitives
+ * (model_primitive.c), materials (model_materials.c, model_texture.c, model_extensions.c), variants
+ * (model_variants.c). */
 #ifndef TOILE_ASSETS_GLTF_MODEL_INTERNAL_H
 #define TOILE_ASSETS_GLTF_MODEL_INTERNAL_H
 
@@ -10,6 +11,21 @@
 /* Reads the nodes of a document, their order, and its clips; gltf_load_model adds slots and vertices. On
  * failure the caller destroys the rig. */
 bool rig_read(const gltf_document *document, tl_rig *rig, tl_error *error);
+
+/* Numbers the morph targets of all nodes and reads their weights at rest; rig_read calls it. (model_morphs.c)
+ */
+bool rig_read_weights(const gltf_document *document, tl_rig *rig, tl_error *error);
+
+/* What the targets of a document have taken so far. */
+struct morph_reading {
+    size_t read, kept; /* offsets */
+    size_t capacity;   /* of rig->morphs */
+};
+/* Adds the targets of a primitive whose vertices, as `node` draws them, begin at `first_vertex` of the rig;
+ * `normals` [rig's vertices] become those of the weights at rest. (model_morphs.c) */
+bool rig_read_morphs(const gltf_document *document, const struct gltf_primitive *from, int node,
+                     size_t first_vertex, size_t vertex_count, struct morph_reading *reading, tl_rig *rig,
+                     vec3s *normals, tl_error *error);
 
 /* The accessors of one primitive as plain arrays; NULL where the file has none. A zeroed one is empty. */
 struct gltf_vertices {

@@ -66,31 +66,38 @@ static bool read_node(const gltf_document *document, size_t index, struct rig_no
     return true;
 }
 
-static bool read_channel(const gltf_document *document, const struct gltf_channel *from,
+static bool read_channel(const gltf_document *document, const struct gltf_channel *from, const tl_rig *rig,
                          struct rig_channel *to, tl_error *error)
 {
-    if (from->node < 0 || (size_t)from->node >= document->node_count)
-        return tl_fail(error, TL_INPUT,
-                       "%s: an animation moves node %d, which does not exist: export the file again",
-                       document->path, from->node);
     size_t value_count;
+    bool morphs = from->path == RIG_WEIGHTS; /* then the accessor has one number an element */
     *to = (struct rig_channel){.node = from->node, .path = from->path, .interpolation = from->interpolation};
+    to->components = from->path == RIG_ROTATION ? 4 : morphs ? rig->nodes[from->node].weight_count : 3;
     if (!gltf_read_floats(document, from->times, "animation times", 1, KEYS_MAX, false, &to->times_s,
                           &to->key_count, error) ||
-        !gltf_read_floats(document, from->values, "animation values", rig_components(from->path),
+        !gltf_read_floats(document, from->values, "animation values", morphs ? 1 : (int)to->components,
                           3 * KEYS_MAX, false, &to->values, &value_count, error))
         return false;
-    size_t per_key = from->interpolation == RIG_CUBIC_SPLINE ? 3 : 1;
+    size_t per_key = (from->interpolation == RIG_CUBIC_SPLINE ? 3 : 1) * (morphs ? to->components : 1);
     if (to->key_count == 0 || value_count != per_key * to->key_count)
         return tl_fail(error, TL_INPUT,
-                       "%s: an animation has %zu times but %zu values: export the file again", document->path,
-                       to->key_count, value_count);
+                       "%s: an animation has %zu times but %zu values, %zu each: export the file again",
+                       document->path, to->key_count, value_count, per_key);
     for (size_t i = 1; i < to->key_count; i++)
         if (to->times_s[i] < to->times_s[i - 1])
             return tl_fail(error, TL_INPUT,
                            "%s: the times of an animation do not rise: export the file again",
                            document->path);
     return true;
+}
+
+/* Channels of extensions have no node; weights have no effect on a node without morph targets. */
+static bool moves_something(const gltf_document *document, const struct gltf_channel *from, const tl_rig *rig)
+{
+    if (from->path == RIG_OTHER_PATH || from->node < 0)
+        return false;
+    return from->path != RIG_WEIGHTS || (size_t)from->node >= document->node_count ||
+           rig->nodes[from->node].weight_count > 0;
 }
 
 static bool read_clips(const gltf_document *document, tl_rig *rig, tl_error *error)
@@ -103,10 +110,14 @@ static bool read_clips(const gltf_document *document, tl_rig *rig, tl_error *err
         clip->first_channel = rig->channel_count;
         for (size_t c = 0; c < animation->channel_count; c++) {
             const struct gltf_channel *from = &document->channels[animation->first_channel + c];
-            if (from->path == RIG_OTHER_PATH || from->node < 0)
-                continue; /* morph weights, and targets defined by extensions */
+            if (!moves_something(document, from, rig))
+                continue;
+            if ((size_t)from->node >= document->node_count)
+                return tl_fail(error, TL_INPUT,
+                               "%s: an animation moves node %d, which does not exist: export the file again",
+                               document->path, from->node);
             struct rig_channel *channel = &rig->channels[rig->channel_count++];
-            if (!read_channel(document, from, channel, error))
+            if (!read_channel(document, from, rig, channel, error))
                 return false;
             clip->duration_s = fmax(clip->duration_s, (double)channel->times_s[channel->key_count - 1]);
         }
@@ -124,5 +135,5 @@ bool rig_read(const gltf_document *document, tl_rig *rig, tl_error *error)
         if (!read_node(document, i, &rig->nodes[i], error))
             return false;
     return read_parents(document, rig, error) && order_nodes(document, rig, error) &&
-           read_clips(document, rig, error);
+           rig_read_weights(document, rig, error) && read_clips(document, rig, error);
 }

@@ -1,4 +1,5 @@
 /* A simulation is written as OBJ and point caches and played back: the same surface comes out. */
+#include "tests/assets/small_glb.h"
 #include "tests/testing.h"
 
 #include "app/scene/session.h"
@@ -10,8 +11,6 @@
 
 #include <string.h>
 #include <sys/stat.h>
-
-#define SCRATCH TOILE_SCRATCH_DIR "/playback"
 
 enum { FRAMES = 5 };
 
@@ -181,6 +180,40 @@ static void the_rate_can_be_told(void **state)
     tl_session_destroy(&session);
 }
 
+/* A glTF file moves its own vertices by its clip, and not those of another garment. */
+static void a_clip_moves_the_garment(void **state)
+{
+    (void)state;
+    const char *path = scratch("turning.glb");
+    struct small_glb glb = small_glb_make();
+    small_glb_write(&glb, path);
+    char garment[1100], motion[1100];
+    snprintf(garment, sizeof garment, "scene.garment=%s", path);
+    snprintf(motion, sizeof motion, "scene.motion=%s", path);
+    const char *const extra[] = {garment, motion, "scene.avatar=none"};
+    tl_error error = {0};
+    tl_session *session = create(extra, TL_COUNT(extra));
+    assert_null(tl_session_cloth(session));
+    tl_model model;
+    assert_ok(tl_model_load(path, &model, &error), error);
+    vec3s posed[8];
+    assert_true(model.mesh.vertex_count <= TL_COUNT(posed));
+    static const int frames[] = {0, 45, 59, 10}; /* the clip turns from 1 to 2 s, at 30 frames per second */
+    for (size_t i = 0; i < TL_COUNT(frames); i++) {
+        assert_ok(tl_session_go_to(session, frames[i], &error), error);
+        tl_model_pose(&model, 0, frames[i] / 30.0, posed);
+        assert_memory_equal(garment_of(session)->positions, posed, model.mesh.vertex_count * sizeof *posed);
+    }
+    assert_true(glms_vec3_distance(posed[2], model.mesh.positions[2]) <
+                1e-6f); /* frame 10 is before the clip */
+    struct tl_settings settings = *tl_session_settings(session);
+    strcpy(settings.scene.garment, "skirt");
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_non_null(strstr(error.message, "turning.glb: moves 4 points"));
+    tl_model_release(&model);
+    tl_session_destroy(&session);
+}
+
 static void motions_come_and_go(void **state)
 {
     (void)state;
@@ -256,8 +289,9 @@ int main(void)
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_simulated_is_played), cmocka_unit_test(units_apply_to_the_motion_too),
-        cmocka_unit_test(the_rate_can_be_told),         cmocka_unit_test(motions_come_and_go),
-        cmocka_unit_test(a_model_alone_can_be_moved),   cmocka_unit_test(a_real_simulation_is_played),
+        cmocka_unit_test(the_rate_can_be_told),         cmocka_unit_test(a_clip_moves_the_garment),
+        cmocka_unit_test(motions_come_and_go),          cmocka_unit_test(a_model_alone_can_be_moved),
+        cmocka_unit_test(a_real_simulation_is_played),
     };
     return cmocka_run_group_tests(tests, simulate_and_write, forget);
 }
