@@ -44,10 +44,17 @@ bool gltf_primitive_read_indices(const gltf_document *document, const struct glt
 void gltf_vertices_release(struct gltf_vertices *vertices);
 
 /* The use of a decoded image decides how its texels are interpreted. */
-enum texture_use { TEXTURE_COLOUR, TEXTURE_DATA, TEXTURE_GLOSS, TEXTURE_COLOUR_MEAN, TEXTURE_DATA_MEAN };
+enum texture_use {
+    TEXTURE_COLOUR,
+    TEXTURE_DATA,
+    TEXTURE_GLOSS,
+    TEXTURE_METAL, /* the blue channel alone */
+    TEXTURE_COLOUR_MEAN,
+    TEXTURE_DATA_MEAN
+};
 
 /* Maps that one material may name; an image is decoded once for each use. */
-#define MAPS_MAX 16
+#define MAPS_MAX 20
 
 struct texture_loaded {
     int source; /* glTF image */
@@ -61,6 +68,10 @@ struct texture_loaded {
     bool has_means;        /* TEXTURE_COLOUR_MEAN, TEXTURE_DATA_MEAN */
     float means[4];        /* ... by channel, linear */
     bool varies[4];
+    bool has_alpha;        /* TEXTURE_COLOUR: it is not 1 everywhere */
+    float alpha_highest;   /* ... */
+    float alpha_mean;      /* ... of the texels that have at least half of the highest */
+    bool alpha_varies;     /* ... among these */
     const tl_image *image; /* NULL: could not be read, or not kept */
 };
 
@@ -101,6 +112,11 @@ struct material_build {
 vec3s model_dielectric_f0(const struct material_build *build);
 /* Applies the other extensions to `to`, which must be complete without them. (model_extensions.c) */
 void model_apply_extensions(const struct material_build *build);
+
+/* Makes maps of kd = base (1 - m) and F0 = f0 (1 - m) + base m where metalness m, `factor` times its texture,
+ * varies; both are exact to their 8 bits. False, and nothing is changed, where the base colour's texture lies
+ * otherwise on the surface, or reflection has a map already. (model_metal.c) */
+bool model_bake_metal(const struct material_build *build, float factor, vec3s f0);
 
 /* Factor on F0 when a GGX lobe of these widths is approximated by Ward's (model_extensions.c). */
 float model_ward_factor(float width_weft, float width_warp);

@@ -10,16 +10,32 @@ static float unit(float value, float otherwise)
 }
 
 /* The file's alpha is factor times texel; a tl_material tests the texel alone, so the cutoff is divided by
- * the factor. A surface that is half transparent everywhere stays visible. */
-static float alpha_cutoff(struct texture_reader *textures, const struct gltf_material *from)
+ * the factor. */
+static float mask_cutoff(const struct gltf_material *from)
 {
     float factor = fmaxf(unit(from->base_colour[3], 1), 1e-3f);
-    if (from->alpha == GLTF_MASK)
-        return fmaxf(unit(from->alpha_cutoff, 0.5f), 1e-3f) / factor;
-    if (from->alpha == GLTF_OPAQUE)
-        return 0;
-    model_ignore(textures->model, "alpha blending (shown as a mask at 0.5)");
-    return fminf(0.5f / factor, 1);
+    return fmaxf(unit(from->alpha_cutoff, 0.5f), 1e-3f) / factor;
+}
+
+/* Blending shows the surface by its alpha, and what is behind by the rest: as holes between threads do. A
+ * tl_material is equally open everywhere: texels of less than half of the highest alpha are cut away, and the
+ * others have their mean. */
+static void apply_blending(const struct material_build *build, const struct texture_loaded *base)
+{
+    const float closed_from = 0.995f, most_open = 0.99f;
+    float opacity = unit(build->from->base_colour[3], 1);
+    tl_material *to = build->to;
+    if (base->has_alpha) {
+        opacity *= base->alpha_mean;
+        to->alpha_cutoff = 0.5f * base->alpha_highest;
+        if (base->alpha_varies || base->alpha_mean < 1)
+            model_approximate(build->model,
+                              "alphaMode BLEND: %s: alpha varies over a texture: cut at half of the "
+                              "highest, the mean of the rest above that",
+                              to->name);
+    }
+    float open = 1 - (1 - to->openness) * opacity;
+    to->openness = open > 1 - closed_from ? fminf(open, most_open) : 0;
 }
 
 /* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(F0 of the
@@ -32,7 +48,8 @@ static tl_material read_material(struct texture_reader *textures, const struct g
     to.normal_scale = isfinite(from->normal_scale) ? from->normal_scale : 1;
     to.occlusion_strength = unit(from->occlusion_strength, 1);
     to.glossiness = tl_glossiness_from_roughness(roughness);
-    texture_read_map(textures, &from->base_colour_map, TEXTURE_COLOUR, 0, &to.diffuse_map);
+    const struct texture_loaded *base =
+        texture_read_map(textures, &from->base_colour_map, TEXTURE_COLOUR, 0, &to.diffuse_map);
     texture_read_map(textures, &from->normal_map, TEXTURE_DATA, 0, &to.normal_map);
     texture_read_map(textures, &from->occlusion_map, TEXTURE_DATA, 0, &to.occlusion_map);
     const struct texture_loaded *packed =
@@ -40,8 +57,6 @@ static tl_material read_material(struct texture_reader *textures, const struct g
     if (packed->image) {
         to.glossiness = packed->glossiest;
         metallic *= packed->metallic_mean;
-        if (packed->metallic_varies)
-            model_ignore(textures->model, "metalness that varies over a texture (its mean is used)");
     }
     struct material_build build = {.textures = textures,
                                    .model = textures->model,
@@ -56,10 +71,14 @@ static tl_material read_material(struct texture_reader *textures, const struct g
         to.diffuse.raw[i] = build.base[i] * (1 - metallic);
         to.specular.raw[i] = f0.raw[i] * (1 - metallic) + build.base[i] * metallic;
     }
-    if (metallic > 0.5f)
+    if (packed->metallic_varies && !model_bake_metal(&build, unit(from->metallic, 1), f0))
+        model_approximate(textures->model, "%s: metalness varies over a texture: its mean is used", to.name);
+    else if (!packed->metallic_varies && metallic > 0.5f)
         to.specular_map = to.diffuse_map; /* a metal's colour is that of its reflection */
-    to.alpha_cutoff = alpha_cutoff(textures, from);
+    to.alpha_cutoff = from->alpha == GLTF_MASK ? mask_cutoff(from) : 0;
     model_apply_extensions(&build);
+    if (from->alpha == GLTF_BLEND)
+        apply_blending(&build, base);
     if (from->is_emissive)
         model_ignore(textures->model, "emission");
     return to;

@@ -38,8 +38,9 @@ static bool decode(struct texture_reader *reader, int source, tl_image *out)
 #define VARIES 25
 
 /* glTF packs roughness in green and metalness in blue. A gloss map holds g of each texel over the largest g:
- * otherwise 255 would stand for everything above 0.998, where s = 1 / (1 - g) runs from 500 to infinity.
- * Metalness becomes its mean, which is exact for cloth (0) and plain metal (1). */
+ * otherwise 255 would stand for everything above 0.998, where s = 1 / (1 - g) runs from 500 to infinity. Of
+ * metalness the mean is kept, which is exact for cloth (0) and plain metal (1); model_metal.c has the rest.
+ */
 static void unpack_roughness(const tl_image *packed, struct texture_loaded *to, tl_image *gloss)
 {
     *gloss = tl_image_create(packed->width, packed->height, 1, TL_IMAGE_U8);
@@ -102,6 +103,39 @@ static void take_means(const tl_image *image, bool is_colour, struct texture_loa
     }
 }
 
+/* What blending needs to know of a colour's alpha. */
+static void take_alpha(const tl_image *image, struct texture_loaded *to)
+{
+    size_t texels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;
+    size_t counts[256] = {0}, kept = 0;
+    double sum = 0;
+    int highest = 255, lowest = 255;
+    if (channels != 2 && channels != 4)
+        return;
+    for (size_t i = 0; i < texels; i++)
+        counts[tl_image_bytes(image)[i * channels + channels - 1]]++;
+    while (highest > 0 && counts[highest] == 0)
+        highest--;
+    for (int level = (highest + 1) / 2; level <= highest; level++) {
+        sum += (double)counts[level] * level;
+        kept += counts[level];
+        lowest = counts[level] > 0 && level < lowest ? level : lowest;
+    }
+    to->has_alpha = counts[255] < texels;
+    to->alpha_highest = (float)highest / 255;
+    to->alpha_mean = (float)(sum / (255 * (double)kept));
+    to->alpha_varies = highest - lowest > VARIES;
+}
+
+static void take_metal(const tl_image *packed, tl_image *metal)
+{
+    *metal = tl_image_create(packed->width, packed->height, 1, TL_IMAGE_U8);
+    metal->linear = true;
+    size_t texels = (size_t)packed->width * (size_t)packed->height, channels = (size_t)packed->channels;
+    for (size_t i = 0; i < texels; i++)
+        tl_image_bytes(metal)[i] = channels > 2 ? tl_image_bytes(packed)[i * channels + 2] : 0;
+}
+
 static const struct texture_loaded *load_image(struct texture_reader *reader, int source,
                                                enum texture_use use, float roughness)
 {
@@ -132,7 +166,11 @@ static const struct texture_loaded *load_image(struct texture_reader *reader, in
     if (use == TEXTURE_GLOSS) {
         unpack_roughness(&decoded, fresh, kept);
         tl_image_release(&decoded);
+    } else if (use == TEXTURE_METAL) {
+        take_metal(&decoded, kept);
+        tl_image_release(&decoded);
     } else {
+        take_alpha(&decoded, fresh);
         *kept = decoded;
         kept->linear = use == TEXTURE_DATA;
     }
