@@ -68,9 +68,11 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
-                           "fabric, which sets the tables fabric, weave and material: built in, or a YAML "
-                           "file; empty: satin on built-in garments, none on garment files"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
+        "fabric, which sets the tables fabric, weave and material: built in, or a YAML "
+        "file; empty: that of the garment's kind (cotton_plain for shirts and patterns, denim "
+        "for trousers, else satin), none on garment files"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric,
                            TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
                            "second fabric of a garment, which sets the table overlay and this fabric's "
@@ -241,7 +243,11 @@ static bool is_garment_file(const char *garment)
 
 const char *tl_settings_own_fabric(const char *garment)
 {
-    return is_garment_file(garment) ? "none" : "satin";
+    static const char *const own[][2] = {{"shirt", "cotton_plain"}, {"trousers", "denim"}};
+    for (size_t i = 0; i < TL_COUNT(own); i++)
+        if (strcmp(garment, own[i][0]) == 0)
+            return own[i][1];
+    return is_garment_file(garment) ? "none" : tl_pattern_is_file(garment) ? "cotton_plain" : "satin";
 }
 
 static void choose_fabric(struct tl_scene_params *scene)

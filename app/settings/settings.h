@@ -106,7 +106,8 @@ bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, t
 bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
 
 /* The fabric of a garment for which none is named: a garment file has materials of its own, a built-in
- * garment and a pattern get theirs from a fabric. */
+ * garment and a pattern get theirs from a fabric that such a garment is made of: a shirt in satin would be
+ * judged for its fabric, a pattern is sewn in plain cotton as a toile is. */
 const char *tl_settings_own_fabric(const char *garment);
 
 /* The name of the avatar, which may be chosen by the garment ("auto"). */

@@ -54,7 +54,7 @@ static void test_built_in_scene(void **state)
     assert_string_equal(settings.scene.garment, "skirt");
 }
 
-/* A fabric that nobody names: satin for what is built in, a garment file's own look for a file. */
+/* A fabric that nobody names: what such a garment is made of, a garment file's own look for a file. */
 static void test_fabric_left_out(void **state)
 {
     (void)state;
@@ -69,6 +69,14 @@ static void test_fabric_left_out(void **state)
     const char *const skirt[] = {"scene.garment=skirt"};
     assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, skirt, 1}, &error), error);
     assert_string_equal(settings.scene.fabric, "satin");
+    static const char *const kinds[][2] = {{"scene.garment=shirt", "cotton_plain"},
+                                           {"scene.garment=blouse_specification.json", "cotton_plain"},
+                                           {"scene.garment=trousers", "denim"}};
+    for (size_t i = 0; i < TL_COUNT(kinds); i++) {
+        assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){NULL, kinds[i], 1}, &error),
+                  error);
+        assert_string_equal(settings.scene.fabric, kinds[i][1]);
+    }
 }
 
 /* Each layer wins over the one below it, wherever the names of preset and fabric come from. */
