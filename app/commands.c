@@ -63,6 +63,10 @@ static const struct tl_command commands[] = {
      "Writes a frame: the garment and its avatar as .glb, the garment as .obj; or with --frames the "
      "garment's motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
+    {"measure", "measure [SCENE] [-o OUT.csv] [--frame N] [--json] [OPTIONS]",
+     "Measures a garment as it is worn: strain (warp, weft, shear) and area of each panel, its openings, and "
+     "its girths beside its body's; -o writes the same as CSV.",
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_measure},
     {"env",
      "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong|octahedral [--from LAYOUT] [--size N]\n"
      "       toile env [SCENE] --capture -o OUT.exr --layout LAYOUT [--size N] [OPTIONS]",

@@ -695,6 +695,11 @@ const tl_model *tl_session_garment(const tl_session *session)
     return session->garment ? &session->garment->model : NULL;
 }
 
+const tl_garment *tl_session_cut(const tl_session *session)
+{
+    return session->garment;
+}
+
 tl_cloth *tl_session_cloth(tl_session *session)
 {
     return session->cloth;

@@ -199,6 +199,10 @@ tl_cloth *tl_session_cloth(tl_session *session);
  * session's; the model itself may be read on any. */
 const tl_model *tl_session_garment(const tl_session *session);
 
+/* The garment as it was cut or read: its mesh, pattern and seams; NULL when the scene has none.
+ * Errors: none. Lifetime and threads: as tl_session_garment. */
+const tl_garment *tl_session_cut(const tl_session *session);
+
 /* Measures the cloth (tl_cloth_measure); all 0 when none is simulated.
  * Errors: none. Threads: the session's. */
 struct tl_cloth_report tl_session_report(const tl_session *session);

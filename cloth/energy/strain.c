@@ -100,3 +100,9 @@ void tl_strains_update(tl_strains *strains, const vec3s *positions, vec3s *out)
     for (size_t i = 0; i < strains->vertex_count; i++)
         out[i] = mean_about(strains, i);
 }
+
+struct tl_triangle_strain tl_strains_of_triangle(const tl_strains *strains, size_t triangle)
+{
+    vec3d strain = strains->of_triangles[triangle];
+    return (struct tl_triangle_strain){strain.x, strain.y, strain.z, strains->triangles[triangle].area};
+}

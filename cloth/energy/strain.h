@@ -22,4 +22,11 @@ void tl_strains_destroy(tl_strains **strains); /* sets it to NULL; NULL is ignor
  * strain 0. */
 void tl_strains_update(tl_strains *strains, const vec3s *positions, vec3s *out);
 
+/* Strains of a triangle of the garment's mesh, as of the last update. Zero of slivers. */
+struct tl_triangle_strain {
+    double warp, weft, shear;
+    double area; /* m^2, at rest; 0: a sliver */
+};
+struct tl_triangle_strain tl_strains_of_triangle(const tl_strains *strains, size_t triangle);
+
 #endif

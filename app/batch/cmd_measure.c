@@ -1,0 +1,289 @@
+/* toile measure: prints strains and areas of a garment's panels, its openings and its girths, and writes them
+ * as CSV. Lengths in mm, areas in cm^2, strains in percent. */
+#include "app/batch/commands.h"
+#include "app/cli/json.h"
+#include "app/fit/measures.h"
+#include "app/scene/headless.h"
+#include "assets/model.h"
+#include "cloth/mesh/topology.h"
+#include "config/file.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MM      1e3
+#define CM2     1e4
+#define PERCENT 100
+
+static bool check_output(const struct tl_arguments *arguments, tl_error *error)
+{
+    const char *output = arguments->output;
+    struct tl_writer writer;
+    if (!output)
+        return true;
+    if (!tl_path_has_extension(output, "csv"))
+        return tl_fail(error, TL_USAGE, "%s: unknown kind of file: end the name in .csv", output);
+    if (!tl_writer_begin(&writer, output, error))
+        return false;
+    tl_writer_abandon(&writer); /* before the garment is draped, this only checks that it can be written */
+    return true;
+}
+
+/* ---- The table ---- */
+
+/* In percent; what would be printed as -0.00 is 0. */
+static double percent(double share)
+{
+    return fabs(PERCENT * share) < 0.005 ? 0 : PERCENT * share;
+}
+
+static void print_spread(const struct tl_spread *spread)
+{
+    printf("  %7.2f %7.2f %7.2f", percent(spread->mean), percent(spread->p95), percent(spread->max));
+}
+
+static void print_panel(const struct tl_panel_measures *panel)
+{
+    printf("%-24s %9.1f %9.1f", panel->name, CM2 * panel->rest_m2, CM2 * panel->worn_m2);
+    print_spread(&panel->warp);
+    print_spread(&panel->weft);
+    print_spread(&panel->shear);
+    printf("\n");
+}
+
+static void print_tables(const struct tl_measures *measures)
+{
+    printf("%-24s %19s  %23s  %23s  %23s\n", "", "area, cm^2", "warp strain, %", "weft strain, %",
+           "shear, %");
+    printf("%-24s %9s %9s", "panel", "at rest", "worn");
+    for (int i = 0; i < 3; i++)
+        printf("  %7s %7s %7s", "mean", "p95", "max");
+    printf("\n");
+    for (size_t i = 0; i < measures->panel_count; i++)
+        print_panel(&measures->panels[i]);
+    if (measures->panel_count != 1)
+        print_panel(&measures->whole);
+    printf("\n%-24s %9s %9s %9s\n", "opening, mm", "at rest", "worn", "%");
+    for (size_t i = 0; i < measures->opening_count; i++) {
+        const struct tl_opening_measures *opening = &measures->openings[i];
+        printf("%-24s %9.1f %9.1f %9.2f\n", opening->name, MM * opening->rest_m, MM * opening->worn_m,
+               opening->rest_m > 0 ? percent(opening->worn_m / opening->rest_m - 1) : 0);
+    }
+    if (measures->girths[TL_GIRTH_WAIST].height_m > 0)
+        printf("\n%-24s %9s %9s %9s %9s %9s\n", "girth, mm", "height", "body", "at rest", "worn", "ease");
+    for (int i = 0; i < TL_GIRTHS; i++) {
+        const struct tl_girth_measures *girth = &measures->girths[i];
+        if (!(girth->height_m > 0))
+            continue;
+        printf("%-24s %9.0f %9.1f", tl_girth_names[i], MM * girth->height_m, MM * girth->body_m);
+        if (girth->rest_m > 0)
+            printf(" %9.1f %9.1f %9.1f\n", MM * girth->rest_m, MM * girth->worn_m,
+                   MM * (girth->rest_m - girth->body_m));
+        else
+            printf(" %9s %9s %9s\n", "-", "-", "-");
+    }
+}
+
+/* ---- CSV ---- */
+
+/* Quotes a name, and doubles the quotes in it [RFC 4180]. */
+static void write_name(FILE *out, const char *name)
+{
+    fputc('"', out);
+    for (; *name; name++) {
+        if (*name == '"')
+            fputc('"', out);
+        fputc(*name, out);
+    }
+    fputc('"', out);
+}
+
+static void write_strain(FILE *out, const char *panel, const char *quantity, const struct tl_spread *spread)
+{
+    fputs("panel,", out);
+    write_name(out, panel);
+    fprintf(out, ",%s,percent,,,%.4f,%.4f,%.4f\n", quantity, PERCENT * spread->mean, PERCENT * spread->p95,
+            PERCENT * spread->max);
+}
+
+static void write_panel(FILE *out, const struct tl_panel_measures *panel)
+{
+    fputs("panel,", out);
+    write_name(out, panel->name);
+    fprintf(out, ",area,cm2,%.3f,%.3f,,,\n", CM2 * panel->rest_m2, CM2 * panel->worn_m2);
+    write_strain(out, panel->name, "warp", &panel->warp);
+    write_strain(out, panel->name, "weft", &panel->weft);
+    write_strain(out, panel->name, "shear", &panel->shear);
+}
+
+static void write_lines(FILE *out, const struct tl_measures *measures)
+{
+    fputs("kind,name,quantity,unit,rest,worn,mean,p95,max\n", out);
+    for (size_t i = 0; i < measures->panel_count; i++)
+        write_panel(out, &measures->panels[i]);
+    if (measures->panel_count != 1)
+        write_panel(out, &measures->whole);
+    for (size_t i = 0; i < measures->opening_count; i++) {
+        const struct tl_opening_measures *opening = &measures->openings[i];
+        fputs("opening,", out);
+        write_name(out, opening->name);
+        fprintf(out, ",length,mm,%.2f,%.2f,,,\n", MM * opening->rest_m, MM * opening->worn_m);
+    }
+    for (int i = 0; i < TL_GIRTHS; i++) {
+        const struct tl_girth_measures *girth = &measures->girths[i];
+        if (!(girth->height_m > 0))
+            continue;
+        fprintf(out, "girth,%s,body,mm,%.2f,%.2f,,,\n", tl_girth_names[i], MM * girth->body_m,
+                MM * girth->body_m);
+        if (girth->rest_m > 0)
+            fprintf(out, "girth,%s,garment,mm,%.2f,%.2f,,,\n", tl_girth_names[i], MM * girth->rest_m,
+                    MM * girth->worn_m);
+    }
+}
+
+static bool write_file(const char *path, const struct tl_measures *measures, tl_error *error)
+{
+    struct tl_writer writer;
+    if (!tl_writer_begin(&writer, path, error))
+        return false;
+    write_lines(writer.stream, measures);
+    return tl_writer_commit(&writer, error);
+}
+
+/* ---- JSON ---- */
+
+static void add_spread(cJSON *object, const char *key, const struct tl_spread *spread)
+{
+    cJSON *item = cJSON_AddObjectToObject(object, key);
+    cJSON_AddNumberToObject(item, "mean", PERCENT * spread->mean);
+    cJSON_AddNumberToObject(item, "p95", PERCENT * spread->p95);
+    cJSON_AddNumberToObject(item, "max", PERCENT * spread->max);
+}
+
+static void add_panel(cJSON *panels, const struct tl_panel_measures *panel)
+{
+    cJSON *item = cJSON_CreateObject();
+    cJSON_AddStringToObject(item, "name", panel->name);
+    cJSON_AddNumberToObject(item, "rest_cm2", CM2 * panel->rest_m2);
+    cJSON_AddNumberToObject(item, "worn_cm2", CM2 * panel->worn_m2);
+    add_spread(item, "warp_percent", &panel->warp);
+    add_spread(item, "weft_percent", &panel->weft);
+    add_spread(item, "shear_percent", &panel->shear);
+    cJSON_AddItemToArray(panels, item);
+}
+
+static cJSON *describe(const struct tl_measures *measures)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON *panels = cJSON_AddArrayToObject(object, "panels");
+    for (size_t i = 0; i < measures->panel_count; i++)
+        add_panel(panels, &measures->panels[i]);
+    add_panel(panels, &measures->whole);
+    cJSON *openings = cJSON_AddObjectToObject(object, "openings_mm");
+    for (size_t i = 0; i < measures->opening_count; i++) {
+        cJSON *item = cJSON_AddObjectToObject(openings, measures->openings[i].name);
+        cJSON_AddNumberToObject(item, "rest", MM * measures->openings[i].rest_m);
+        cJSON_AddNumberToObject(item, "worn", MM * measures->openings[i].worn_m);
+    }
+    cJSON *girths = cJSON_AddObjectToObject(object, "girths_mm");
+    for (int i = 0; i < TL_GIRTHS; i++) {
+        const struct tl_girth_measures *girth = &measures->girths[i];
+        if (!(girth->height_m > 0))
+            continue;
+        cJSON *item = cJSON_AddObjectToObject(girths, tl_girth_names[i]);
+        cJSON_AddNumberToObject(item, "height", MM * girth->height_m);
+        cJSON_AddNumberToObject(item, "body", MM * girth->body_m);
+        if (girth->rest_m > 0) {
+            cJSON_AddNumberToObject(item, "rest", MM * girth->rest_m);
+            cJSON_AddNumberToObject(item, "worn", MM * girth->worn_m);
+        }
+    }
+    return object;
+}
+
+/* ---- The command ---- */
+
+/* The welded vertices of the garment: those of the cloth, or what is at one place. The caller frees them. */
+static uint32_t *weld_of(tl_session *session, const tl_surface *garment)
+{
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, garment->vertex_count);
+    const tl_cloth *cloth = tl_session_cloth(session);
+    if (cloth)
+        memcpy(weld, tl_cloth_weld(cloth), garment->vertex_count * sizeof *weld);
+    else
+        tl_weld_positions(garment->positions, garment->vertex_count, weld);
+    return weld;
+}
+
+static struct tl_measures measure(tl_session *session)
+{
+    tl_frame frame = tl_session_frame(session);
+    const tl_surface *garment = &frame.surfaces[frame.surface_count - 1]; /* the avatar comes before it */
+    const tl_model *body = tl_session_models(session).avatar;
+    bool stands = body && !tl_session_plays_clip(session);
+    uint32_t *weld = weld_of(session, garment);
+    const struct tl_measures_source source = {.garment = tl_session_cut(session),
+                                              .positions = garment->positions,
+                                              .weld = weld,
+                                              .body = stands ? &body->mesh : NULL};
+    struct tl_measures measures = tl_measures_take(&source);
+    free(weld);
+    if (!measures.has_pattern)
+        tl_info("%s: has no pattern: strains are those since its first shape (`toile info` tells why)",
+                source.garment->model.name);
+    return measures;
+}
+
+static bool report(const struct tl_measures *measures, const struct tl_arguments *arguments, tl_error *error)
+{
+    if (arguments->output && !write_file(arguments->output, measures, error))
+        return false;
+    if (arguments->json)
+        tl_json_print(describe(measures));
+    else
+        print_tables(measures);
+    return true;
+}
+
+/* A model in place of a scene is the garment, not a body that is looked at. */
+static bool load_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
+{
+    const char *name = arguments->positional_count == 1 ? arguments->positionals[0] : "";
+    if (!tl_model_is_file(name))
+        return tl_headless_settings(arguments, out, error);
+    char *garment = tl_format("scene.garment=%s", name);
+    const char **assignments = TL_NEW_ARRAY(const char *, arguments->assignment_count + 1);
+    assignments[0] = garment;
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        assignments[i + 1] = arguments->assignments[i];
+    const struct tl_settings_source source = {.assignments = assignments,
+                                              .assignment_count = arguments->assignment_count + 1};
+    bool loaded = tl_settings_load(out, &source, error);
+    free(assignments);
+    free(garment);
+    return loaded;
+}
+
+bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_settings settings;
+    if (!check_output(arguments, error) || !load_settings(arguments, &settings, error))
+        return false;
+    tl_session *session = tl_session_create(&settings, error);
+    bool done = session != NULL;
+    if (done && !tl_session_cut(session))
+        done = tl_fail(error, TL_USAGE, "measure: the scene has no garment: add --garment FILE");
+    if (done)
+        done = tl_session_go_to(session, arguments->first_frame, error);
+    if (done) {
+        struct tl_measures measures = measure(session);
+        done = report(&measures, arguments, error);
+        tl_measures_release(&measures);
+    }
+    tl_session_destroy(&session);
+    return done;
+}

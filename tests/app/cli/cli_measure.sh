@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# toile measure: tables, CSV and JSON of a drape, of a file as authored, and of a file that is one's own export.
+set -u
+. "$(dirname "$0")/cli.sh"
+
+quick="--set cloth.edge_m=0.05 --set cloth.settle_s=2 --quiet"
+check "a built-in cut is measured" sh -c "$TOILE measure --garment dress $quick -o dress.csv >dress.txt"
+check "its panels are listed" grep -Eq '^bodice 1 +[0-9.]+ +[0-9.]+ ' dress.txt
+check "its openings are named" sh -c "for name in neck 'left armhole' 'right armhole' hem; do grep -q \"^\$name  *[0-9]\" dress.txt || exit 1; done"
+check "its girths stand beside the body's" grep -Eq '^waist +1[0-9]{3} +6[0-9]{2}\.[0-9] +[67][0-9]{2}\.[0-9]' dress.txt
+check "the CSV has a head" sh -c "[ \"\$(head -1 dress.csv)\" = kind,name,quantity,unit,rest,worn,mean,p95,max ]"
+check "every line of it has nine fields" sh -c "! grep -Evq '^([^,]*,){8}[^,]*$' dress.csv"
+check "all of it is the sum of its panels" awk -F, '
+    $3 == "area" && $2 == "\"all\"" { all = $5 } $3 == "area" && $2 != "\"all\"" { sum += $5 }
+    END { exit !(all > 9000 && all < 12000 && sum - all < 0.1 && all - sum < 0.1) }' dress.csv
+
+# Opened again, the export has the areas, lengths and strains that it had: its UVs are its pattern.
+$TOILE export --garment dress $quick -o dress.obj
+check "an export is measured" sh -c "$TOILE measure dress.obj --avatar form --quiet -o again.csv >again.txt"
+check "and has the same measures" awk -F, '
+    NR == FNR { rest[$1 $2 $3] = $5; mean[$1 $2 $3] = $7; next }
+    FNR > 1 { key = $1 $2 $3; n++
+        if ($5 != "" && ($5 / rest[key] > 1.01 || $5 / rest[key] < 0.99)) { print key, $5, rest[key]; bad = 1 }
+        if ($7 != "" && ($7 - mean[key] > 0.2 || $7 - mean[key] < -0.2)) { print key, $7, mean[key]; bad = 1 } }
+    END { exit bad || n < 20 }' dress.csv again.csv
+check "by its mesh it is not strained" sh -c "$TOILE measure dress.obj --set cloth.rest=mesh --quiet | grep -Eq '^all .* 0\.00 +-?0\.00 +0\.00 '"
+check "that is said" sh -c "$TOILE measure dress.obj --set cloth.rest=mesh 2>&1 >skirt.txt | grep -q 'has no pattern'"
+check "nobody wears it: no girths" sh -c "! $TOILE measure dress.obj --quiet | grep -q '^girth'"
+check "info tells the rest shape" sh -c "$TOILE info dress.obj | grep -Eq '^ +of +uv$'"
+check "and the openings" sh -c "$TOILE info dress.obj | grep -Eq '^ +left armhole +5[0-9]{2}'"
+check "JSON is one object" sh -c "$TOILE measure dress.obj --json --quiet | python3 -c '
+import json, sys
+measures = json.load(sys.stdin)
+assert len(measures[\"panels\"]) == 5 and measures[\"openings_mm\"][\"hem\"][\"rest\"] > 2000, measures'"
+check "a later frame is measured too" sh -c "$TOILE measure dress.obj --frame 2 --quiet | grep -q '^hem '"
+
+refuse "a picture is no table" 'end the name in .csv' measure dress.obj -o out.png
+refuse "a scene without a garment" 'no garment' measure --garment none --avatar form
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >flat.obj
+refuse "UVs that are not there" 'cloth.rest=uv: flat.obj has no UVs' measure flat.obj --set cloth.rest=uv
