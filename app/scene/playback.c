@@ -88,6 +88,17 @@ void tl_playback_close(tl_playback **handle)
     *handle = NULL;
 }
 
+double tl_playback_length_s(const tl_playback *playback, const struct tl_settings *settings)
+{
+    if (!playback->cache)
+        return playback->moving.clips[playback->clip].duration_s;
+    const struct tl_point_cache_facts *facts = tl_point_cache_facts(playback->cache);
+    double own_rate = (double)settings->scene.motion_rate;
+    if (facts->in_seconds)
+        return own_rate > 0 ? (double)(facts->sample_count - 1) / own_rate : facts->last - facts->first;
+    return (facts->last - facts->first) / (own_rate > 0 ? own_rate : settings->cloth.frame_rate);
+}
+
 float tl_playback_lowest(const tl_playback *playback)
 {
     if (playback->cache)

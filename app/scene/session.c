@@ -17,6 +17,8 @@
 #include "render/inspect/legend.h"
 
 #include <float.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -310,22 +312,26 @@ void tl_session_destroy(tl_session **handle)
     *handle = NULL;
 }
 
-bool tl_session_advance(tl_session *session, tl_error *error)
+/* Poses all that follows the clock alone. */
+static bool pose_at(tl_session *session, int number, tl_error *error)
 {
-    double time_s = (session->frame + 1) / session->settings.cloth.frame_rate;
-    double position = light_position(&session->settings, session->frame + 1);
-    if (!tl_moving_light_follow(&session->light, position, error))
+    if (!tl_moving_light_follow(&session->light, light_position(&session->settings, number), error))
         return false;
     /* Without a clip the avatar stands still: its normals and the collider need no update. */
     if (session->clip >= 0)
-        pose_avatar(session, time_s);
+        pose_avatar(session, number / session->settings.cloth.frame_rate);
+    return !session->playback || play_back(session, number, error);
+}
+
+bool tl_session_advance(tl_session *session, tl_error *error)
+{
+    if (!pose_at(session, session->frame + 1, error))
+        return false;
     if (session->cloth) {
         if (!tl_cloth_step(session->cloth, session->collider, error))
             return false;
         read_back_cloth(session);
     }
-    if (session->playback && !play_back(session, session->frame + 1, error))
-        return false;
     session->frame++;
     return true;
 }
@@ -351,11 +357,26 @@ bool tl_session_reset(tl_session *session, tl_error *error)
     return true;
 }
 
+/* Nothing depends on the frames before. */
+static bool seek(tl_session *session, int number, tl_error *error)
+{
+    if (number == session->frame)
+        return true;
+    if (number == 0)
+        return tl_session_reset(session, error);
+    if (!pose_at(session, number, error))
+        return false;
+    session->frame = number;
+    return true;
+}
+
 bool tl_session_go_to(tl_session *session, int number, tl_error *error)
 {
+    if (!session->cloth)
+        return seek(session, number, error);
     if (number < session->frame && !tl_session_reset(session, error))
         return false;
-    struct tl_progress progress = tl_progress_begin(session->playback ? "playing" : "simulating");
+    struct tl_progress progress = tl_progress_begin("simulating");
     int first = session->frame;
     bool done = true;
     while (done && session->frame < number) {
@@ -367,6 +388,19 @@ bool tl_session_go_to(tl_session *session, int number, tl_error *error)
     }
     tl_progress_end(&progress);
     return done;
+}
+
+int tl_session_last_frame(const tl_session *session)
+{
+    double length_s = 0;
+    if (session->cloth)
+        return 0;
+    if (session->clip >= 0)
+        length_s = session->avatar->model.clips[session->clip].duration_s;
+    if (session->playback)
+        length_s = fmax(length_s, tl_playback_length_s(session->playback, &session->settings));
+    double frames = length_s * session->settings.cloth.frame_rate;
+    return (int)fmin(ceil(frames - 1e-6), INT_MAX);
 }
 
 int tl_session_frame_number(const tl_session *session)

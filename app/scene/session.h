@@ -47,9 +47,14 @@ void tl_session_destroy(tl_session **handle);
 bool tl_session_advance(tl_session *session, tl_error *error);
 
 /* Advances to frame `number` (0: the start, settled or as authored); an earlier frame is reached from the
- * start, because cloth cannot be stepped backwards. Errors: as tl_session_advance, and TL_INTERRUPTED at the
- * frame that was reached. Lifetime: ends the last tl_session_frame. Threads: the session's. */
+ * start, because cloth cannot be stepped backwards. Without cloth a frame is reached at once. Errors: as
+ * tl_session_advance, and TL_INTERRUPTED at the frame that was reached. Lifetime: ends the last
+ * tl_session_frame. Threads: the session's. */
 bool tl_session_go_to(tl_session *session, int number, tl_error *error);
+
+/* The last frame of what is played back: a motion, or an avatar's clip where nothing is simulated; any frame
+ * can then be gone to at once. 0: there is none. Errors: none. Threads: the session's. */
+int tl_session_last_frame(const tl_session *session);
 
 /* The number of the present frame. Errors: none. Threads: the session's. */
 int tl_session_frame_number(const tl_session *session);

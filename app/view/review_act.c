@@ -30,13 +30,22 @@ void tl_act_play(struct tl_review *review, int argument)
 
 void tl_act_step(struct tl_review *review, int argument)
 {
-    (void)argument;
-    tl_error error;
-    review->playing = false;
-    if (!tl_session_advance(review->session, &error))
-        tl_review_report_error(review, &error);
-    review->image_is_old = true;
-    tl_info("view: frame %d", tl_session_frame_number(review->session));
+    int frame = tl_session_frame_number(review->session) + argument;
+    if (argument < 0 && tl_session_cloth(review->session))
+        tl_review_report(review, "cloth is simulated forwards only: R goes back to the start");
+    else if (frame >= 0)
+        tl_review_go_to_frame(review, frame);
+}
+
+void tl_act_end(struct tl_review *review, int argument)
+{
+    int last = tl_session_last_frame(review->session);
+    if (argument < 0)
+        tl_review_go_to_frame(review, 0);
+    else if (last > 0)
+        tl_review_go_to_frame(review, last);
+    else
+        tl_review_report(review, "nothing is played back that would have an end");
 }
 
 void tl_act_reset(struct tl_review *review, int argument)

@@ -9,8 +9,9 @@ struct tl_review;
 typedef void tl_review_action(struct tl_review *review, int argument);
 
 /* Cloth. */
-tl_review_action tl_act_play;  /* or pause */
-tl_review_action tl_act_step;  /* one frame, paused */
+tl_review_action tl_act_play; /* or pause */
+tl_review_action tl_act_step; /* one frame, paused: 1 further, -1 back, which a motion can and cloth cannot */
+tl_review_action tl_act_end;  /* -1: first frame; 1: last frame of a motion */
 tl_review_action tl_act_drape; /* settles a garment that was authored; else as tl_act_reset */
 tl_review_action tl_act_reset; /* to the start: settled, or as authored */
 tl_review_action tl_act_pin;   /* pins the vertex that is pulled; takes all pins out when none is pulled */

@@ -33,7 +33,9 @@ static bool is_playing(const struct tl_review *review)
 const struct tl_review_command tl_review_commands[] = {
     {"play or pause", tl_act_play, TL_SECTION_CLOTH, .keys = {KEY(SPACE)},
      .button = "Play", .button_on = "Pause", .is_on = is_playing},
-    {"one frame further", tl_act_step, TL_SECTION_CLOTH, .keys = {KEY(PERIOD)}, .repeats = true, .button = "Step"},
+    {"one frame further, back in a motion", tl_act_step, TL_SECTION_CLOTH,
+     .keys = {TO(PERIOD, 1), WITH_TO(SHIFT, PERIOD, -1)}, .repeats = true, .button = "Step"},
+    {"first, last frame of a motion", tl_act_end, TL_SECTION_CLOTH, .keys = {TO(HOME, -1), TO(END, 1)}},
     {"drape the garment: at rest on its avatar", tl_act_drape, TL_SECTION_CLOTH, .keys = {KEY(D)}},
     {"back to the start", tl_act_reset, TL_SECTION_CLOTH, .keys = {KEY(R)}, .button = "Reset"},
     {"pin what is pulled; else remove all pins", tl_act_pin, TL_SECTION_CLOTH, .keys = {KEY(P)}},
@@ -91,7 +93,7 @@ const struct tl_review_gesture tl_review_gestures[] = {
     {TL_SECTION_CAMERA, "double click", "look closely at that point"},
     {TL_SECTION_LIGHT, "Shift + drag", "turn the environment"},
     {TL_SECTION_COMPARE, "drag the line", "move it"},
-    {TL_SECTION_WINDOW, "drop a file", ".glb .gltf .obj: model; .pc2 .mdd: motion;"},
+    {TL_SECTION_WINDOW, "drop a file", ".glb .gltf .obj .ply .stl .off: model; .pc2 .mdd: motion;"},
     {TL_SECTION_WINDOW, "", ".json: sewing pattern;"},
     {TL_SECTION_WINDOW, "", ".exr .hdr: light; .yaml: scene, fabric, preset"},
 };
@@ -121,7 +123,8 @@ static void name_key(int key, char *text, size_t size)
         {GLFW_KEY_SPACE, "Space"},    {GLFW_KEY_LEFT, "Left"}, {GLFW_KEY_RIGHT, "Right"},
         {GLFW_KEY_UP, "Up"},          {GLFW_KEY_DOWN, "Down"}, {GLFW_KEY_PAGE_UP, "PgUp"},
         {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_TAB, "Tab"},   {GLFW_KEY_ESCAPE, "Esc"},
-        {GLFW_KEY_F1, "F1"},          {GLFW_KEY_F12, "F12"},
+        {GLFW_KEY_F1, "F1"},          {GLFW_KEY_F12, "F12"},   {GLFW_KEY_HOME, "Home"},
+        {GLFW_KEY_END, "End"},
     };
     for (size_t i = 0; i < TL_COUNT(named); i++)
         if (named[i].key == key) {

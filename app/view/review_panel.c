@@ -4,6 +4,7 @@
 #include "app/view/review/review_edit.h"
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_memory.h"
+#include "app/view/review/review_move.h"
 #include "app/view/review/review_read.h"
 #include "app/view/review/review_wipe.h"
 #include "app/view/review_commands.h"
@@ -207,6 +208,8 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
         tl_review_note_motion(review);
         review->changed = true;
     }
+    if (result->frame >= 0)
+        tl_review_go_to_frame(review, result->frame);
     if (result->answer >= 0)
         tl_review_answer(review, (size_t)result->answer);
     else if (result->button >= 0)
@@ -254,6 +257,14 @@ static struct tl_panel_strip strip_of(const struct tl_review *review, float *tim
     return (struct tl_panel_strip){times, all->count, budget_ms, label};
 }
 
+static struct tl_panel_timeline timeline_of(const struct tl_review *review, char *label, size_t size)
+{
+    double rate = review->good.cloth.frame_rate;
+    int frame = tl_session_frame_number(review->session), last = tl_session_last_frame(review->session);
+    snprintf(label, size, "%d: %.2f of %.2f s", frame, frame / rate, last / rate);
+    return (struct tl_panel_timeline){frame, last, label};
+}
+
 void tl_review_build_panel(struct tl_review *review)
 {
     struct tl_review_buttons buttons;
@@ -276,7 +287,7 @@ void tl_review_build_panel(struct tl_review *review)
     int width, height;
     tl_review_size(review, &width, &height);
     struct question question;
-    char status[256], progress[256], left[256] = "", right[256] = "", label[256];
+    char status[256], progress[256], left[256] = "", right[256] = "", label[256], moment[64];
     float times[TL_FRAME_TIMES_SHOWN];
     char read_out[512];
     struct tl_panel_legend legend;
@@ -291,6 +302,7 @@ void tl_review_build_panel(struct tl_review *review)
         .message_is_error = review->message_is_error,
         .status = status,
         .strip = strip_of(review, times, label, sizeof label),
+        .timeline = timeline_of(review, moment, sizeof moment),
         .wipe = {tl_review_wipe_column(review, width), left, right},
         .legend = tl_review_legend(review, &legend) ? &legend : NULL,
         .read_out = read_out,

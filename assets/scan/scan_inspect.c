@@ -1,5 +1,6 @@
 /* What is wrong with the mesh of a scan. */
 #include "assets/base/model_build.h"
+#include "assets/connect/sets.h"
 #include "assets/scan/scan_internal.h"
 #include "config/memory.h"
 
@@ -33,28 +34,6 @@ static int by_places(const void *a, const void *b)
     return (p->higher > q->higher) - (p->higher < q->higher);
 }
 
-/* Union-find with path halving. */
-static uint32_t root_of(uint32_t *parents, uint32_t i)
-{
-    while (parents[i] != i)
-        i = parents[i] = parents[parents[i]];
-    return i;
-}
-
-static void join(uint32_t *parents, uint32_t a, uint32_t b)
-{
-    uint32_t p = root_of(parents, a), q = root_of(parents, b);
-    parents[p > q ? p : q] = p < q ? p : q;
-}
-
-static uint32_t *singletons(size_t count)
-{
-    uint32_t *parents = tl_alloc(count, sizeof *parents);
-    for (size_t i = 0; i < count; i++)
-        parents[i] = (uint32_t)i;
-    return parents;
-}
-
 /* A vertex at each place, for its position. */
 static uint32_t *vertices_at(const struct scan_inspection *inspection)
 {
@@ -82,7 +61,7 @@ static void find_borders(struct scan_inspection *inspection)
 {
     const tl_mesh *mesh = inspection->mesh;
     struct scan_side *sides = sides_of(inspection);
-    uint32_t *vertices = vertices_at(inspection), *parents = singletons(mesh->vertex_count);
+    uint32_t *vertices = vertices_at(inspection), *parents = tl_sets_create(mesh->vertex_count);
     double *lengths_m = TL_NEW_ARRAY(double, mesh->vertex_count);
     size_t borders = 0;
     for (size_t first = 0, end; first < mesh->index_count; first = end) {
@@ -91,14 +70,14 @@ static void find_borders(struct scan_inspection *inspection)
         inspection->crowded += end - first > 2;
         inspection->turned += end - first == 2 && sides[first].rises == sides[first + 1].rises;
         if (end - first == 1 && sides[first].lower != sides[first].higher) {
-            join(parents, sides[first].lower, sides[first].higher);
+            tl_sets_join(parents, sides[first].lower, sides[first].higher);
             sides[borders++] = sides[first];
         }
     }
     for (size_t i = 0; i < borders; i++) {
         vec3s from = mesh->positions[vertices[sides[i].lower]],
               to = mesh->positions[vertices[sides[i].higher]];
-        double *length_m = &lengths_m[root_of(parents, sides[i].lower)];
+        double *length_m = &lengths_m[tl_sets_find(parents, sides[i].lower)];
         inspection->border_count += *length_m == 0;
         *length_m += fmax((double)glms_vec3_distance(from, to), 1e-12);
         inspection->longest_m = fmax(inspection->longest_m, *length_m);
@@ -112,12 +91,13 @@ static void find_borders(struct scan_inspection *inspection)
 static void find_pieces(struct scan_inspection *inspection)
 {
     const tl_mesh *mesh = inspection->mesh;
-    uint32_t *parents = singletons(mesh->vertex_count);
+    uint32_t *parents = tl_sets_create(mesh->vertex_count);
     size_t *triangles = TL_NEW_ARRAY(size_t, mesh->vertex_count), largest = 0;
     for (size_t i = 0; i < mesh->index_count; i++)
-        join(parents, inspection->places[mesh->indices[i]], inspection->places[mesh->indices[i - i % 3]]);
+        tl_sets_join(parents, inspection->places[mesh->indices[i]],
+                     inspection->places[mesh->indices[i - i % 3]]);
     for (size_t i = 0; i < mesh->index_count; i += 3) {
-        size_t count = ++triangles[root_of(parents, inspection->places[mesh->indices[i]])];
+        size_t count = ++triangles[tl_sets_find(parents, inspection->places[mesh->indices[i]])];
         largest = count > largest ? count : largest;
     }
     for (size_t i = 0; i < mesh->vertex_count; i++) {

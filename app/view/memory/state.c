@@ -15,6 +15,7 @@ static const struct tl_option window_rows[] = {
     TL_OPTION_INT(struct tl_window_params, height, TL_AFFECTS_NOTHING, 240, 16384, "pixels",
                   "size of the window when it opens"),
     TL_OPTION_BOOL(struct tl_window_params, panel, TL_AFFECTS_NOTHING, "show the panel; Tab toggles it"),
+    TL_OPTION_BOOL(struct tl_window_params, loop, TL_AFFECTS_NOTHING, "motions begin again at their end"),
     TL_OPTION_FLOAT(struct tl_window_params, budget_ms, TL_AFFECTS_NOTHING, 0, 1000, "ms",
                     "time budget of a frame; a larger one allows more quality; 0: no limit"),
     TL_OPTION_FLOAT(struct tl_window_params, turntable_deg_s, TL_AFFECTS_NOTHING, -360, 360, "degrees/s",
@@ -24,8 +25,8 @@ static const struct tl_option window_rows[] = {
 };
 const struct tl_option_table tl_window_options =
     TL_OPTION_TABLE("window", "the review window; kept between runs, not a part of a scene", window_rows,
-                    struct tl_window_params, .width = 1280, .height = 800, .panel = true, .budget_ms = 50,
-                    .turntable_deg_s = 30, .environment_turn_deg_s = 30);
+                    struct tl_window_params, .width = 1280, .height = 800, .panel = true, .loop = true,
+                    .budget_ms = 50, .turntable_deg_s = 30, .environment_turn_deg_s = 30);
 
 /* Whether a state file holds settings besides the window's. */
 static const struct tl_option review_rows[] = {

@@ -14,6 +14,7 @@ struct tl_window_params { /* table "window" */
     bool panel;
     float budget_ms; /* for a frame; 0: none */
     float turntable_deg_s, environment_turn_deg_s;
+    bool loop; /* motions begin again at their end */
 };
 extern const struct tl_option_table tl_window_options;
 

@@ -86,6 +86,17 @@ void draw_buttons(const tl_panel_button *buttons, size_t count, tl_panel_result 
     }
 }
 
+void draw_timeline(const tl_panel_timeline &timeline, tl_panel_result &result)
+{
+    int frame = timeline.frame < timeline.last ? timeline.frame : timeline.last;
+    if (timeline.last <= 0)
+        return;
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderInt("##frame", &frame, 0, timeline.last, timeline.label, ImGuiSliderFlags_NoInput))
+        result.frame = frame;
+    tooltip_of_last_item("the frame of the motion: drag to go to another one");
+}
+
 /* "table.key" among the bindings. */
 bool draw_favourite(const tl_panel_input &input, const char *name)
 {
@@ -175,6 +186,7 @@ void draw_panel(tl_panel &panel, const tl_panel_input &input, tl_panel_result &r
         false); /* Tab hides the panel and must not move the keyboard focus into it */
     ImGui::TextWrapped("%s", input.title);
     draw_buttons(input.buttons, input.button_count, result);
+    draw_timeline(input.timeline, result);
     tl_panel_strip_draw(input.strip);
     ImGui::Separator();
     draw_front(input, result);
@@ -308,7 +320,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1, -1};
+    tl_panel_result result = {false, false, -1, -1, -1};
     ImGui_ImplOpenGL3_NewFrame();
     note_texts(panel->fonts, *input);
     if (tl_panel_fonts_update(panel->fonts)) {

@@ -57,6 +57,12 @@ struct tl_panel_legend {
     float entry_colours[TL_PANEL_LEGEND_ENTRIES][3];
 };
 
+/* The frames of what is played back; a slider goes to one. */
+struct tl_panel_timeline {
+    int frame, last;   /* last 0: none is shown */
+    const char *label; /* "1.20 of 4.00 s" */
+};
+
 /* An operation that runs asynchronously. */
 struct tl_panel_progress {
     const char *what; /* NULL: nothing */
@@ -72,6 +78,7 @@ struct tl_panel_input {
     struct tl_panel_strip strip;
     struct tl_panel_wipe wipe;
     struct tl_panel_progress progress;
+    struct tl_panel_timeline timeline;
     const struct tl_panel_legend *legend; /* NULL: none */
     const char *read_out;                 /* lines next to the pointer, or "" */
     const struct tl_panel_button *buttons;
@@ -96,6 +103,7 @@ struct tl_panel_result {
     bool editing; /* a widget is held or typed into: further edits are expected */
     int button;   /* index of the one that was pressed, -1 for none */
     int answer;   /* index of the one that was chosen, -1 for none */
+    int frame;    /* that the timeline was moved to, -1 for none */
 };
 
 /* Installs its input callbacks, which call the window's own first. `gpu`: of the window's context. `scale`:

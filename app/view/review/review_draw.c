@@ -129,16 +129,33 @@ static bool is_step_due(const struct tl_review *review)
     return review->playing && tl_clock_s() >= review->next_step_s;
 }
 
+/* What is played back keeps its rate; cloth is simulated frame by frame. */
+static bool advance(struct tl_review *review, double late_s, tl_error *error)
+{
+    int last = tl_session_last_frame(review->session), frame = tl_session_frame_number(review->session);
+    if (last == 0)
+        return tl_session_advance(review->session, error);
+    double frame_s = 1 / review->good.cloth.frame_rate;
+    if (frame >= last && !review->params.loop) {
+        tl_review_set_playing(review, false);
+        return true;
+    }
+    return tl_session_go_to(review->session, tl_play_next(frame, last, frame_s, late_s, review->params.loop),
+                            error);
+}
+
 static void step(struct tl_review *review)
 {
-    double now_s = tl_clock_s();
+    double now_s = tl_clock_s(), frame_s = 1 / review->good.cloth.frame_rate;
+    double late_s = now_s - review->next_step_s;
+    bool plays_back = tl_session_last_frame(review->session) > 0;
     tl_error error;
     tl_review_hand_step(review);
-    if (!tl_session_advance(review->session, &error))
+    if (!advance(review, late_s, &error))
         tl_review_report_error(review, &error);
-    double frame_s = 1 / review->good.cloth.frame_rate;
-    review->play_speed = tl_play_speed(review->play_speed, frame_s, now_s - review->next_step_s);
-    review->next_step_s = fmax(review->next_step_s + frame_s, now_s);
+    review->play_speed = plays_back ? 1 : tl_play_speed(review->play_speed, frame_s, late_s);
+    review->next_step_s += frame_s * (plays_back ? 1 + floor(fmax(late_s, 0) / frame_s) : 1);
+    review->next_step_s = fmax(review->next_step_s, plays_back ? 0 : now_s);
     review->times.cloth = 1e3 * (tl_clock_s() - now_s);
 }
 

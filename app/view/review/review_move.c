@@ -52,6 +52,17 @@ void tl_review_go_to_view(struct tl_review *review, int index)
     tl_review_report(review, "view %d", index + 1);
 }
 
+void tl_review_go_to_frame(struct tl_review *review, int frame)
+{
+    tl_error error;
+    review->playing = false;
+    if (!tl_session_go_to(review->session, frame, &error))
+        tl_review_report_error(review, &error);
+    review->image_is_old = true;
+    tl_review_note_motion(review);
+    tl_info("view: frame %d", tl_session_frame_number(review->session));
+}
+
 static void glide(struct tl_review *review, double now_s)
 {
     struct tl_review_motion *motion = &review->motion;

@@ -1,5 +1,6 @@
-/* Motion without input: turntable, environment, glides to saved views, recorded and played camera paths. It
- * follows the clock, so that a slow machine shows fewer steps of the same motion. Owns `motion` and `path`.
+/* Motion without input, and the frame: turntable, environment, glides to saved views, recorded and played
+ * camera paths. It follows the clock, so that a slow machine shows fewer steps of the same motion. Owns
+ * `motion` and `path`.
  */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_MOVE_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_MOVE_H
@@ -18,6 +19,9 @@ void tl_review_fix_camera(struct tl_review *review);
 void tl_review_go_to_view(struct tl_review *review, int index);
 /* Starts or stops one of `motion`'s turntables; `name` is for the report. */
 void tl_review_toggle(struct tl_review *review, bool *turntable, const char *name);
+
+/* Pauses at a frame. One that is played back is reached at once; cloth is simulated up to it. */
+void tl_review_go_to_frame(struct tl_review *review, int frame);
 
 /* The camera path: adds a key by hand; starts or ends recording; starts or stops playing. */
 void tl_review_path_add(struct tl_review *review);

@@ -214,6 +214,61 @@ static void a_clip_moves_the_garment(void **state)
     tl_session_destroy(&session);
 }
 
+static int last_frame_with(const char *motion, const char *rate)
+{
+    const char *const extra[] = {motion, rate};
+    tl_session *session = create(extra, TL_COUNT(extra));
+    int last = tl_session_last_frame(session);
+    tl_session_destroy(&session);
+    return last;
+}
+
+/* Five samples at 30 frames a second: the last is frame 4; at half the rate frame 8. An MDD states seconds.
+ */
+static void motions_have_an_end(void **state)
+{
+    (void)state;
+    assert_int_equal(last_frame_with("scene.motion=" SCRATCH "/skirt.pc2", "scene.motion_rate=0"),
+                     FRAMES - 1);
+    assert_int_equal(last_frame_with("scene.motion=" SCRATCH "/skirt.pc2", "scene.motion_rate=15"),
+                     2 * (FRAMES - 1));
+    assert_int_equal(last_frame_with("scene.motion=" SCRATCH "/skirt.#.obj", "scene.motion_rate=0"),
+                     FRAMES - 1);
+    assert_int_equal(last_frame_with("scene.motion=" SCRATCH "/skirt.mdd", "cloth.frame_rate=60"),
+                     2 * (FRAMES - 1));
+    assert_int_equal(last_frame_with("scene.motion=" SCRATCH "/skirt.mdd", "scene.motion_rate=15"),
+                     2 * (FRAMES - 1));
+    assert_int_equal(last_frame_with("scene.motion=none", "scene.motion_rate=0"), 0); /* cloth has no end */
+}
+
+/* A frame that is gone to is the one that is reached step by step. */
+static void an_avatar_alone_is_played_back(void **state)
+{
+    (void)state;
+    const char *path = scratch("turning alone.glb");
+    struct small_glb glb = small_glb_make();
+    small_glb_write(&glb, path);
+    char avatar[1100];
+    snprintf(avatar, sizeof avatar, "scene.avatar=%s", path);
+    const char *const extra[] = {avatar, "scene.garment=none"};
+    tl_error error = {0};
+    tl_session *session = create(extra, TL_COUNT(extra));
+    assert_int_equal(tl_session_last_frame(session), 60); /* 2 s */
+    for (int i = 0; i < 45; i++)
+        assert_ok(tl_session_advance(session, &error), error);
+    vec3s stepped[4];
+    tl_frame frame = tl_session_frame(session);
+    memcpy(stepped, frame.surfaces[0].positions, sizeof stepped);
+    assert_true(glms_vec3_distance(stepped[2], (vec3s){{1, 1, 0}}) > 0.1f); /* it turns */
+    static const int frames[] = {50, 10, 45};
+    for (size_t i = 0; i < TL_COUNT(frames); i++)
+        assert_ok(tl_session_go_to(session, frames[i], &error), error);
+    frame = tl_session_frame(session);
+    assert_int_equal(tl_session_frame_number(session), 45);
+    assert_memory_equal(stepped, frame.surfaces[0].positions, sizeof stepped);
+    tl_session_destroy(&session);
+}
+
 static void motions_come_and_go(void **state)
 {
     (void)state;
@@ -290,6 +345,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_was_simulated_is_played), cmocka_unit_test(units_apply_to_the_motion_too),
         cmocka_unit_test(the_rate_can_be_told),         cmocka_unit_test(a_clip_moves_the_garment),
+        cmocka_unit_test(motions_have_an_end),          cmocka_unit_test(an_avatar_alone_is_played_back),
         cmocka_unit_test(motions_come_and_go),          cmocka_unit_test(a_model_alone_can_be_moved),
         cmocka_unit_test(a_real_simulation_is_played),
     };

@@ -59,12 +59,29 @@ static void the_panel_is_built_four_times_a_second_in_motion(void **state)
     assert_int_equal(times_built(false, false), 60);
 }
 
+/* At 30 frames a second, of a motion of 10 frames. */
+static void a_motion_keeps_its_rate(void **state)
+{
+    (void)state;
+    const double frame_s = 1.0 / 30;
+    assert_int_equal(tl_play_next(3, 9, frame_s, 0, true), 4);
+    assert_int_equal(tl_play_next(3, 9, frame_s, -0.01, true), 4);
+    assert_int_equal(tl_play_next(3, 9, frame_s, 0.02, true), 4);
+    assert_int_equal(tl_play_next(3, 9, frame_s, 0.05, true), 5);  /* one frame was missed */
+    assert_int_equal(tl_play_next(3, 9, frame_s, 0.11, false), 7); /* three */
+    assert_int_equal(tl_play_next(9, 9, frame_s, 0, true), 0);     /* begins again */
+    assert_int_equal(tl_play_next(8, 9, frame_s, 0.08, true), 1);  /* 9, 0, 1 */
+    assert_int_equal(tl_play_next(8, 9, frame_s, 100, true), 9);   /* 3009, ten frames a turn */
+    assert_int_equal(tl_play_next(8, 9, frame_s, 0.08, false), 9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_cloth_plays_as_fast_as_its_frames_come),
         cmocka_unit_test(one_slow_frame_changes_little),
         cmocka_unit_test(the_panel_is_built_four_times_a_second_in_motion),
+        cmocka_unit_test(a_motion_keeps_its_rate),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
