@@ -236,7 +236,7 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
     } else if (tl_point_cache_is_file(path)) {
         tl_review_set(review, "scene.motion", path);
     } else if (tl_pattern_is_file(path)) {
-        tl_review_set(review, "scene.garment", path);
+        use_as_garment(review, path);
     } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
                tl_path_has_extension(path, "yml")) {
         ask_about(review, path);
