@@ -42,16 +42,18 @@ struct tl_cloth_params {
     double strain_limit;    /* preview: largest strain of an edge; 0: only the energy resists */
     double pin_above_m;     /* vertices that start higher are pinned to the avatar's nearest point; 0: none */
     int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
-    bool self_contact;      /* the cloth does not pass through itself: cloth/contact/keep_apart.h */
-    double gravity;         /* m/s^2, along -Y */
-    float wind[3];          /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
-    double gust;            /* 0 to 1: amplitude of the wind's speed, relative to it */
-    double settle_s;        /* longest simulated time of settling before the first frame */
-    double settle_speed;    /* m/s: the cloth is settled when no vertex moves faster over a frame */
-    bool cages;             /* settling begins on coarser versions of a fine cloth: cloth/coarser.h */
-    float edge_m;           /* target edge length of built-in garments */
-    int rest;               /* enum tl_rest_choice: of garments from files */
-    float longest_edge_m;   /* longer edges of garments from files are halved; 0: never */
+    char pin_openings[TL_STRING_SIZE]; /* names of openings whose vertices are pinned, with commas between
+                                          them */
+    bool self_contact;    /* the cloth does not pass through itself: cloth/contact/keep_apart.h */
+    double gravity;       /* m/s^2, along -Y */
+    float wind[3];        /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
+    double gust;          /* 0 to 1: amplitude of the wind's speed, relative to it */
+    double settle_s;      /* longest simulated time of settling before the first frame */
+    double settle_speed;  /* m/s: the cloth is settled when no vertex moves faster over a frame */
+    bool cages;           /* settling begins on coarser versions of a fine cloth: cloth/coarser.h */
+    float edge_m;         /* target edge length of built-in garments */
+    int rest;             /* enum tl_rest_choice: of garments from files */
+    float longest_edge_m; /* longer edges of garments from files are halved; 0: never */
 };
 extern const struct tl_option_table tl_cloth_options;
 

@@ -37,6 +37,10 @@ static const struct tl_option cloth_rows[] = {
                      "pins the vertices that start higher than this, for example a waistband; 0: none"),
     TL_OPTION_ENUM(struct tl_cloth_params, pin_colour, AFFECTS, tl_pin_colour_names,
                    "pins the vertices that have this vertex colour in the garment's file"),
+    TL_OPTION_STRING(
+        struct tl_cloth_params, pin_openings, TL_AFFECTS_SCENE | AFFECTS,
+        "pins openings by name, with commas between them: waist,left cuff; `toile info` and `toile "
+        "measure` list them"),
     TL_OPTION_BOOL(
         struct tl_cloth_params, self_contact, AFFECTS,
         "the cloth does not pass through itself: folds and layers (a shirt over trousers) lie on each other; "

@@ -1,10 +1,9 @@
 #include "app/batch/info_garment.h"
 
+#include "app/fit/sewn.h"
 #include "assets/base/placing.h"
 #include "assets/charts/rest.h"
-#include "assets/openings/openings.h"
 #include "cloth/contact/crossings.h"
-#include "cloth/mesh/topology.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -37,29 +36,22 @@ static void describe_rest(cJSON *object, const tl_model *model)
     tl_charts_release(&charts);
 }
 
-/* Lengths of the openings in mm, of the mesh as it will be placed. */
+/* Lengths of the openings in mm. A file that stands along Z is turned as it will be: names depend on it. */
 static void describe_openings(cJSON *object, const tl_model *model)
 {
     const struct tl_placing placing = {.z_up = model->units.z_up, .scale = 1};
-    const tl_mesh *mesh = &model->mesh;
-    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
-    size_t count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
-    struct tl_topology topology =
-        tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, count);
-    vec3s *positions = TL_NEW_ARRAY(vec3s, count);
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        positions[weld[i]] = tl_placing_point(&placing, mesh->positions[i]);
-    const struct tl_opening_mesh welded = {count, topology.triangle_count, positions,
-                                           (const uint32_t(*)[3])topology.triangles};
-    struct tl_openings openings;
+    const tl_garment garment = {.model = *model};
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
+    vec3s *positions = TL_NEW_ARRAY(vec3s, model->mesh.vertex_count);
+    for (size_t i = 0; i < model->mesh.vertex_count; i++)
+        positions[i] = tl_placing_point(&placing, model->mesh.positions[i]);
+    struct tl_openings openings = tl_sewn_openings(&garment, positions, weld);
     cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
-    tl_openings_find(&welded, &openings);
     for (size_t i = 0; i < openings.count && i < MOST_OPENINGS; i++)
         cJSON_AddNumberToObject(lengths, openings.items[i].name, 1e3 * openings.items[i].length);
     if (openings.count > MOST_OPENINGS)
         add_count(object, "openings_not_listed", openings.count - MOST_OPENINGS);
     tl_openings_release(&openings);
-    tl_topology_release(&topology);
     free(positions);
     free(weld);
 }

@@ -1,5 +1,6 @@
 #include "app/scene/load.h"
 
+#include "app/fit/sewn.h"
 #include "assets/base/placing.h"
 #include "assets/builtin/specimen.h"
 #include "assets/charts/rest.h"
@@ -234,6 +235,10 @@ bool tl_scene_load_garment(const struct tl_settings *settings, const tl_avatar *
         return true;
     if (!make_garment(settings, wearer, &made, lifted_m, error))
         return false;
+    if (!tl_sewn_pin(settings->cloth.pin_openings, &made, error)) {
+        tl_garment_release(&made);
+        return false;
+    }
     *out = TL_NEW(tl_garment);
     **out = made;
     return true;

@@ -1,0 +1,96 @@
+#include "app/fit/sewn.h"
+
+#include "assets/connect/sets.h"
+#include "cloth/mesh/topology.h"
+#include "config/memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Writes the sewn vertex of each render vertex; returns how many there are. */
+static size_t sew(const tl_garment *garment, uint32_t *weld)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    size_t count = mesh->vertex_count, sewn = 0;
+    for (size_t i = 0; i < count; i++)
+        weld[i] = (uint32_t)i;
+    if (!garment->welds_seams_only)
+        count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
+    uint32_t *sets = tl_sets_create(count), *numbers = TL_NEW_ARRAY(uint32_t, count);
+    for (size_t i = 0; i < garment->seam_count; i++)
+        tl_sets_join(sets, weld[garment->seams[i].a], weld[garment->seams[i].b]);
+    for (uint32_t i = 0; i < count; i++) { /* a set's lowest member comes first */
+        uint32_t root = tl_sets_find(sets, i);
+        numbers[i] = root == i ? (uint32_t)sewn++ : numbers[root];
+    }
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        weld[i] = numbers[weld[i]];
+    free(numbers);
+    free(sets);
+    return sewn;
+}
+
+struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *positions, uint32_t *weld)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    size_t count = sew(garment, weld);
+    struct tl_topology topology =
+        tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, count);
+    vec3s *places = TL_NEW_ARRAY(vec3s, count);
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        places[weld[i]] = positions[i];
+    const struct tl_opening_mesh sewn = {count, topology.triangle_count, places,
+                                         (const uint32_t(*)[3])topology.triangles};
+    struct tl_openings openings;
+    tl_openings_find(&sewn, &openings);
+    free(places);
+    tl_topology_release(&topology);
+    return openings;
+}
+
+static void add_pins(const struct tl_opening *opening, const uint32_t *weld, tl_garment *garment)
+{
+    size_t vertex_count = garment->model.mesh.vertex_count;
+    bool *pinned = TL_NEW_ARRAY(bool, vertex_count); /* by sewn vertex, of which there are at most as many */
+    for (size_t i = 0; i < opening->side_count; i++)
+        pinned[opening->vertices[i]] = true;
+    garment->pins = tl_resize(garment->pins, garment->pin_count + vertex_count, sizeof *garment->pins);
+    for (size_t i = 0; i < vertex_count; i++)
+        if (pinned[weld[i]])
+            garment->pins[garment->pin_count++] = (uint32_t)i;
+    free(pinned);
+}
+
+static bool refuse_name(const char *name, const tl_garment *garment, const struct tl_openings *openings,
+                        tl_error *error)
+{
+    char known[256] = "";
+    for (size_t i = 0; i < openings->count; i++) {
+        size_t length = strlen(known);
+        snprintf(known + length, sizeof known - length, "%s%s", i > 0 ? ", " : "", openings->items[i].name);
+    }
+    return tl_fail(error, TL_USAGE, "cloth.pin_openings: %s has no opening \"%s\": it has %s",
+                   garment->model.name, name, openings->count > 0 ? known : "none");
+}
+
+bool tl_sewn_pin(const char *names, tl_garment *garment, tl_error *error)
+{
+    if (names[0] == '\0')
+        return true;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, garment->model.mesh.vertex_count);
+    struct tl_openings openings = tl_sewn_openings(garment, garment->model.mesh.positions, weld);
+    char *list = tl_copy_string(names), *rest = list;
+    bool good = true;
+    for (char *name = strsep(&rest, ","); good && name; name = strsep(&rest, ",")) {
+        name += strspn(name, " ");
+        const struct tl_opening *opening = tl_openings_named(&openings, name);
+        good = opening || refuse_name(name, garment, &openings, error);
+        if (opening)
+            add_pins(opening, weld, garment);
+    }
+    free(list);
+    tl_openings_release(&openings);
+    free(weld);
+    return good;
+}

@@ -1,0 +1,103 @@
+/* Openings of garments whose seams are not closed yet, and pins by their names. */
+#include "app/fit/sewn.h"
+#include "app/scene/session.h"
+#include "assets/garment.h"
+#include "config/memory.h"
+#include "tests/testing.h"
+
+#include <string.h>
+
+static tl_garment cut(const char *name)
+{
+    tl_garment garment;
+    tl_error error = {0};
+    assert_ok(tl_garment_cut(name, 0.05f, &garment, &error), error);
+    return garment;
+}
+
+/* Render vertices of an opening, on all panels that meet there, found by brute force. */
+static size_t count_vertices(const tl_garment *garment, const struct tl_opening *opening,
+                             const uint32_t *weld)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < garment->model.mesh.vertex_count; i++)
+        for (size_t k = 0; k < opening->side_count; k++)
+            if (weld[i] == opening->vertices[k]) {
+                count++;
+                break;
+            }
+    return count;
+}
+
+static void pins_by_name(void **state)
+{
+    (void)state;
+    tl_garment garment = cut("dress");
+    tl_error error = {0};
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, garment.model.mesh.vertex_count);
+    struct tl_openings openings = tl_sewn_openings(&garment, garment.model.mesh.positions, weld);
+    assert_int_equal(openings.count, 4);
+    const struct tl_opening *hem = tl_openings_named(&openings, "hem");
+    const struct tl_opening *armhole = tl_openings_named(&openings, "left armhole");
+    assert_true(hem && armhole);
+    size_t own = garment.pin_count, of_hem = count_vertices(&garment, hem, weld);
+    assert_true(of_hem > hem->side_count); /* the sides' seams have a vertex on each panel */
+
+    assert_ok(tl_sewn_pin("", &garment, &error), error);
+    assert_int_equal(garment.pin_count, own);
+    assert_ok(tl_sewn_pin("hem, left armhole", &garment, &error), error);
+    assert_int_equal(garment.pin_count, own + of_hem + count_vertices(&garment, armhole, weld));
+    for (size_t i = own; i < garment.pin_count; i++) {
+        vec3s at = garment.model.mesh.positions[garment.pins[i]];
+        assert_true(i < own + of_hem ? at.y < 0.7f : at.y > 1.1f && at.x > 0);
+    }
+    assert_false(tl_sewn_pin("hem,cuff", &garment, &error));
+    assert_int_equal(error.code, TL_USAGE);
+    assert_non_null(strstr(error.message, "\"cuff\": it has neck, left armhole, right armhole, hem"));
+    tl_openings_release(&openings);
+    free(weld);
+    tl_garment_release(&garment);
+}
+
+/* A skirt on nobody, held by its hem: the hem stays, the rest hangs over it. */
+static void pinned_openings_are_held(void **state)
+{
+    (void)state;
+    static const char *const assignments[] = {
+        "scene.garment=dress", "scene.avatar=none", "image.ground=false",    "cloth.edge_m=0.08",
+        "cloth.settle_s=0.3",  "cloth.substeps=8",  "cloth.pin_openings=hem"};
+    const struct tl_settings_source source = {NULL, assignments, TL_COUNT(assignments)};
+    struct tl_settings settings;
+    tl_error error = {0};
+    assert_ok(tl_settings_load(&settings, &source, &error), error);
+    tl_session *session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    const tl_garment *garment = tl_session_cut(session);
+    tl_frame frame = tl_session_frame(session);
+    const tl_surface *shown = &frame.surfaces[frame.surface_count - 1];
+    size_t held = 0;
+    float farthest = 0;
+    for (size_t i = 0; i < shown->vertex_count; i++) {
+        float way = glms_vec3_distance(shown->positions[i], garment->model.mesh.positions[i]);
+        bool is_pinned = false;
+        for (size_t k = 0; k < garment->pin_count; k++)
+            is_pinned = is_pinned || garment->pins[k] == i;
+        held += is_pinned;
+        farthest = fmaxf(farthest, way);
+        if (is_pinned)
+            assert_true(way < 0.01f); /* where a seam closed, its two sides met halfway */
+    }
+    assert_true(held > 20);
+    assert_true(farthest > 0.05f);
+    settings.cloth.pin_openings[0] = 'x';
+    assert_false(tl_session_apply(session, &settings, &error));
+    assert_int_equal(error.code, TL_USAGE);
+    tl_session_destroy(&session);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pins_by_name),
+                                       cmocka_unit_test(pinned_openings_are_held)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
