@@ -78,6 +78,8 @@ static void describe_layers(cJSON *object, const tl_material *material)
     }
     if (material->transmission.x + material->transmission.y + material->transmission.z > 0)
         cJSON_AddItemToObject(object, "transmission", describe_vector(material->transmission));
+    if (tl_material_emits(material))
+        cJSON_AddItemToObject(object, "emission", describe_vector(material->emission));
     if (material->openness > 0)
         cJSON_AddNumberToObject(object, "openness", (double)material->openness);
 }
@@ -93,11 +95,10 @@ static cJSON *describe_material(const tl_material *material)
     const struct {
         const char *name;
         const tl_image *image;
-    } maps[] = {{"diffuse_map", material->diffuse_map.image},
-                {"normal_map", material->normal_map.image},
-                {"gloss_map", material->gloss_map.image},
-                {"specular_map", material->specular_map.image},
-                {"occlusion_map", material->occlusion_map.image}};
+    } maps[] = {
+        {"diffuse_map", material->diffuse_map.image},   {"normal_map", material->normal_map.image},
+        {"gloss_map", material->gloss_map.image},       {"specular_map", material->specular_map.image},
+        {"emission_map", material->emission_map.image}, {"occlusion_map", material->occlusion_map.image}};
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
         if (!maps[i].image)
             continue;

@@ -23,6 +23,11 @@ tl_material tl_material_default(const char *name)
     return material;
 }
 
+bool tl_material_emits(const tl_material *material)
+{
+    return glms_vec3_max(material->emission) > 0;
+}
+
 bool tl_material_transmits(const tl_material *material)
 {
     return material->transmission.x > 0 || material->transmission.y > 0 || material->transmission.z > 0;

@@ -81,6 +81,7 @@ typedef struct tl_material {
     float coat_glossiness; /* g of the coat's own lobe; its index is 1.5 */
     vec3s transmission;    /* share of light scattered through to the other side, diffusely; [0, 1] */
     float openness;        /* share of the surface that is holes between threads, straight through; [0, 1) */
+    vec3s emission;        /* radiance of its own, below the coat, the same in all directions; >= 0 */
     float normal_scale;    /* factor on the normal map's x and y */
     float occlusion_strength; /* [0, 1] */
     float alpha_cutoff;       /* alpha test; 0: opaque */
@@ -89,6 +90,7 @@ typedef struct tl_material {
     struct tl_map normal_map;    /* linear */
     struct tl_map gloss_map;     /* U8 x1, linear: multiplies glossiness */
     struct tl_map specular_map;  /* U8 x3, sRGB: multiplies specular */
+    struct tl_map emission_map;  /* U8 x3, sRGB: multiplies emission */
     struct tl_map occlusion_map; /* U8, linear, red */
     struct tl_map height_map;    /* U8 x1, linear: 0 deepest, 1 the mesh's own surface */
     float height_m;              /* metres from the deepest to the highest of height_map */
@@ -103,6 +105,9 @@ tl_material tl_material_default(const char *name);
 bool tl_material_is_layered(const tl_material *material);
 /* Whether the material scatters light through to the other side. */
 bool tl_material_transmits(const tl_material *material);
+
+/* Whether the material sends out light of its own. */
+bool tl_material_emits(const tl_material *material);
 
 /* Glossiness of the cosine lobe about the mirror direction that is nearest to a GGX lobe of glTF roughness r:
  * alpha = r^2, Blinn-Phong exponent 2/alpha^2 - 2 (Walter 2007's match to Beckmann), Phong exponent a quarter

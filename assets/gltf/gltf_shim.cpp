@@ -386,11 +386,13 @@ gltf_material copy_material(const tinygltf::Model &model, const tinygltf::Materi
     to.alpha_cutoff = static_cast<float>(from.alphaCutoff);
     to.alpha = from.alphaMode == "MASK" ? GLTF_MASK : from.alphaMode == "BLEND" ? GLTF_BLEND : GLTF_OPAQUE;
     to.double_sided = from.doubleSided;
-    for (double channel : from.emissiveFactor)
-        to.is_emissive = to.is_emissive || channel > 0;
+    copy_floats(to.emission, 3, from.emissiveFactor);
+    to.emissive_strength =
+        number_of(member(extension_of(from, "KHR_materials_emissive_strength"), "emissiveStrength"), 1);
     to.base_colour_map = copy_texture(model, pbr.baseColorTexture);
     to.metallic_roughness_map = copy_texture(model, pbr.metallicRoughnessTexture);
     to.normal_map = copy_texture(model, from.normalTexture);
+    to.emission_map = copy_texture(model, from.emissiveTexture);
     to.occlusion_map = copy_texture(model, from.occlusionTexture);
     to.extensions = copy_extensions(model, from);
     return to;

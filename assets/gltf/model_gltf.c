@@ -360,12 +360,19 @@ static bool finish(struct gltf_builder *builder, enum tl_units wanted, tl_error 
 
 static void note_extensions(const gltf_document *document, tl_model *model)
 {
-    static const char *const known[] = {"KHR_materials_variants",     "KHR_texture_transform",
-                                        "KHR_mesh_quantization",      "KHR_materials_anisotropy",
-                                        "KHR_materials_clearcoat",    "KHR_materials_ior",
-                                        "KHR_materials_sheen",        "KHR_materials_specular",
-                                        "KHR_materials_transmission", "KHR_materials_diffuse_transmission",
-                                        "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+    static const char *const known[] = {"KHR_materials_variants",
+                                        "KHR_texture_transform",
+                                        "KHR_mesh_quantization",
+                                        "KHR_materials_anisotropy",
+                                        "KHR_materials_clearcoat",
+                                        "KHR_materials_ior",
+                                        "KHR_materials_sheen",
+                                        "KHR_materials_specular",
+                                        "KHR_materials_transmission",
+                                        "KHR_materials_diffuse_transmission",
+                                        "KHR_materials_emissive_strength",
+                                        "KHR_draco_mesh_compression",
+                                        "EXT_meshopt_compression",
                                         "KHR_meshopt_compression"};
     for (size_t i = 0; i < document->used_count; i++) {
         bool has_effect = false;

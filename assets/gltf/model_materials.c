@@ -38,6 +38,19 @@ static void apply_blending(const struct material_build *build, const struct text
     to->openness = open > 1 - closed_from ? fminf(open, most_open) : 0;
 }
 
+/* glTF 2.0, 3.9.3, and KHR_materials_emissive_strength: radiance, in the units of the environment. */
+static void read_emission(struct texture_reader *textures, const struct gltf_material *from, tl_material *to)
+{
+    const float strongest = 1e4f; /* a sun's disc has more, no garment has */
+    float strength = fminf(fmaxf(from->emissive_strength, 0), strongest);
+    for (int i = 0; i < 3; i++)
+        to->emission.raw[i] = unit(from->emission[i], 0) * strength;
+    if (!tl_material_emits(to))
+        return;
+    texture_read_map(textures, &from->emission_map, TEXTURE_COLOUR, 0, &to->emission_map);
+    model_approximate(textures->model, "emission: it is seen, and lights nothing else");
+}
+
 /* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(F0 of the
  * dielectric, base, metallic). */
 static tl_material read_material(struct texture_reader *textures, const struct gltf_material *from)
@@ -79,8 +92,7 @@ static tl_material read_material(struct texture_reader *textures, const struct g
     model_apply_extensions(&build);
     if (from->alpha == GLTF_BLEND)
         apply_blending(&build, base);
-    if (from->is_emissive)
-        model_ignore(textures->model, "emission");
+    read_emission(textures, from, &to);
     return to;
 }
 

@@ -149,7 +149,8 @@ static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *l
 {
     struct tl_lamp lamps[TL_LAMPS_MAX];
     size_t count = tl_lamps_lit(frame, lamps);
-    tl_bits facts = count > 0 ? TL_BIT(TL_SCENE_LAMPS) : 0;
+    bool emits = tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits);
+    tl_bits facts = count > 0 || emits ? TL_BIT(TL_SCENE_LAMPS) : 0; /* one pass adds both */
     struct tl_casters casters = {0};
     tl_error error = {0};
     if (count > 0 && light->visibility != TL_VISIBILITY_RAYS)
@@ -173,6 +174,7 @@ static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_setting
     bool wanted = light->ratio_at == TL_RATIO_AT_VERTICES && light->method == TL_METHOD_PEM &&
                   light->visibility == TL_VISIBILITY_RAYS && light->lobe == TL_LOBE_DUAL && !frame->aovs;
     if (!wanted || tl_lamps_lit(frame, lamps) > 0 ||
+        tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits) ||
         !tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail))
         return 0;
     bool mirrors =

@@ -163,8 +163,8 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
     return true;
 }
 
-/* Adds the lamps' light to the samples that no pass on the GPU covers: behind open cloth, through cloth, in
- * mirrors. */
+/* Adds the lamps' light, and what surfaces emit, to the samples that no pass on the GPU covers: behind open
+ * cloth, through cloth, in mirrors. */
 static void add_lamps(const struct tl_compose_job *job, const struct tl_compose_request *composed)
 {
     const struct tl_lamp_samples_request request = {.lamp_count = job->lamps->count,
@@ -178,7 +178,8 @@ static void add_lamps(const struct tl_compose_job *job, const struct tl_compose_
                                                     .ranges = &job->shapes->ranges,
                                                     .ground = *job->has_ground ? job->ground : NULL,
                                                     .eye = job->camera->view.eye};
-    if (request.lamp_count > 0 && job->samples->count > job->samples->primary_count)
+    bool emits = tl_materials_have(job->shapes->surfaces, job->shapes->surface_count, tl_material_emits);
+    if ((request.lamp_count > 0 || emits) && job->samples->count > job->samples->primary_count)
         tl_lamp_samples_add(&request, job->light->texels);
 }
 

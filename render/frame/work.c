@@ -220,7 +220,7 @@ struct tl_work tl_resolve_work(const void *context)
 struct tl_work tl_lamps_work(const void *context)
 {
     const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{5, 1e-4 * sizes->lamps * sizes->covered}};
+    return (struct tl_work){{5, 1e-4 * (sizes->lamps + 1) * sizes->covered}};
 }
 
 struct tl_work tl_lamp_maps_work(const void *context)

@@ -4,6 +4,7 @@
 #include "render/brdf/brdf.h"
 #include "render/brdf/coat.h"
 #include "render/env/exponent.h"
+#include "render/trace/cutout.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -64,10 +65,28 @@ static float coat_of(const struct lit *lit, vec3s l)
            tl_lobe_cosine(tl_lobe_exponent(lit->material->coat_glossiness), glms_vec3_dot(axis, l));
 }
 
+/* As local.frag has it: emission times its map, below the coat. */
+static vec3s emitted(const struct tl_lamp_samples_request *request, const struct lit *lit)
+{
+    uint32_t corners[3];
+    size_t index;
+    const tl_surface *surface =
+        tl_triangle_find(request->ranges, lit->sample->triangle & ~TL_SAMPLE_BACK, corners, &index);
+    vec2s uv = {{0, 0}};
+    for (int i = 0; surface->uvs && i < 3; i++)
+        uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[i]], lit->sample->weights[i]));
+    vec3s colour = tl_map_colour_at(&lit->material->emission_map, uv);
+    return glms_vec3_scale(glms_vec3_mul(lit->material->emission, colour), lit->base);
+}
+
 static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size_t index)
 {
     const struct lit lit = lit_of(request, index);
-    vec3s sum = {{0, 0, 0}};
+    const struct tl_samples *samples = request->samples;
+    bool is_other_side =
+        index >= samples->primary_count + samples->behind_count && index < tl_samples_seen(samples);
+    vec3s sum =
+        is_other_side || !tl_material_emits(lit.material) ? (vec3s){{0, 0, 0}} : emitted(request, &lit);
     for (size_t i = 0; i < request->lamp_count; i++) {
         vec3s l;
         vec3s arriving = tl_lamp_irradiance_at(&request->lamps[i], request->shadowed ? request->trace : NULL,

@@ -1,6 +1,7 @@
-/* Light of lamps on samples that the camera does not see directly: behind open cloth, on the other side of
- * translucent cloth, and in near mirrors. These samples exist on the CPU only, so they are shaded here,
- * exactly, with a shadow ray each. Pure; OpenMP inside; results do not depend on the number of threads. */
+/* Light of lamps on samples, and what surfaces emit at samples, that the camera does not see directly: behind
+ * open cloth, on the other side of translucent cloth, and in near mirrors. These samples exist on the CPU
+ * only, so they are shaded here, exactly, with a shadow ray each. Pure; OpenMP inside; results do not depend
+ * on the number of threads. */
 #ifndef TOILE_RENDER_LOCAL_LAMP_SAMPLES_H
 #define TOILE_RENDER_LOCAL_LAMP_SAMPLES_H
 

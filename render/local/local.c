@@ -26,9 +26,20 @@ enum {
     LAMP_GROUND,
     LAMP_LAYERS,
     TABLE_AXES = 80,
-    TABLE_SCALES = 83
+    TABLE_SCALES = 83,
+    EMISSION = 84,
+    EMISSION_ROWS = 85
 };
-enum { TRIANGLE_UNIT = 16, POINT_UNIT, SHADOW_UNIT, CUBE_UNIT, TABLE_UNIT, POWER_UNIT = 23, PRODUCT_UNIT };
+enum {
+    TRIANGLE_UNIT = 16,
+    POINT_UNIT,
+    SHADOW_UNIT,
+    CUBE_UNIT,
+    TABLE_UNIT,
+    POWER_UNIT = 23,
+    PRODUCT_UNIT,
+    EMISSION_UNIT
+};
 
 /* The work of one draw call: everything, or its part of several passes. */
 struct pass {
@@ -164,6 +175,12 @@ static const tl_program *find_program(struct tl_local *local, tl_gpu *gpu, const
     return &made->program;
 }
 
+static void set_view(const struct tl_view *view)
+{
+    glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, view->view_projection.raw[0]);
+    glUniform3fv(EYE, 1, view->eye.raw);
+}
+
 static void set_lamp(const struct tl_local *local, const struct tl_local_request *request, size_t index)
 {
     const struct tl_lamp *lamp = &request->lamps[index];
@@ -174,8 +191,7 @@ static void set_lamp(const struct tl_local *local, const struct tl_local_request
     vec3s constant_eye = glms_vec3_negate(glms_vec3_normalize(view->forward));
     vec3s constant_lamp = tl_lamp_at(lamp, request->casters.centre, constant_eye).direction;
     bool stops = ground && !(is_point && lamp->position.y >= ground->centre.y);
-    glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, view->view_projection.raw[0]);
-    glUniform3fv(EYE, 1, view->eye.raw);
+    set_view(view);
     glUniform4f(LAMP, place.x, place.y, place.z, is_point ? 1 : 0);
     glUniform3fv(LAMP_IRRADIANCE, 1, lamp->irradiance.raw);
     glUniform3fv(CONSTANT_LAMP, 1, constant_lamp.raw);
@@ -320,6 +336,36 @@ static bool draw_lamp(struct tl_local *local, tl_gpu *gpu, const struct tl_local
     return fine;
 }
 
+/* Adds the light that a part sends out itself. */
+static bool draw_emission(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                          size_t surface, size_t index, tl_error *error)
+{
+    const tl_material *material = tl_surfaces_part_material(request->surfaces, surface, index);
+    if (!tl_material_emits(material))
+        return true;
+    struct tl_local_request plain = *request;
+    plain.params =
+        tl_shading_options.defaults; /* vectors of a lamp, which are not read, have no variants then */
+    bool mapped = tl_surfaces_bind_emission(request->surfaces, surface, index, EMISSION_UNIT);
+    const struct lit_part part = {.surface = surface, .part = index, .material = material};
+    const struct pass pass = {0, -1, mapped ? "EMISSION\n#define EMISSION_MAP" : "EMISSION"};
+    char defines[TL_LOCAL_DEFINES_SIZE];
+    float rows[6];
+    define_all(&plain, &part, &pass, defines);
+    const tl_program *program = find_program(local, gpu, defines, error);
+    if (!program)
+        return false;
+    glUseProgram(program->id);
+    set_view(request->view);
+    set_gloss(material);
+    tl_uv_transform_rows(&material->emission_map.transform, rows);
+    glUniform3fv(EMISSION, 1, material->emission.raw);
+    if (mapped)
+        glUniform3fv(EMISSION_ROWS, 2, rows);
+    tl_surfaces_draw_part(request->surfaces, surface, index);
+    return true;
+}
+
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                    tl_error *error)
 {
@@ -339,6 +385,9 @@ bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_re
     bool fine = true;
     for (size_t i = 0; fine && i < request->lamp_count; i++)
         fine = draw_lamp(local, gpu, request, i, error);
+    for (size_t s = 0; fine && s < request->surface_count; s++)
+        for (size_t p = 0; fine && p < tl_surfaces_part_count(request->surfaces, s); p++)
+            fine = draw_emission(local, gpu, request, s, p, error);
     tl_table_textures_end(&local->tables);
     if (!local->product_used)
         tl_target_destroy(&local->product);

@@ -12,6 +12,14 @@ layout(location = 76) uniform vec4 lamp_ground; // disc of the ground, if it can
 
 layout(location = 77) uniform vec3 lamp_layers; // coverage of the coat, exponent of its lobe, 1 - openness
 
+#ifdef EMISSION
+layout(location = 84) uniform vec3 emission;
+#ifdef EMISSION_MAP
+layout(location = 85) uniform vec3 emission_rows[2]; // of the UV transform
+layout(binding = 25) uniform sampler2D emission_map;
+#endif
+#endif
+
 layout(binding = 16) uniform usampler2D seen_triangle;
 layout(binding = 17) uniform sampler2D seen_point; // w: coverage
 #if defined(SHADOW_RAYS)
@@ -208,6 +216,13 @@ void main()
     vec3 smooth_normal = direction_or(normal, facet);
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
+#ifdef EMISSION
+    vec3 sent = emission;
+#ifdef EMISSION_MAP
+    vec3 at = vec3(place.uv, 1.0);
+    sent *= texture(emission_map, vec2(dot(emission_rows[0], at), dot(emission_rows[1], at))).rgb;
+#endif
+#endif
     vec3 l = towards_lamp(point, side * smooth_normal);
     float own_shadow = detail_shadow(place, l * frame, side, across, down); // before discard, because it needs derivatives
     ivec2 texel = ivec2(gl_FragCoord.xy);
@@ -217,6 +232,12 @@ void main()
 #ifdef PASS_PRODUCT
     float facing;
     out_light = vec4(tables_product(cosines_here(side, smooth_normal, facing)), 1.0);
+#elif defined(EMISSION)
+#ifdef COAT
+    vec3 n = side * smooth_normal;
+    sent *= 1.0 - lamp_layers.x * fresnel_dielectric(1.5, max(dot(n, direction_or(eye - point, n)), 0.0));
+#endif
+    out_light = vec4(texelFetch(seen_point, texel, 0).w * lamp_layers.z * sent, 0.0);
 #else
     float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l) * own_shadow;
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);

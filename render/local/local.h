@@ -5,7 +5,8 @@
  *     c += cover E(x) V(x) s(n0.l) [ kd/pi max(0, n.l) + f_r(l, v) n.l ]
  *
  * with the gloss f_r cos of render/brdf/brdf.h, the normal n0 without bumps and the self-shadow s; below the
- * coat of the material, and multiplied by 1 - openness. lamp_samples.h adds the light of lamps behind open
+ * coat of the material, and multiplied by 1 - openness. What a material emits is added alike, once:
+ * c += cover (1 - openness) (1 - coat) emission. lamp_samples.h adds the light of lamps behind open
  * cloth, through cloth and in mirrors. Lamps always use two lobes; light.lobe applies to the environment.
  * Resources are made when they are first used, and none without lamps. Needs the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_LOCAL_LOCAL_H
@@ -42,7 +43,7 @@ struct tl_local_request {
     const struct tl_ground *ground; /* NULL: none; else the last of the surfaces */
     struct tl_casters casters;
     const struct tl_lamp *lamps;
-    size_t lamp_count;
+    size_t lamp_count; /* 0: only what surfaces emit is added */
     const struct tl_shading_params *params;
     const struct tl_detail_params *detail; /* as in the G-buffer; NULL: defaults */
     float depth_bias_m;                    /* of shadow maps */
@@ -55,7 +56,7 @@ void tl_local_release(struct tl_local *local);
 void tl_local_reload(struct tl_local *local);
 /* Size of the tables and of the target of the passes, without shadows. */
 size_t tl_local_bytes(const struct tl_local *local);
-/* Adds the light of all lamps. False when a shader cannot be compiled. */
+/* Adds the light of all lamps, and what surfaces emit. False when a shader cannot be compiled. */
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                    tl_error *error);
 

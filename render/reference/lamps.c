@@ -39,7 +39,7 @@ static vec3s reflected(const struct tl_shading_point *point, const struct tl_brd
 vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *point,
                          size_t *rays)
 {
-    vec3s sum = {{0, 0, 0}};
+    vec3s sum = point->emission;
     if (scene->lamp_count == 0)
         return sum;
     const struct tl_brdf brdf =

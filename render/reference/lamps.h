@@ -5,7 +5,8 @@
 
 #include "render/reference/shading_point.h"
 
-/* Radiance towards point.viewer; finite. Adds the number of rays to *rays. */
+/* Radiance towards point.viewer: what the point reflects of lamps, and what it emits; finite. Adds the number
+ * of rays to *rays. */
 vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *point,
                          size_t *rays);
 

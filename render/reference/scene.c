@@ -40,6 +40,11 @@ static struct tl_reference_material make_material(struct tl_reference_scene *sce
                                       .clamp_v = maps[use]->clamp_v};
         tl_uv_transform_rows(&maps[use]->transform, prepared.maps[use].rows);
     }
+    const struct tl_map *emission = &material->emission_map;
+    prepared.emission = (struct tl_reference_map){.texture = find_texture(scene, emission->image, true),
+                                                  .clamp_u = emission->clamp_u,
+                                                  .clamp_v = emission->clamp_v};
+    tl_uv_transform_rows(&emission->transform, prepared.emission.rows);
     prepared.own_moments = tl_reference_moments(&scene->detail, material->normal_map.image);
     const tl_weave *weave = material->weave;
     if (weave && weave->size_m[0] > 0 && weave->size_m[1] > 0) {

@@ -24,7 +24,7 @@ struct tl_reference_map {
 
 /* A material with its textures. */
 struct tl_reference_material {
-    struct tl_reference_map maps[TL_MAP_USES];
+    struct tl_reference_map maps[TL_MAP_USES], emission;
     const struct tl_map_texture *weave[TL_WEAVE_USES];
     const struct tl_map_texture *own_moments, *weave_moments; /* NULL: none */
     struct tl_detail_heights heights; /* of the first part that uses the material; empty: none */

@@ -176,6 +176,16 @@ static vec3s diffuse_of(const struct sample_place *place)
     return colour;
 }
 
+static vec3s emission_of(const struct sample_place *place)
+{
+    const struct tl_reference_map *map = &place->prepared->emission;
+    vec3s sent = place->material->emission;
+    if (!map->texture)
+        return sent;
+    struct tl_footprint at = through_rows(&place->footprint, map->rows);
+    return times_map(sent, tl_map_texture_fetch(map->texture, &at, map->clamp_u, map->clamp_v));
+}
+
 static vec3s f0_of(const struct sample_place *place)
 {
     vec3s f0 = place->material->specular;
@@ -229,6 +239,7 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
     }
     result->diffuse = glms_vec3_scale(result->diffuse, layers->base);
     result->glossy = glms_vec3_scale(result->glossy, layers->base);
+    result->emission = glms_vec3_scale(result->emission, layers->base);
     layers->transmitted = glms_vec3_scale(material->transmission, layers->base);
 }
 
@@ -260,6 +271,7 @@ static void set_lobes(const struct sample_place *place, const struct tl_referenc
     result->axis = direction_or(mirror, n);
     result->exponent = tl_lobe_exponent(g);
     result->side = place->side;
+    result->emission = emission_of(place);
     result->f0 = f0_of(place);
     result->diffuse = result->albedo = glms_vec3_scale(diffuse_of(place), open);
     result->glossy = specular_of(result->f0, n_dot_v);

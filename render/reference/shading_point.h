@@ -52,6 +52,7 @@ struct tl_shading_point {
     vec3s viewer;      /* towards the eye */
     vec3s tangent;     /* along u, at right angles to `normal`; zero where the surface has none */
     float side;        /* 1 for a front face, -1 for a back face */
+    vec3s emission;    /* radiance of its own, below the coat */
     vec3s albedo, f0;  /* diffuse colour and reflectance at normal incidence, independent of `lobe` */
     float handedness;  /* bitangent = handedness * cross(normal, tangent) */
     float glossiness;  /* glossiness from the maps; `exponent` is derived from it */

@@ -180,6 +180,8 @@ static bool upload_material(tl_gpu *gpu, struct surface_item *item, const char *
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++)
         if (!add_image(gpu, item, surface, map_of(material, use)->image, is_colour(use), error))
             return false;
+    if (!add_image(gpu, item, surface, material->emission_map.image, true, error))
+        return false;
     const tl_weave *weave = material->weave;
     return !weave || (add_image(gpu, item, surface, &weave->normal, false, error) &&
                       add_image(gpu, item, surface, &weave->gloss, false, error) &&
@@ -312,6 +314,15 @@ static void set_material(const struct surface_item *item, const struct tl_mesh_p
                 material->occlusion_strength, material->alpha_cutoff);
     glUniform1i(TL_UNIFORM_MAP_FLAGS, flags);
     glUniform3fv(TL_UNIFORM_UV_ROWS, 2 * TL_MAP_USES, rows[0]);
+}
+
+bool tl_surfaces_bind_emission(const tl_surfaces *surfaces, size_t index, size_t part, unsigned unit)
+{
+    const struct surface_item *item = &surfaces->items[index];
+    const struct tl_map *map = &item->materials[item->parts[part].material].emission_map;
+    if (map->image)
+        bind(unit, find_texture(item, map->image, true), map->clamp_u, map->clamp_v);
+    return map->image != NULL;
 }
 
 /* GL takes an offset into the bound buffer as a pointer. */

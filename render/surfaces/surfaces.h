@@ -60,6 +60,8 @@ void tl_surfaces_draw(const tl_surfaces *surfaces, size_t index, enum tl_surface
  * may be gone. */
 size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index);
 const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part);
+/* Binds the emission map of a part to a unit of the pass; false where there is none. */
+bool tl_surfaces_bind_emission(const tl_surfaces *surfaces, size_t index, size_t part, unsigned unit);
 void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part);
 /* The same with triangles first .. first + count - 1 of a GL buffer of indices in place of its own; the
  * shader's `first_triangle` is then counted through that buffer. */

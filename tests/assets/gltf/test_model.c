@@ -215,6 +215,24 @@ static void alpha_of_a_texture(void **state)
     tl_model_release(&model);
 }
 
+static void emission_is_radiance(void **state)
+{
+    (void)state;
+    tl_model model = load_with_material(
+        "{\"name\":\"led\",\"emissiveFactor\":[1,0.5,0.25],\"emissiveTexture\":{\"index\":0},"
+        "\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":6}}}");
+    const tl_material *led = &model.materials[1];
+    assert_near(led->emission.x, 6, 1e-6);
+    assert_near(led->emission.y, 3, 1e-6);
+    assert_near(led->emission.z, 1.5, 1e-6);
+    assert_non_null(led->emission_map.image);
+    assert_false(led->emission_map.image->linear);
+    assert_true(tl_material_emits(led));
+    assert_false(tl_material_emits(&model.materials[0]));
+    assert_int_equal(model.ignored_count, 0);
+    tl_model_release(&model);
+}
+
 /* Texels of metalness 0, 85, 170 and 255 of 255: kd and F0 of each follow glTF's mix. */
 static void metalness_of_a_texture(void **state)
 {
@@ -503,7 +521,7 @@ static void ignored_features_are_listed_once(void **state)
         {"models/SheenChair/SheenChair.gltf", "TEXCOORD_1 and beyond"},
         {"models/GlamVelvetSofa.glb", "KHR_lights_punctual"},
         {"models/VertexColorTest.glb", "vertex colours"},
-        {"models/TextureTransformMultiTest.glb", "KHR_materials_unlit", "emission"},
+        {"models/TextureTransformMultiTest.glb", "KHR_materials_unlit"},
     };
     for (size_t f = 0; f < TL_COUNT(expected); f++) {
         tl_model model = load_data(expected[f][0]);
@@ -657,6 +675,7 @@ int main(void)
         cmocka_unit_test(alpha_factors_go_into_the_cutoff),
         cmocka_unit_test(blending_opens_the_surface),
         cmocka_unit_test(alpha_of_a_texture),
+        cmocka_unit_test(emission_is_radiance),
         cmocka_unit_test(metalness_of_a_texture),
         cmocka_unit_test(metals_have_coloured_reflection),
         cmocka_unit_test(small_clip),
