@@ -2,6 +2,7 @@
 #include "app/fit/sewn.h"
 #include "app/scene/session.h"
 #include "assets/garment.h"
+#include "assets/pattern/pattern_worn.h"
 #include "config/memory.h"
 #include "tests/testing.h"
 
@@ -59,6 +60,35 @@ static void pins_by_name(void **state)
     tl_garment_release(&garment);
 }
 
+static void check_pattern(const char *file, const char *const *names, size_t count)
+{
+    tl_garment garment;
+    tl_error error = {0};
+    assert_ok(
+        tl_pattern_worn(test_data(file), &(struct tl_pattern_wearer){"none", NULL}, 0.04f, &garment, &error),
+        error);
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, garment.model.mesh.vertex_count);
+    struct tl_openings openings = tl_sewn_openings(&garment, garment.model.mesh.positions, weld);
+    for (size_t i = 0; i < openings.count; i++)
+        printf("%s: %s\n", file, openings.items[i].name);
+    assert_int_equal(openings.count, count);
+    for (size_t i = 0; i < count; i++)
+        assert_string_equal(openings.items[i].name, names[i]);
+    tl_openings_release(&openings);
+    free(weld);
+    tl_garment_release(&garment);
+}
+
+/* Panels that hang around nobody, apart: their stitches tell what will be open. */
+static void patterns_have_openings(void **state)
+{
+    (void)state;
+    static const char *const shirt[] = {"neck", "left cuff", "right cuff", "hem"};
+    static const char *const dress[] = {"neck", "left armhole", "right armhole", "hem"};
+    check_pattern("patterns/shirt_mean_specification.json", shirt, TL_COUNT(shirt));
+    check_pattern("patterns/dress_pencil_specification.json", dress, TL_COUNT(dress));
+}
+
 /* A skirt on nobody, held by its hem: the hem stays, the rest hangs over it. */
 static void pinned_openings_are_held(void **state)
 {
@@ -98,6 +128,7 @@ static void pinned_openings_are_held(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pins_by_name),
+                                       cmocka_unit_test(patterns_have_openings),
                                        cmocka_unit_test(pinned_openings_are_held)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
