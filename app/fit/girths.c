@@ -5,6 +5,7 @@
 #include "config/memory.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 const char *const tl_girth_names[TL_GIRTHS] = {"bust", "waist", "hip"};
@@ -19,7 +20,11 @@ static float find_arms(const tl_mesh *body, float from, float to)
 {
     const float jump = 1.08f;
     struct tl_girth girth, before = {0};
-    for (float y = from; y < to && tl_mesh_girth(body, y, &girth); y += STEP_M) {
+    int steps = (int)ceilf((to - from) / STEP_M);
+    for (int step = 0; step < steps; step++) {
+        float y = from + (float)step * STEP_M;
+        if (!tl_mesh_girth(body, y, &girth))
+            break;
         if (before.length_m > 0 && girth.length_m > jump * before.length_m)
             return y;
         before = girth;
@@ -31,9 +36,12 @@ static struct tl_girth_measures find_widest(const tl_mesh *body, float lowest, f
 {
     struct tl_girth_measures widest = {0};
     struct tl_girth girth;
-    for (float y = lowest; y < highest; y += STEP_M)
+    int steps = (int)ceilf((highest - lowest) / STEP_M);
+    for (int step = 0; step < steps; step++) {
+        float y = lowest + (float)step * STEP_M;
         if (tl_mesh_girth(body, y, &girth) && (double)girth.length_m > widest.body_m)
             widest = (struct tl_girth_measures){.height_m = (double)y, .body_m = (double)girth.length_m};
+    }
     return widest;
 }
 
@@ -91,8 +99,8 @@ static void connect_lines(struct cut_lines *lines)
 static void add_part(const struct cut_lines *lines, size_t t, const vec2s rest[3], struct cut_line *line)
 {
     const uint32_t *v = lines->topology->triangles[t];
-    vec3s worn[2];
-    vec2s flat[2];
+    vec3s worn[2] = {0};
+    vec2s flat[2] = {0};
     int ends = 0;
     for (int i = 0; i < 3; i++) {
         int j = (i + 1) % 3;
@@ -144,10 +152,12 @@ static struct cut_line line_at(const struct tl_topology *topology, const vec2s (
 static struct cut_line clear_line(const struct tl_topology *topology, const vec2s (*rest)[3],
                                   const vec3s *positions, float y, float middle)
 {
-    const float step_m = 0.02f, lowest_m = 0.09f;
+    const float step_m = 0.02f;
+    const int steps = 4;
     const double jump = 1.1;
     struct cut_line line = line_at(topology, rest, positions, y, middle);
-    for (float below = step_m; below < lowest_m && line.worn > 0; below += step_m) {
+    for (int step = 1; step <= steps && line.worn > 0; step++) {
+        float below = (float)step * step_m;
         struct cut_line lower = line_at(topology, rest, positions, y - below, middle);
         if (!(lower.worn > 0) || line.worn < jump * lower.worn)
             return line;
