@@ -65,6 +65,7 @@ static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error 
 {
     review->times.began_s = review->times.lap_s = tl_clock_s();
     review->times.cloth = review->times.longest_ms = 0;
+    tl_review_take_chosen(review);
     tl_review_reload_edited(review);
     tl_review_lap(review, "watching files");
     tl_review_load(review);
@@ -191,6 +192,7 @@ static void close_review(struct tl_review *review)
     for (size_t i = 0; i < review->environment_count; i++)
         free(review->environments[i]);
     free(review->environments);
+    tl_file_chooser_close(&review->chooser);
     while (review->dropped)
         tl_review_cancel_question(review);
     free(review->waiting);

@@ -275,6 +275,14 @@ void tl_act_environment_turntable(struct tl_review *review, int argument)
     tl_review_toggle(review, &review->motion.environment, "the environment");
 }
 
+void tl_act_open(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_error error;
+    if (!review->chooser && !(review->chooser = tl_file_chooser_open("toile: open", &error)))
+        tl_review_report_error(review, &error);
+}
+
 void tl_act_next_fabric(struct tl_review *review, int argument)
 {
     tl_review_next_fabric(review, argument);

@@ -33,6 +33,9 @@ tl_review_action tl_act_next_environment;
 tl_review_action tl_act_turn_environment; /* 1 or -1 steps */
 tl_review_action tl_act_environment_turntable;
 
+/* Opens the file dialog. */
+tl_review_action tl_act_open;
+
 /* Fabric: the next one, the one before; index into tl_embedded_fabrics_names. */
 tl_review_action tl_act_next_fabric;
 tl_review_action tl_act_fabric;

@@ -34,7 +34,7 @@ const struct tl_review_command tl_review_commands[] = {
     {"play or pause", tl_act_play, TL_SECTION_CLOTH, .keys = {KEY(SPACE)},
      .button = "Play", .button_on = "Pause", .is_on = is_playing},
     {"one frame further, back in a motion", tl_act_step, TL_SECTION_CLOTH,
-     .keys = {TO(PERIOD, 1), WITH_TO(SHIFT, PERIOD, -1)}, .repeats = true, .button = "Step"},
+     .keys = {TO(PERIOD, 1), WITH_TO(SHIFT, PERIOD, -1)}, .repeats = true},
     {"first, last frame of a motion", tl_act_end, TL_SECTION_CLOTH, .keys = {TO(HOME, -1), TO(END, 1)}},
     {"drape the garment: at rest on its avatar", tl_act_drape, TL_SECTION_CLOTH, .keys = {KEY(D)}},
     {"back to the start", tl_act_reset, TL_SECTION_CLOTH, .keys = {KEY(R)}, .button = "Reset"},
@@ -72,6 +72,8 @@ const struct tl_review_command tl_review_commands[] = {
     {"show light again", tl_act_light_view, TL_SECTION_INSPECT, .keys = {KEY(B)}},
     {"print the values under the pointer", tl_act_read_out, TL_SECTION_INSPECT, .keys = {KEY(I)}},
 
+    {"open a file: garment, body, motion, light, scene", tl_act_open, TL_SECTION_WINDOW, .keys = {WITH(CTRL, O)},
+     .button = "Open"},
     {"undo the last edit", tl_act_undo, TL_SECTION_WINDOW, .keys = {WITH(CTRL, Z)}, .repeats = true, .button = "Undo"},
     {"redo", tl_act_redo, TL_SECTION_WINDOW, .keys = {WITH(CTRL | SHIFT, Z), WITH(CTRL, Y)}, .repeats = true},
     {"less, more time for a frame", tl_act_budget, TL_SECTION_WINDOW, .keys = {TO(MINUS, -1), TO(EQUAL, 1)}},

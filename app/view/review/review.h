@@ -27,6 +27,7 @@
 #include "app/view/memory/state.h"
 #include "app/view/panel/panel_shim.h"
 #include "app/view/review/loader.h"
+#include "app/view/window/file_chooser.h"
 #include "app/view/window/file_watch.h"
 #include "app/view/window/frame_times.h"
 #include "app/view/window/window.h"
@@ -119,8 +120,9 @@ struct tl_review {
     char message[1200]; /* "": none is shown */
     bool message_is_error;
     double message_s;
-    char *dropped;  /* the file that the panel asks about, or NULL */
-    char **waiting; /* those that it asks about next */
+    tl_file_chooser *chooser; /* NULL: no dialog is open */
+    char *dropped;            /* the file that the panel asks about, or NULL */
+    char **waiting;           /* those that it asks about next */
     size_t waiting_count;
     char **environments; /* those that E cycles through */
     size_t environment_count;

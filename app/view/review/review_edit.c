@@ -244,11 +244,19 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
         tl_error error;
         tl_fail(
             &error, TL_INPUT,
-            "%s: cannot be used here: drop a .glb, .gltf, .obj, .json (a pattern), .pc2, .mdd, .exr, .hdr or "
+            "%s: cannot be used here: open a .glb, .gltf, .obj, .json (a pattern), .pc2, .mdd, .exr, .hdr or "
             ".yaml file",
             path);
         tl_review_report_error(review, &error);
     }
+}
+
+void tl_review_take_chosen(struct tl_review *review)
+{
+    char *path = NULL;
+    if (review->chooser && tl_file_chooser_poll(&review->chooser, &path) && path)
+        tl_review_open_dropped(review, path);
+    free(path);
 }
 
 /* One gesture is one edit: a slider's whole movement, a drag, or a key that is held or pressed repeatedly. */

@@ -20,6 +20,8 @@ void tl_review_next_view(struct tl_review *review, int by); /* image.view */
 
 /* A file was dropped on the window: uses it at once, asks what it is to be used as, or refuses it. */
 void tl_review_open_dropped(struct tl_review *review, const char *path);
+/* Takes over the file that was chosen in the dialog, as if it had been dropped; called every frame. */
+void tl_review_take_chosen(struct tl_review *review);
 /* The possible uses of the dropped file that the open question is about; NULL and 0 without a question.
  * Static. */
 struct tl_review_answer {

@@ -17,7 +17,7 @@ echo "a letter" >letter.txt
 
 open_display
 : >log
-$TOILE view $fast --fresh >out 2>log &
+PATH=$PWD/bin:/nonexistent $(command -v "$TOILE" || echo "$TOILE") view $fast --fresh >out 2>log &
 viewer=$!
 logged "view: ready"
 window=$(xdotool search --pid "$viewer" | tail -n 1)
@@ -47,6 +47,23 @@ answers broken.glb 1 "warning: view: .*broken.glb"
 answers broken.yaml 2 "warning: view: .*broken.yaml"
 answers broken.yaml 1 "warning: view: .*broken.yaml"
 
+# The file dialog: a zenity that answers with a file, one that is cancelled, and none.
+mkdir bin
+choose() {
+    printf '#!/bin/sh\n%s\n' "$1" >bin/zenity.new
+    chmod +x bin/zenity.new
+    mv bin/zenity.new bin/zenity
+}
+choose "echo '$PWD/light.exr'"
+press ctrl+o "view: environment .*/light.exr"
+choose "exit 1"
+xdotool key ctrl+o
+sleep 1
+choose "echo '$PWD/letter.txt'"
+press ctrl+o "warning: view: .*letter.txt: cannot be used here"
+rm bin/zenity
+press ctrl+o "warning: view: .*install the package zenity"
+
 # Several at once: each in its turn.
 drop skirt.obj light.exr "bleu é 100%.yaml"
 logged "view: environment .*/light.exr" 2
@@ -58,6 +75,6 @@ press t "turntable turns"
 press t "turntable stands"
 xdotool key q
 closed
-[ "$(grep -c "warning" log)" = 5 ] || fail "not one line for each file that is refused"
+[ "$(grep -c "warning" log)" = 7 ] || fail "not one line for each file that is refused"
 [ ! -s out ] || fail "something on standard output"
 echo "ok     all"
