@@ -191,6 +191,9 @@ static bool read_garment(const struct tl_settings *settings, const tl_avatar *we
     bool placed = place_garment(settings, out, error);
     if (placed)
         *lifted_m = lift_garment(settings, wearer, out);
+    if (placed && wearer)
+        report_line(
+            tl_describe_size(out->model.name, &out->model.mesh, wearer->model.name, &wearer->model.mesh));
     if (placed && refine_garment(settings, out, error) && take_rest(settings, out, error))
         return true;
     tl_garment_release(out);

@@ -2,6 +2,7 @@
 
 #include "assets/builtin/form.h"
 #include "assets/cut/section.h"
+#include "config/memory.h"
 
 #include <math.h>
 
@@ -34,6 +35,50 @@ bool tl_mesh_waist(const tl_mesh *mesh, struct tl_waist *out)
             *out = (struct tl_waist){y, girth};
     }
     return isfinite(out->girth.length_m);
+}
+
+/* The shares of the height between which a trunk is measured: of a person from the crotch to below the arms.
+ */
+static const float trunk[2] = {0.45f, 0.72f};
+static const float all_of_it[2] = {0.1f, 0.9f};
+
+/* False when no section was found. */
+static bool extreme_girths(const tl_mesh *mesh, const float shares[2], float *narrowest_m, float *widest_m)
+{
+    const int sections = 21;
+    struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
+    float height = box.upper.y - box.lower.y;
+    *narrowest_m = INFINITY;
+    *widest_m = 0;
+    for (int i = 0; i < sections; i++) {
+        float share = shares[0] + (shares[1] - shares[0]) * (float)i / (float)(sections - 1);
+        struct tl_girth girth;
+        if (!tl_mesh_girth(mesh, box.lower.y + height * share, &girth))
+            continue;
+        *narrowest_m = fminf(*narrowest_m, girth.length_m);
+        *widest_m = fmaxf(*widest_m, girth.length_m);
+    }
+    return *widest_m > 0;
+}
+
+char *tl_describe_size(const char *name, const tl_mesh *garment, const char *body_name, const tl_mesh *body)
+{
+    /* Knits are worn stretched by some percent; coats are wider than bodies by a quarter. */
+    const float too_small = 0.9f, too_large = 4.0f / 3;
+    float narrowest_m, widest_m, body_narrowest_m, body_widest_m;
+    struct tl_waist waist;
+    if (!tl_mesh_waist(body, &waist) || !extreme_girths(body, trunk, &body_narrowest_m, &body_widest_m) ||
+        !extreme_girths(garment, all_of_it, &narrowest_m, &widest_m))
+        return NULL;
+    const char *remedy = "it was made for another body, or its units are others; --units and --scale size it";
+    double small = (double)(widest_m / waist.girth.length_m), large = (double)(narrowest_m / body_widest_m);
+    if (small < (double)too_small)
+        return tl_format("%s: at its widest %.2f m around, %.2f of the waist of %s: %s", name,
+                         (double)widest_m, small, body_name, remedy);
+    if (large > (double)too_large)
+        return tl_format("%s: at its narrowest %.2f m around, %.2f times as wide as %s is anywhere: %s", name,
+                         (double)narrowest_m, large, body_name, remedy);
+    return NULL;
 }
 
 bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, tl_error *error)

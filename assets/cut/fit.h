@@ -23,6 +23,11 @@ struct tl_waist {
  * when the mesh has none there. */
 bool tl_mesh_waist(const tl_mesh *mesh, struct tl_waist *out);
 
+/* Says that a garment is of another size than the body, by girths: at its widest it does not go round the
+ * waist, or at its narrowest it is wider by a third than the body is anywhere. NULL: neither, or one of them
+ * has no sections to be measured. The caller frees it. */
+char *tl_describe_size(const char *name, const tl_mesh *garment, const char *body_name, const tl_mesh *body);
+
 /* Scales a garment cut for the built-in form about its waist, pattern included, by the ratio of the waist
  * girths, and moves it to the body's waist. The body stands on y = 0 in its rest pose, is upright and has
  * human proportions: the waist is the narrowest section between 0.56 and 0.66 of its height. */

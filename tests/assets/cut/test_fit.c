@@ -4,6 +4,9 @@
 #include "assets/cut/fit.h"
 #include "config/memory.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #define SIDES 96
 
 /* Open tubes of height 1: radius and centre of each. */
@@ -54,11 +57,41 @@ static void girth_ignores_arms(void **state)
     tl_mesh_release(&mesh);
 }
 
+/* Tubes around a tube. */
+static void size_is_told_by_girths(void **state)
+{
+    (void)state;
+    const struct {
+        float radius;
+        const char *told; /* NULL: it fits */
+    } cases[] = {{0.17f, "0.85 of the waist of body"},
+                 {0.185f, NULL},
+                 {0.26f, NULL},
+                 {0.28f, "1.40 times as wide as body is anywhere"}};
+    const float trunk[][3] = {{0.2f, 0, 0}};
+    tl_mesh body = tubes(trunk, 1);
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        const float circle[][3] = {{cases[i].radius, 0, 0}};
+        tl_mesh garment = tubes(circle, 1);
+        char *line = tl_describe_size("shirt.obj", &garment, "body", &body);
+        if (cases[i].told) {
+            assert_non_null(line);
+            assert_non_null(strstr(line, cases[i].told));
+        } else {
+            assert_null(line);
+        }
+        free(line);
+        tl_mesh_release(&garment);
+    }
+    tl_mesh_release(&body);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(girth_of_a_tube_is_its_circle),
         cmocka_unit_test(girth_ignores_arms),
+        cmocka_unit_test(size_is_told_by_girths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
