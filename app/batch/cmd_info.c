@@ -377,6 +377,7 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
         if (!tl_pattern_load(path, &pattern, error))
             return false;
         object = describe_pattern(&pattern);
+        tl_info_describe_sewn(object, &pattern);
         tl_pattern_release(&pattern);
     } else if (tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
         object = describe_scene(path, error);

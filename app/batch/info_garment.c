@@ -1,8 +1,10 @@
 #include "app/batch/info_garment.h"
 
+#include "app/fit/measures.h"
 #include "app/fit/sewn.h"
 #include "assets/base/placing.h"
 #include "assets/charts/rest.h"
+#include "assets/pattern/pattern_cut.h"
 #include "cloth/contact/crossings.h"
 #include "config/memory.h"
 
@@ -54,6 +56,30 @@ static void describe_openings(cJSON *object, const tl_model *model)
     tl_openings_release(&openings);
     free(positions);
     free(weld);
+}
+
+void tl_info_describe_sewn(cJSON *object, const tl_pattern *pattern)
+{
+    const float edge_m = 0.02f;
+    tl_garment garment;
+    tl_error error = {0};
+    if (!tl_pattern_cut(pattern, edge_m, &garment, &error)) {
+        cJSON_AddStringToObject(object, "openings_mm", error.message);
+        return;
+    }
+    const tl_mesh *mesh = &garment.model.mesh;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    struct tl_openings openings = tl_sewn_openings(&garment, mesh->positions, weld);
+    const struct tl_measures_source source = {
+        .garment = &garment, .positions = mesh->positions, .weld = weld};
+    struct tl_measures measures = tl_measures_take(&source);
+    cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
+    for (size_t i = 0; i < measures.opening_count; i++) /* at rest: the panels hang apart */
+        cJSON_AddNumberToObject(lengths, measures.openings[i].name, 1e3 * measures.openings[i].rest_m);
+    tl_measures_release(&measures);
+    tl_openings_release(&openings);
+    free(weld);
+    tl_garment_release(&garment);
 }
 
 void tl_info_describe_garment(cJSON *object, const tl_model *model)

@@ -3,10 +3,14 @@
 #define TOILE_APP_BATCH_INFO_GARMENT_H
 
 #include "assets/base/model.h"
+#include "assets/pattern/pattern.h"
 
 #include <cJSON.h>
 
 /* Adds members to the object. */
 void tl_info_describe_garment(cJSON *object, const tl_model *model);
+
+/* Adds the openings of a sewing pattern: the edges that no stitch joins, as long as they are cut. */
+void tl_info_describe_sewn(cJSON *object, const tl_pattern *pattern);
 
 #endif

@@ -111,7 +111,6 @@ std::vector<Side> prune(std::vector<Side> sides)
 {
     for (bool changed = true; changed;) {
         std::unordered_set<uint32_t> begins, ends;
-        changed = false;
         for (const Side &side : sides) {
             begins.insert(side.from);
             ends.insert(side.to);

@@ -15,7 +15,7 @@
 
 static vec3s vertex_at(const struct tl_opening *opening, const vec3s *positions, size_t side)
 {
-    return positions[opening->vertices[side % opening->side_count]];
+    return positions[opening->vertices[side < opening->side_count ? side : 0]];
 }
 
 double tl_opening_length(const struct tl_opening *opening, const vec3s *positions)

@@ -34,6 +34,10 @@ measures = json.load(sys.stdin)
 assert len(measures[\"panels\"]) == 5 and measures[\"openings_mm\"][\"hem\"][\"rest\"] > 2000, measures'"
 check "a later frame is measured too" sh -c "$TOILE measure dress.obj --frame 2 --quiet | grep -q '^hem '"
 
+pattern=$data/patterns/shirt_mean_specification.json
+if [ -r "$pattern" ]; then
+    check "a pattern's openings are known before it is sewn" sh -c "$TOILE info $pattern | grep -Eq '^ +left cuff +4[0-9]{2}\.'"
+fi
 refuse "a picture is no table" 'end the name in .csv' measure dress.obj -o out.png
 refuse "a scene without a garment" 'no garment' measure --garment none --avatar form
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >flat.obj
