@@ -15,6 +15,8 @@ add_library(toile_light STATIC
   detail/field.c
   detail/options.c
   brdf/power.c
+  construction/options.c
+  construction/tables.c
   brdf/table_error.c
   brdf/tables.c
   env/convert.c

@@ -65,6 +65,26 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
     material->openness = params->openness;
 }
 
+/* A back of a colour of its own, whose threads are those of the front. */
+static void set_back(const struct tl_material_params *params, tl_material *material)
+{
+    material->back.is_given = params->back[0] > 0 || params->back[1] > 0 || params->back[2] > 0;
+    if (!material->back.is_given)
+        return;
+    for (int c = 0; c < 3; c++) {
+        material->back.diffuse.raw[c] = (1 - params->thread) * params->back[c];
+        material->back.specular.raw[c] = fminf(params->specular[c] + params->thread * params->back[c], 1);
+    }
+}
+
+/* A file's own normal map has its seams in it. */
+static void set_construction(const struct tl_construction_params *params, tl_material *material)
+{
+    bool has_own = params->show == TL_CONSTRUCTION_AUTO && material->normal_map.image;
+    if (params->show != TL_CONSTRUCTION_NEVER && !has_own)
+        material->construction = tl_construction_of(params);
+}
+
 /* Finds or makes the weave of a fabric; NULL when it has none. Materials of one fabric share it. */
 static bool find_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
                        const tl_weave **out, tl_error *error)
@@ -142,8 +162,10 @@ static struct making begin(const struct tl_settings *settings, const tl_material
                             .weave = overlay ? settings->overlay_weave : settings->weave};
     making.is_file = making.params.use_file;
     making.is_woven = !making.is_file;
-    if (making.is_file)
+    if (making.is_file) {
         making.params = params_of(file);
+        memcpy(making.params.back, settings->material.back, sizeof making.params.back);
+    }
     return making;
 }
 
@@ -162,8 +184,8 @@ static void change(const struct tl_swatch *swatch, struct making *making)
         making->params = params_of(making->file);
 }
 
-static bool finish(struct tl_appearance *appearance, const struct making *making, tl_material *out,
-                   tl_error *error)
+static bool finish(struct tl_appearance *appearance, const struct tl_settings *settings,
+                   const struct making *making, tl_material *out, tl_error *error)
 {
     tl_material made = *making->file;
     const tl_weave *weave = NULL;
@@ -179,6 +201,8 @@ static bool finish(struct tl_appearance *appearance, const struct making *making
         drop_print(appearance, &made);
     for (int c = 0; c < 3 && (making->is_dyed || making->is_plain); c++)
         made.diffuse.raw[c] = (1 - making->params.thread) * making->params.diffuse[c];
+    set_back(&making->params, &made);
+    set_construction(&settings->construction, &made);
     *out = made;
     return true;
 }
@@ -197,7 +221,7 @@ static bool make_materials(const struct tl_settings *settings, const tl_model *m
         for (size_t k = 0; k < colourways->swatch_count; k++)
             if (is_meant(&colourways->swatches[k], making.file))
                 change(&colourways->swatches[k], &making);
-        if (!finish(appearance, &making, &appearance->garment.materials[i], error))
+        if (!finish(appearance, settings, &making, &appearance->garment.materials[i], error))
             return false;
     }
     return true;

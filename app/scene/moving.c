@@ -26,6 +26,18 @@ void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uin
     tl_moving_restart(moving);
 }
 
+void tl_moving_find_borders(struct tl_moving *moving, const tl_garment *garment)
+{
+    const tl_mesh *mesh = &moving->model->mesh;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
+    for (uint32_t i = 0; garment->welds_seams_only && i < mesh->vertex_count; i++)
+        weld[i] = i;
+    tl_borders_release(&moving->borders);
+    moving->borders = tl_borders_make(mesh, garment->pattern, weld, garment->seams, garment->seam_count);
+    free(weld);
+}
+
 void tl_moving_restart(struct tl_moving *moving)
 {
     const tl_mesh *mesh = &moving->model->mesh;
@@ -61,6 +73,7 @@ void tl_moving_release(struct tl_moving *moving)
     free(moving->positions);
     free(moving->normals);
     free(moving->tangents);
+    tl_borders_release(&moving->borders);
     *moving = (struct tl_moving){0};
 }
 

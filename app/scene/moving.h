@@ -3,6 +3,7 @@
 #define TOILE_APP_SCENE_MOVING_H
 
 #include "assets/base/surface.h"
+#include "assets/borders/borders.h"
 #include "assets/model.h"
 #include "cloth/tangents/tangent_frames.h"
 
@@ -13,11 +14,15 @@ struct tl_moving {
     vec4s *tangents;
     tl_tangent_frames *frames;
     uint64_t motion_revision;
+    tl_borders borders; /* of a garment's pieces; empty until tl_moving_find_borders */
 };
 
 /* `weld` as in tl_tangent_frames_create, or NULL to weld by position. Starts in the model's rest pose. */
 void tl_moving_create(struct tl_moving *moving, const tl_model *model, const uint32_t *weld);
 void tl_moving_release(struct tl_moving *moving);
+
+/* Finds the borders of the pieces of the garment whose model moves. */
+void tl_moving_find_borders(struct tl_moving *moving, const tl_garment *garment);
 
 /* Goes back to the state after tl_moving_create: the rest pose. */
 void tl_moving_restart(struct tl_moving *moving);

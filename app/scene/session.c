@@ -264,6 +264,8 @@ static bool load_all(tl_session *session, tl_error *error)
         if (tl_scene_plays_motion(&session->settings) ? !begin_playback(session, error)
                                                       : !begin_cloth(session, error))
             return false;
+        if (!session->garment->solid)
+            tl_moving_find_borders(&session->dress, session->garment);
     } else if (tl_scene_plays_motion(&session->settings)) {
         return tl_fail(error, TL_USAGE,
                        "scene.motion: there is no garment that could move: add --garment FILE");
@@ -598,6 +600,14 @@ size_t tl_session_colourways(const tl_session *session, const char *const **name
     return session->appearance.name_count;
 }
 
+/* NULL where nothing is sewn to scale. */
+static const tl_borders *borders_of_garment(const tl_session *session)
+{
+    const tl_borders *borders = &session->dress.borders;
+    bool is_shown = session->settings.construction.show == TL_CONSTRUCTION_ALWAYS || borders->is_to_scale;
+    return is_shown && borders->border_count > 0 ? borders : NULL;
+}
+
 tl_frame tl_session_frame(tl_session *session)
 {
     session->surface_count = 0;
@@ -609,6 +619,7 @@ tl_frame tl_session_frame(tl_session *session)
         *garment = tl_moving_surface(&session->dress, TL_SURFACE_GARMENT, &session->appearance.garment);
         garment->strains = strains_of_garment(session);
         garment->crossed = crossed_of_garment(session);
+        garment->borders = borders_of_garment(session);
     }
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->appearance_revision;

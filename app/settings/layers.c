@@ -3,6 +3,7 @@
 #include "cloth/energy/fabric.h"
 #include "config/memory.h"
 #include "config/words.h"
+#include "render/construction/options.h"
 
 #include <stdlib.h>
 
@@ -41,8 +42,11 @@ bool tl_option_layer_read_appearance(const char *fabric, struct tl_material_para
                                      struct tl_weave_params *weave, tl_error *error)
 {
     struct tl_cloth_fabric ignored;
-    const struct tl_binding bindings[] = {
-        {&tl_cloth_fabric_options, &ignored}, {&tl_weave_options, weave}, {&tl_material_options, params}};
+    struct tl_construction_params unused; /* a garment is sewn in one way, that of its first fabric */
+    const struct tl_binding bindings[] = {{&tl_cloth_fabric_options, &ignored},
+                                          {&tl_weave_options, weave},
+                                          {&tl_material_options, params},
+                                          {&tl_construction_options, &unused}};
     tl_options_reset(bindings, TL_COUNT(bindings));
     return tl_option_layer_apply(&tl_option_layer_fabric, fabric, bindings, TL_COUNT(bindings), NULL, error);
 }

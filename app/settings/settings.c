@@ -117,7 +117,8 @@ static const struct tl_option camera_rows[] = {
 const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
     "camera", "an orbit about a target", camera_rows, struct tl_camera_params, TL_CAMERA_DEFAULTS);
 
-/* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC, WEAVE and MATERIAL. */
+/* The reference page's order. A preset sets CLOTH, LIGHT and IMAGE; a fabric FABRIC to
+ * CONSTRUCTION. */
 enum {
     SCENE,
     CAMERA,
@@ -125,6 +126,7 @@ enum {
     FABRIC,
     WEAVE,
     MATERIAL,
+    CONSTRUCTION,
     OVERLAY,
     LIGHT,
     MAPS,
@@ -144,6 +146,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
+    bindings[CONSTRUCTION] = (struct tl_binding){&tl_construction_options, &settings->construction};
     bindings[OVERLAY] = (struct tl_binding){&tl_overlay_options, &settings->overlay};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
@@ -173,7 +176,7 @@ static bool apply_preset(const struct tl_binding *all, const char *name, tl_erro
 
 static bool apply_fabric(const struct tl_binding *all, const char *name, tl_error *error)
 {
-    const struct tl_binding bindings[] = {all[FABRIC], all[WEAVE], all[MATERIAL]};
+    const struct tl_binding bindings[] = {all[FABRIC], all[WEAVE], all[MATERIAL], all[CONSTRUCTION]};
     return tl_option_layer_apply(&tl_option_layer_fabric, name, bindings, TL_COUNT(bindings), NULL, error);
 }
 
@@ -385,6 +388,7 @@ bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl
     tl_options_reset(&all[FABRIC], 1);
     tl_options_reset(&all[WEAVE], 1);
     tl_options_reset(&all[MATERIAL], 1);
+    tl_options_reset(&all[CONSTRUCTION], 1);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", name, "fabric", NULL, error) ||
         !apply_fabric(all, name, error))
         return false;

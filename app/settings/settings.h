@@ -9,6 +9,7 @@
 #include "cloth/cloth.h"
 #include "config/options.h"
 #include "render/brdf/options.h"
+#include "render/construction/options.h"
 #include "render/local/lamp.h"
 #include "render/renderer.h"
 
@@ -51,6 +52,7 @@ struct tl_settings {
     struct tl_cloth_fabric fabric;
     struct tl_weave_params weave;
     struct tl_material_params material;
+    struct tl_construction_params construction;
     struct tl_material_params overlay;
     struct tl_weave_params overlay_weave; /* follows from scene.overlay_fabric */
     struct tl_colourways colourways;      /* follow from scene.colourway, .colourways and .garment */
@@ -63,7 +65,7 @@ struct tl_settings {
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 15
+#define TL_SETTINGS_TABLES 16
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 

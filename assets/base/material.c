@@ -28,6 +28,11 @@ bool tl_material_emits(const tl_material *material)
     return glms_vec3_max(material->emission) > 0;
 }
 
+bool tl_material_is_sewn(const tl_material *material)
+{
+    return material->construction.seam != TL_SEAM_NONE || material->construction.hem != TL_HEM_NONE;
+}
+
 bool tl_material_transmits(const tl_material *material)
 {
     return material->transmission.x > 0 || material->transmission.y > 0 || material->transmission.z > 0;

@@ -71,6 +71,34 @@ struct tl_gloss {
     float rotation;   /* rad, counter-clockwise seen from outside: turns weft and warp in the surface */
 };
 
+/* How pieces are sewn together and their free edges finished; render/construction has the heights. Lengths
+ * in metres. */
+enum tl_seam {
+    TL_SEAM_NONE,
+    TL_SEAM_PLAIN,
+    TL_SEAM_TOPSTITCHED,
+    TL_SEAM_FLAT_FELLED,
+    TL_SEAM_OVERLOCK,
+    TL_SEAM_BOUND
+};
+enum tl_hem { TL_HEM_NONE, TL_HEM_PLAIN, TL_HEM_TOPSTITCHED, TL_HEM_TWICE, TL_HEM_BOUND };
+struct tl_construction {
+    int seam;          /* enum tl_seam */
+    int hem;           /* enum tl_hem */
+    float hem_m;       /* width of a hem */
+    float thickness_m; /* of the cloth: how high allowances and folds stand */
+    float stitch_m;    /* length of a stitch */
+    float thread_m;    /* diameter of the thread */
+    float pucker_m;    /* amplitude of the waves beside a seam */
+    vec3s thread;      /* its colour, linear */
+};
+
+/* The back of the cloth, where it differs from the front: a lining, or the other side of a twill. */
+struct tl_back {
+    bool is_given;
+    vec3s diffuse, specular; /* as the front's; maps and yarns of the front do not tint it */
+};
+
 typedef struct tl_material {
     char name[64];
     vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
@@ -86,15 +114,17 @@ typedef struct tl_material {
     float occlusion_strength; /* [0, 1] */
     float alpha_cutoff;       /* alpha test; 0: opaque */
     bool double_sided;
-    struct tl_map diffuse_map;   /* sRGB colour, alpha in the fourth channel */
-    struct tl_map normal_map;    /* linear */
-    struct tl_map gloss_map;     /* U8 x1, linear: multiplies glossiness */
-    struct tl_map specular_map;  /* U8 x3, sRGB: multiplies specular */
-    struct tl_map emission_map;  /* U8 x3, sRGB: multiplies emission */
-    struct tl_map occlusion_map; /* U8, linear, red */
-    struct tl_map height_map;    /* U8 x1, linear: 0 deepest, 1 the mesh's own surface */
-    float height_m;              /* metres from the deepest to the highest of height_map */
-    const tl_weave *weave;       /* detail, or NULL */
+    struct tl_map diffuse_map;           /* sRGB colour, alpha in the fourth channel */
+    struct tl_map normal_map;            /* linear */
+    struct tl_map gloss_map;             /* U8 x1, linear: multiplies glossiness */
+    struct tl_map specular_map;          /* U8 x3, sRGB: multiplies specular */
+    struct tl_map emission_map;          /* U8 x3, sRGB: multiplies emission */
+    struct tl_map occlusion_map;         /* U8, linear, red */
+    struct tl_map height_map;            /* U8 x1, linear: 0 deepest, 1 the mesh's own surface */
+    float height_m;                      /* metres from the deepest to the highest of height_map */
+    const tl_weave *weave;               /* detail, or NULL */
+    struct tl_construction construction; /* of surfaces that have borders (tl_surface) */
+    struct tl_back back;
 } tl_material;
 
 /* Matt mid-grey, no maps. */
@@ -103,6 +133,8 @@ tl_material tl_material_default(const char *name);
 /* Whether the material has more than two cosine lobes about the normal and the mirror direction: microfacets,
  * a coat, or transmission. */
 bool tl_material_is_layered(const tl_material *material);
+/* Whether seams or hems are drawn. */
+bool tl_material_is_sewn(const tl_material *material);
 /* Whether the material scatters light through to the other side. */
 bool tl_material_transmits(const tl_material *material);
 

@@ -9,6 +9,8 @@
 /* The name of the surface that is judged: errors of a picture in motion are those of its pixels. */
 #define TL_SURFACE_GARMENT "garment"
 
+struct tl_borders;
+
 typedef struct tl_surface {
     const char *name; /* TL_SURFACE_GARMENT, "avatar", "ground" */
     size_t vertex_count;
@@ -25,8 +27,9 @@ typedef struct tl_surface {
     size_t part_count;
     const struct tl_mesh_part *parts;
     const tl_material *materials;
-    uint64_t topology_revision; /* changes when anything but positions, normals and tangents does */
-    uint64_t motion_revision;   /* changes when positions do */
+    const struct tl_borders *borders; /* of its pieces (assets/borders); NULL: no construction is drawn */
+    uint64_t topology_revision;       /* changes when anything but positions, normals and tangents does */
+    uint64_t motion_revision;         /* changes when positions do */
 } tl_surface;
 
 /* A view of a mesh that does not move: its own parts, no strains, revisions 0. */

@@ -52,6 +52,8 @@ static const struct tl_option material_rows[] = {
     TL_OPTION_FLOAT(
         material_params, openness, AFFECTS, 0, 0.99, "",
         "fraction of the surface that is holes between threads; larger: more of the background shows"),
+    TL_OPTION_COLOUR(material_params, back, AFFECTS, 0, 1,
+                     "diffuse albedo of the inside: the fabric's back, or a lining; 0 0 0: as the front"),
 };
 #define DEFAULTS                                                                                             \
     .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \

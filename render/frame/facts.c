@@ -92,7 +92,8 @@ uint32_t tl_exponents_of(const tl_surface *surfaces, size_t count, const struct 
             const tl_material *material = &surfaces[s].materials[surfaces[s].parts[p].material];
             float low, high;
             glossiness_range(material, &low, &high);
-            if (tl_detail_wants_moments(detail) && tl_detail_wants_maps(detail, material))
+            bool is_sewn = surfaces[s].borders && tl_material_is_sewn(material);
+            if (tl_detail_wants_moments(detail) && (is_sewn || tl_detail_wants_maps(detail, material)))
                 low = 0; /* averaged bumps dull any gloss */
             low = 1 - (1 - low) * (1 + ROUNDING);
             needed |= tl_exponents_needed(low, 1 - (1 - high) * (1 - ROUNDING));

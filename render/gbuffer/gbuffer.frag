@@ -89,6 +89,8 @@ void main()
     float cover = fading_disc.w > 0.0 ? ground_cover(fading_disc, point.xz) : 1.0;
     if (cover <= 0.0)
         discard;
+    uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;
+    sew(number, place.uv, across, down);
     vec3 n = side * smooth_normal;
     float rough = 1.0 - glossiness(place.uv);
 #ifdef FRAMES
@@ -130,6 +132,6 @@ void main()
     out_normal = vec4(n, rough);
     out_diffuse = vec4(kd, horizon.x);
     out_specular = vec4(ks, horizon.y);
-    out_triangle = with_side(texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r);
+    out_triangle = with_side(number);
 }
 #endif

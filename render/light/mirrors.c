@@ -94,9 +94,13 @@ static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const
     float cosine = fmaxf(-glms_vec3_dot(sample.normal, direction), 0);
     sample.mirror = glms_vec3_normalize(glms_vec3_add(direction, glms_vec3_scale(sample.normal, 2 * cosine)));
     sample.glossiness = material->glossiness;
+    vec3s f0 = glms_vec3_mul(material->specular, map_colour(&material->specular_map, uv));
     sample.diffuse = glms_vec3_mul(material->diffuse, map_colour(&material->diffuse_map, uv));
-    sample.specular =
-        reflectance(glms_vec3_mul(material->specular, map_colour(&material->specular_map, uv)), cosine);
+    if (back && material->back.is_given) {
+        sample.diffuse = material->back.diffuse;
+        f0 = material->back.specular;
+    }
+    sample.specular = reflectance(f0, cosine);
     return sample;
 }
 

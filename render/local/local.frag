@@ -106,6 +106,7 @@ void find_detail(mat3 frame, float side, vec3 smooth_normal)
 #endif
     view = direction_or(eye - point, smooth_normal) * frame;
     place = detail_place(uv, view, side);
+    sew(first_triangle + uint(gl_PrimitiveID), place.uv, dFdx(uv), dFdy(uv));
     bumpy = has_bumps(tangent);
     if (bumpy)
         bumps = bumps_at(place.uv);

@@ -53,6 +53,10 @@ static struct tl_reference_material make_material(struct tl_reference_scene *sce
         prepared.weave[TL_WEAVE_GLOSS] = find_texture(scene, &weave->gloss, false);
         prepared.weave[TL_WEAVE_TINT] = find_texture(scene, &weave->tint, false);
     }
+    if (tl_material_is_sewn(material)) {
+        prepared.construction = TL_NEW(struct tl_construction_tables);
+        tl_construction_tables_make(&material->construction, prepared.construction);
+    }
     return prepared;
 }
 
@@ -108,8 +112,10 @@ bool tl_reference_scene_make(const struct tl_reference_request *request, struct 
 void tl_reference_scene_release(struct tl_reference_scene *scene)
 {
     for (size_t i = 0; scene->materials && i <= scene->surface_count; i++) {
-        for (size_t m = 0; m < scene->materials[i].count; m++)
+        for (size_t m = 0; m < scene->materials[i].count; m++) {
             tl_detail_heights_release(&scene->materials[i].materials[m].heights);
+            free(scene->materials[i].materials[m].construction);
+        }
         free(scene->materials[i].materials);
     }
     tl_reference_detail_release(&scene->detail);

@@ -6,6 +6,7 @@
 #ifndef TOILE_RENDER_REFERENCE_SCENE_H
 #define TOILE_RENDER_REFERENCE_SCENE_H
 
+#include "render/construction/tables.h"
 #include "render/gpu/map_texture.h"
 #include "render/local/lamp.h"
 #include "render/reference/detail.h"
@@ -27,6 +28,7 @@ struct tl_reference_material {
     struct tl_reference_map maps[TL_MAP_USES], emission;
     const struct tl_map_texture *weave[TL_WEAVE_USES];
     const struct tl_map_texture *own_moments, *weave_moments; /* NULL: none */
+    struct tl_construction_tables *construction;              /* NULL: not sewn; owned */
     struct tl_detail_heights heights; /* of the first part that uses the material; empty: none */
 };
 

@@ -2,6 +2,7 @@
 
 #include "render/brdf/coat.h"
 #include "render/brdf/fresnel.h"
+#include "render/construction/look.h"
 #include "render/detail/detail_terms.h"
 #include "render/env/exponent.h"
 #include "render/surfaces/surfaces.h"
@@ -31,8 +32,10 @@ struct sample_place {
     float uv_metres;
     const struct tl_detail_params *detail;
     struct tl_footprint footprint;
-    vec3s point, facet; /* normal of the triangle, on the side of the viewer */
-    vec3s normal;       /* interpolated, towards the front, not normalised */
+    bool sewn;
+    ConstructionLook look; /* of seams and hems, where `sewn` */
+    vec3s point, facet;    /* normal of the triangle, on the side of the viewer */
+    vec3s normal;          /* interpolated, towards the front, not normalised */
     vec4s tangent;
     float side; /* 1 for the front; -1 for the back, which is a surface of its own with the whole frame turned
                    over */
@@ -112,20 +115,26 @@ static struct tl_bump_statistics weave_bumps(const struct sample_place *place)
     return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
 }
 
-/* Statistics of all bumps in tangent space: those of the normal map of the file plus those of the weave. */
+/* Statistics of all bumps in tangent space: those of the normal map of the file plus those of the weave and
+ * of what is sewn. */
 static struct tl_bump_statistics bumps_at(const struct sample_place *place)
 {
-    struct tl_bump_statistics own = own_bumps(place);
-    if (!place->woven)
-        return own;
-    struct tl_bump_statistics weave = weave_bumps(place);
-    return tl_bump_statistics_add(&own, &weave);
+    struct tl_bump_statistics sum = own_bumps(place), more;
+    if (place->woven) {
+        more = weave_bumps(place);
+        sum = tl_bump_statistics_add(&sum, &more);
+    }
+    if (place->sewn) {
+        more = tl_construction_bumps(&place->look);
+        sum = tl_bump_statistics_add(&sum, &more);
+    }
+    return sum;
 }
 
 static bool has_bumps(const struct sample_place *place)
 {
     vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
-    return (has_map(place, TL_MAP_NORMAL) || place->woven) && glms_vec3_norm2(tangent) > 0;
+    return (has_map(place, TL_MAP_NORMAL) || place->woven || place->sewn) && glms_vec3_norm2(tangent) > 0;
 }
 
 static vec3s bent_normal(const struct sample_place *place, vec3s mapped, vec3s smooth)
@@ -162,6 +171,19 @@ static vec3s times_map(vec3s colour, vec4s texel)
     return (vec3s){{colour.x * texel.x, colour.y * texel.y, colour.z * texel.z}};
 }
 
+static bool shows_back(const struct sample_place *place)
+{
+    return place->material->back.is_given && place->side < 0;
+}
+
+/* With the thread of stitches over it, and the shade of seams. */
+static vec3s sewn_colour(const struct sample_place *place, vec3s cloth, vec3s thread)
+{
+    for (int c = 0; place->sewn && c < 3; c++)
+        cloth.raw[c] = tl_construction_colour(&place->look, cloth.raw[c], thread.raw[c]);
+    return cloth;
+}
+
 static vec3s diffuse_of(const struct sample_place *place)
 {
     vec3s colour = place->material->diffuse;
@@ -169,11 +191,13 @@ static vec3s diffuse_of(const struct sample_place *place)
         colour = times_map(colour, map_at(place, TL_MAP_DIFFUSE));
     if (place->woven)
         colour = times_map(colour, weave_at(place, TL_WEAVE_TINT));
+    if (shows_back(place))
+        colour = place->material->back.diffuse;
     if (has_map(place, TL_MAP_OCCLUSION)) {
         float open = map_at(place, TL_MAP_OCCLUSION).x;
         colour = glms_vec3_scale(colour, 1 + (open - 1) * place->material->occlusion_strength);
     }
-    return colour;
+    return sewn_colour(place, colour, place->material->construction.thread);
 }
 
 static vec3s emission_of(const struct sample_place *place)
@@ -189,7 +213,11 @@ static vec3s emission_of(const struct sample_place *place)
 static vec3s f0_of(const struct sample_place *place)
 {
     vec3s f0 = place->material->specular;
-    return has_map(place, TL_MAP_SPECULAR) ? times_map(f0, map_at(place, TL_MAP_SPECULAR)) : f0;
+    if (has_map(place, TL_MAP_SPECULAR))
+        f0 = times_map(f0, map_at(place, TL_MAP_SPECULAR));
+    if (shows_back(place))
+        f0 = place->material->back.specular;
+    return sewn_colour(place, f0, glms_vec3_minv(f0, glms_vec3_fill(CONSTRUCTION_THREAD_F0)));
 }
 
 static vec3s specular_of(vec3s f0, float n_dot_v)
@@ -375,6 +403,19 @@ static void set_material(const struct tl_reference_scene *scene, const struct tl
         place->weave_scale[i] = part->uv_metres / place->material->weave->size_m[i];
 }
 
+/* With the footprint as it is after displacement. */
+static void set_construction(const struct tl_reference_scene *scene, const struct tl_trace_hit *hit,
+                             struct sample_place *place)
+{
+    const tl_borders *borders = scene->surfaces[hit->surface].borders;
+    if (!borders || borders->border_count == 0 || !place->prepared->construction)
+        return;
+    const struct tl_footprint *at = &place->footprint;
+    place->sewn = true;
+    place->look = tl_construction_look(place->prepared->construction, borders, hit->triangle, at->uv,
+                                       at->across, at->down);
+}
+
 /* Origin of rays on the other side of the same sheet. */
 static vec3s point_behind(const struct sample_place *place, const struct tl_reference_scene *scene,
                           const struct triangle_corners *corners, const float weights[3])
@@ -410,6 +451,7 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
     place.footprint.uv = glms_vec2_add(
         place.footprint.uv, tl_reference_shift(place.detail, &place.prepared->heights, place.footprint.uv,
                                                place.uv_metres, view, place.side));
+    set_construction(scene, hit, &place);
     vec3s smooth = tl_smooth_point(place.point, corners.positions, corners.normals, weights);
     struct tl_shading_point result = point_of(&place, scene, ray, smooth);
     result.distance_m = hit->distance_m;

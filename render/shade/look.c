@@ -1,5 +1,6 @@
 #include "render/shade/look.h"
 
+#include "render/construction/look.h"
 #include "render/detail/bump_statistics.h"
 
 /* ---- Maps ---- */
@@ -54,6 +55,21 @@ TL_INLINE void multiply(tl_quad values[TL_LANES], const tl_quad factors[TL_LANES
         values[i] *= factors[i];
 }
 
+/* A back of its own takes nothing from the front's maps. */
+TL_INLINE void show_backs(struct tl_look_lanes *lanes)
+{
+    const struct tl_back *back = &lanes->part->material->back;
+    if (!back->is_given)
+        return;
+    const tl_quad diffuse = {back->diffuse.x, back->diffuse.y, back->diffuse.z, 0};
+    const tl_quad f0 = {back->specular.x, back->specular.y, back->specular.z, 0};
+    for (int i = 0; i < lanes->count; i++)
+        if (lanes->side[i] < 0) {
+            lanes->diffuse[i] = diffuse;
+            lanes->f0[i] = f0;
+        }
+}
+
 /* Colours and glossiness from the material's own maps and from the weave. */
 TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_look_lanes *lanes,
                             struct texel_lanes *weave)
@@ -86,6 +102,7 @@ TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_loo
         for (int i = 0; i < count; i++)
             lanes->glossiness[i] += texels[i][3];
     }
+    show_backs(lanes);
     for (int i = 0; i < TL_LANES; i++)
         lanes->glossiness[i] = tl_maxf(tl_minf(lanes->glossiness[i], 1), 0);
     if (maps[TL_MAP_OCCLUSION].texels) {
@@ -208,6 +225,35 @@ TL_INLINE void bend(struct tl_look_lanes *lanes, const struct statistic_lanes *b
     }
 }
 
+/* ---- Construction ---- */
+
+/* Puts seams, hems and stitches over colours and bumps, where there are any near by. */
+TL_INLINE void sew(struct tl_look_lanes *lanes, struct statistic_lanes *sum)
+{
+    const struct tl_shade_part *part = lanes->part;
+    const vec3s thread = part->material->construction.thread;
+    for (int i = 0; i < lanes->count; i++) {
+        const uint32_t triangle = lanes->triangle[i];
+        if (triangle == TL_NO_TRIANGLE ||
+            part->borders->firsts[triangle] == part->borders->firsts[triangle + 1])
+            continue;
+        const ConstructionLook sewn = tl_construction_look(
+            part->construction, part->borders, triangle, (vec2s){{lanes->uv[0][i], lanes->uv[1][i]}},
+            (vec2s){{lanes->change[0][0][i], lanes->change[1][0][i]}},
+            (vec2s){{lanes->change[0][1][i], lanes->change[1][1][i]}});
+        const struct tl_bump_statistics more = tl_construction_bumps(&sewn);
+        const struct tl_bump_statistics so_far = {
+            tl_lane_vector(sum->normal, i), {sum->spread[0][i], sum->spread[1][i]}, sum->length[i]};
+        const struct tl_bump_statistics all = tl_bump_statistics_add(&so_far, &more);
+        store_statistics(sum, i, &all);
+        for (int c = 0; c < 3; c++) {
+            lanes->diffuse[i][c] = tl_construction_colour(&sewn, lanes->diffuse[i][c], thread.raw[c]);
+            lanes->f0[i][c] = tl_construction_colour(&sewn, lanes->f0[i][c],
+                                                     tl_minf(lanes->f0[i][c], CONSTRUCTION_THREAD_F0));
+        }
+    }
+}
+
 TL_INLINE void apply_bumps(const struct tl_detail_params *detail, struct tl_look_lanes *lanes,
                            const struct texel_lanes *weave_at)
 {
@@ -230,6 +276,8 @@ TL_INLINE void apply_bumps(const struct tl_detail_params *detail, struct tl_look
         store_statistics(&sum, i, &flat);
     add_bumps(&bumps[0], &sum);
     add_bumps(&bumps[1], &sum);
+    if (part->borders)
+        sew(lanes, &sum);
     float open[TL_LANES];
     if (detail->minify == TL_DETAIL_MINIFY_LEAN)
         bend(lanes, &sum, TL_DETAIL_MINIFY_LEAN, open);
@@ -259,8 +307,10 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
         lanes->diffuse[i] = diffuse;
         lanes->f0[i] = f0;
     }
-    if (!part->has_maps)
+    if (!part->has_maps) {
+        show_backs(lanes);
         return;
+    }
     struct texel_lanes weave_at;
     read_colours(detail, lanes, &weave_at);
     for (int i = 0; i < TL_LANES; i++)

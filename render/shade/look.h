@@ -11,6 +11,8 @@
 
 #include <math.h>
 
+#define TL_NO_TRIANGLE UINT32_MAX
+
 struct tl_look_lanes {
     const struct tl_shade_part *part;
     int count; /* the other lanes are not read for texels; what they hold does not matter */
@@ -22,6 +24,7 @@ struct tl_look_lanes {
     /* Where the part has maps: */
     float uv[2][TL_LANES];        /* must be finite */
     float change[2][2][TL_LANES]; /* of u and of v to the next sample across and up */
+    uint32_t triangle[TL_LANES];  /* the surface's own; TL_NO_TRIANGLE: borders are not looked for */
     /* Results: */
     float smooth[3][TL_LANES]; /* the given normal, normalised */
     float shown[3][TL_LANES];  /* shading normal, unit, on the viewer's side */

@@ -114,7 +114,7 @@ static void glossiness_range(const struct tl_shade_part *part, float *low, float
         range_of(part->weave_tint, &least, &most);
         *low += least, *high += most;
     }
-    *low = part->own_moments || part->weave_moments ? 0 : fminf(fmaxf(*low, 0), 1);
+    *low = part->own_moments || part->weave_moments || part->borders ? 0 : fminf(fmaxf(*low, 0), 1);
     *high = fminf(fmaxf(*high, 0), 1);
 }
 
@@ -165,8 +165,31 @@ static void add_weave(struct tl_shade_materials *materials, float uv_metres, boo
         part->weave_normal = find_image(materials, &weave->normal, PACKED_DATA, NULL);
 }
 
+static void add_construction(struct tl_shade_materials *materials, const tl_borders *borders,
+                             struct tl_shade_part *part)
+{
+    if (!borders || borders->border_count == 0 || !tl_material_is_sewn(part->material))
+        return;
+    struct tl_construction_tables *made = TL_NEW(struct tl_construction_tables);
+    tl_construction_tables_make(&part->material->construction, made);
+    materials->constructions = tl_resize(materials->constructions, materials->construction_count + 1,
+                                         sizeof(struct tl_construction_tables *));
+    materials->constructions[materials->construction_count++] = made;
+    part->borders = borders;
+    part->construction = made;
+}
+
+static void forget_constructions(struct tl_shade_materials *materials)
+{
+    for (size_t i = 0; i < materials->construction_count; i++)
+        free(materials->constructions[i]);
+    free(materials->constructions);
+    materials->constructions = NULL;
+    materials->construction_count = 0;
+}
+
 static struct tl_shade_part make_part(struct tl_shade_materials *materials, const tl_material *material,
-                                      float uv_metres, int fan)
+                                      const tl_borders *borders, float uv_metres, int fan)
 {
     const struct tl_map *maps[TL_MAP_USES] = {[TL_MAP_DIFFUSE] = &material->diffuse_map,
                                               [TL_MAP_NORMAL] = &material->normal_map,
@@ -187,11 +210,12 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
         part.has_maps |= part.maps[use].texels != NULL;
     }
     add_weave(materials, uv_metres, moments, &part);
+    add_construction(materials, borders, &part);
     bool woven = part.weave_tint != NULL;
     part.turn_cosine = cosf(material->gloss.rotation);
     part.turn_sine = sinf(material->gloss.rotation);
-    part.has_maps |= woven || part.own_moments;
-    part.has_bumps = woven || part.own_moments || part.maps[TL_MAP_NORMAL].texels;
+    part.has_maps |= woven || part.own_moments || part.borders;
+    part.has_bumps = woven || part.own_moments || part.borders || part.maps[TL_MAP_NORMAL].texels;
     part.is_glossy = glms_vec3_max(material->specular) > 0;
     part.transmits = tl_material_transmits(material);
     materials->openness = fmaxf(materials->openness, material->openness);
@@ -216,6 +240,7 @@ void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surf
     } else {
         free(materials->first_parts);
         free(materials->parts);
+        forget_constructions(materials);
     }
     materials->shapes_revision = shapes_revision;
     materials->detail = *detail;
@@ -229,7 +254,8 @@ void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surf
         for (size_t p = 0; p < surfaces[s]->part_count; p++) {
             const struct tl_mesh_part *part = &surfaces[s]->parts[p];
             materials->parts[materials->first_parts[s] + p] =
-                make_part(materials, &surfaces[s]->materials[part->material], part->uv_metres, fan);
+                make_part(materials, &surfaces[s]->materials[part->material], surfaces[s]->borders,
+                          part->uv_metres, fan);
         }
 }
 
@@ -243,6 +269,7 @@ void tl_shade_materials_release(struct tl_shade_materials *materials)
         tl_fan_table_release(&materials->fans[i]->table);
         free(materials->fans[i]);
     }
+    forget_constructions(materials);
     free(materials->images);
     free(materials->fans);
     free(materials->first_parts);
@@ -258,7 +285,7 @@ void tl_shade_materials_release(struct tl_shade_materials *materials)
 
 size_t tl_shade_materials_bytes(const struct tl_shade_materials *materials)
 {
-    size_t bytes = 0;
+    size_t bytes = materials->construction_count * sizeof(struct tl_construction_tables);
     for (size_t i = 0; i < materials->image_count; i++)
         bytes += tl_texels_bytes(&materials->images[i]->texels);
     for (size_t i = 0; i < materials->fan_count; i++)

@@ -7,6 +7,8 @@
 #ifndef TOILE_RENDER_SHADE_MATERIALS_H
 #define TOILE_RENDER_SHADE_MATERIALS_H
 
+#include "assets/borders/borders.h"
+#include "render/construction/tables.h"
 #include "render/detail/options.h"
 #include "render/gbuffer/samples.h"
 #include "render/shade/fan_table.h"
@@ -27,7 +29,9 @@ struct tl_shade_part {
     const struct tl_texels *weave_tint;  /* factor on kd; what is added to glossiness in the fourth channel */
     const struct tl_texels *weave_moments; /* NULL where they are not kept: */
     const struct tl_texels *weave_normal;
-    float weave_scale[2];           /* repeats per UV unit */
+    float weave_scale[2];      /* repeats per UV unit */
+    const tl_borders *borders; /* NULL: nothing is sewn; with the profiles of seams and hems: */
+    const struct tl_construction_tables *construction;
     float turn_cosine, turn_sine;   /* of gloss.rotation */
     bool has_maps;                  /* UV is read */
     bool has_bumps;                 /* the tangent is read */
@@ -48,9 +52,10 @@ struct tl_shade_materials {
     size_t *first_parts; /* [surface_count + 1] */
     struct tl_shade_part *parts;
     float openness; /* the greatest; 0: no part can be looked through */
-    size_t image_count, fan_count;
+    size_t image_count, fan_count, construction_count;
     struct tl_shade_image **images; /* each image is packed once */
     struct tl_shade_fan **fans;
+    struct tl_construction_tables **constructions; /* [construction_count] by part, of those that are sewn */
 };
 
 /* Returns true when every material of the surfaces can be evaluated here with these options. */

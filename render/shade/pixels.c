@@ -34,7 +34,9 @@ static void flatten(const struct tl_pixel_scene *scene, struct pixel_run *run)
     const float side = run->triangle->back ? -1.0f : 1.0f;
     const vec3s normal = {{side * run->normals[0][0], side * run->normals[0][1], side * run->normals[0][2]}};
     const vec3s d = tl_pixel_turned(scene, normal);
-    tl_quad colour = tl_pixel_quad(run->part->material->diffuse);
+    const tl_material *material = run->part->material;
+    tl_quad colour = tl_pixel_quad(run->triangle->back && material->back.is_given ? material->back.diffuse
+                                                                                  : material->diffuse);
     tl_quad light = colour * tl_lobe_map_fetch(&request->lobes->maps[0], tl_octahedral_place(d.x, d.y, d.z));
     for (int i = 0; i < 3; i++)
         run->diffuse[i] *= light;
@@ -182,6 +184,7 @@ TL_INLINE void fill_lane(const struct pixel_run *run, const struct tl_pixel_weig
     }
     if (run->part->has_maps) {
         const tl_quad uv = weighted_quad(run->uvs, weights->at);
+        look->triangle[lane] = run->triangle->number;
         tl_quad change = {0, 0, 0, 0};
         for (int i = 0; i < 3; i++)
             change += weights->scale * (run->slopes[i] - weights->at[i] * run->slope) * run->uvs[i];

@@ -40,8 +40,8 @@ static struct tl_pixel_triangle make_triangle(const struct tl_view *view, int wi
     struct tl_pixel_triangle triangle = {.back = seen & TL_SAMPLE_BACK};
     uint32_t number = seen & ~TL_SAMPLE_BACK;
     triangle.surface = tl_triangle_find(ranges, number, triangle.corners, &triangle.surface_index);
-    triangle.part = tl_shade_part_at(materials, triangle.surface, triangle.surface_index,
-                                     number - ranges->first[triangle.surface_index]);
+    triangle.number = number - ranges->first[triangle.surface_index];
+    triangle.part = tl_shade_part_at(materials, triangle.surface, triangle.surface_index, triangle.number);
     triangle.transmits = tl_material_transmits(materials->parts[triangle.part].material);
     struct corner at[3];
     for (int i = 0; i < 3; i++)

@@ -14,6 +14,7 @@ struct tl_pixel_triangle {
     float x0, y0;
     const tl_surface *surface;
     uint32_t corners[3];
+    uint32_t number;            /* the surface's own */
     size_t surface_index, part; /* part: index into the materials' parts */
     bool back;
     bool transmits; /* light comes through it from its other side */

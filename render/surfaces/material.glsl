@@ -1,6 +1,7 @@
 // What a material's maps say at a point: shared by every pass that shades a surface while it draws it. The normal and
 // the tangent are those that rasterisation interpolated, as long as they come out.
 #include "detail.glsl"
+#include "construction.glsl"
 #include "direction.glsl"
 
 vec3 decode(vec3 texel)
@@ -34,17 +35,21 @@ Bumps weave_bumps(vec2 uv)
     return Bumps(steepened(decode(weave_texel(weave_normal, uv).xyz)), vec2(0.0), 1.0);
 }
 
-// In tangent space: the file's map and the weave, their slopes added as the heights behind them would be.
+// Slopes add as those of summed heights do.
+Bumps bumps_sum(Bumps a, Bumps b)
+{
+    return Bumps(vec3(a.normal.xy * b.normal.z + b.normal.xy * a.normal.z, a.normal.z * b.normal.z), a.spread + b.spread,
+                 a.length * b.length);
+}
+
+// In tangent space: the file's map, the weave and what is sewn (sew, called before).
 Bumps bumps_at(vec2 uv)
 {
     Bumps bumps = own_bumps(uv);
-    if (has_map(MAP_WEAVE)) {
-        Bumps weave = weave_bumps(uv);
-        vec3 n = bumps.normal;
-        bumps.normal = vec3(n.xy * weave.normal.z + weave.normal.xy * n.z, n.z * weave.normal.z);
-        bumps.spread += weave.spread;
-        bumps.length *= weave.length;
-    }
+    if (has_map(MAP_WEAVE))
+        bumps = bumps_sum(bumps, weave_bumps(uv));
+    if (has_map(MAP_SEWN))
+        bumps = bumps_sum(bumps, sewn_bumps());
     return bumps;
 }
 
@@ -55,7 +60,8 @@ vec3 tangent_space_normal(vec2 uv)
 
 bool has_bumps(vec4 tangent)
 {
-    bool has_normals = has_map(MAP_NORMAL) || has_map(MAP_WEAVE) || has_detail(DETAIL_OWN_MOMENTS);
+    bool has_normals =
+        has_map(MAP_NORMAL) || has_map(MAP_WEAVE) || has_map(MAP_SEWN) || has_detail(DETAIL_OWN_MOMENTS);
     return has_normals && dot(tangent.xyz, tangent.xyz) > 0.0;
 }
 
@@ -81,13 +87,20 @@ float glossiness(vec2 uv)
     return clamp(g, 0.0, 1.0);
 }
 
+bool shows_back()
+{
+    return has_map(MAP_BACK) && !gl_FrontFacing;
+}
+
 vec3 diffuse(vec3 colour, vec2 uv)
 {
     if (has_map(MAP_WEAVE))
         colour *= weave_texel(weave_tint, uv).rgb;
+    if (shows_back())
+        colour = back_diffuse;
     if (has_map(MAP_OCCLUSION))
         colour *= mix(1.0, map_texel(occlusion_map, MAP_OCCLUSION, uv).r, material_scalars.z);
-    return colour;
+    return sewn_diffuse(colour);
 }
 
 // Reflectance at normal incidence.
@@ -96,7 +109,9 @@ vec3 specular_f0(vec2 uv)
     vec3 f0 = material_specular;
     if (has_map(MAP_SPECULAR))
         f0 *= map_texel(specular_map, MAP_SPECULAR, uv).rgb;
-    return f0;
+    if (shows_back())
+        f0 = back_specular;
+    return sewn_specular(f0);
 }
 
 // Schlick's Fresnel term. At grazing angles it goes to one, but for a reflectance below 2 %, which no

@@ -1,5 +1,6 @@
 // Material of the part being drawn, as tl_surfaces_draw sets it (surfaces.h has the same numbers).
 const int MAP_DIFFUSE = 0, MAP_NORMAL = 1, MAP_GLOSS = 2, MAP_SPECULAR = 3, MAP_OCCLUSION = 4, MAP_WEAVE = 5;
+const int MAP_SEWN = 6, MAP_BACK = 7; // no maps: borders near by, a back of its own
 
 layout(location = 0) uniform vec3 material_diffuse;
 layout(location = 1) uniform vec3 material_specular;
@@ -13,6 +14,13 @@ layout(location = 20) uniform int detail_flags;
 layout(location = 21) uniform vec4 detail_range;   // lowest, highest (m), metres of a UV unit, factor on heights
 layout(location = 22) uniform vec3 detail_rows[2]; // from UV to repeats of the height field
 layout(location = 24) uniform ivec2 detail_steps;  // of relief: steps, halvings
+// Of construction.glsl.
+layout(location = 110) uniform uint sewn_first; // number of the surface's first triangle
+layout(location = 111) uniform vec4 construction_sizes;
+layout(location = 112) uniform vec4 construction_rows;
+layout(location = 113) uniform vec3 construction_thread; // colour
+layout(location = 114) uniform vec3 back_diffuse;
+layout(location = 115) uniform vec3 back_specular;
 
 layout(binding = 0) uniform sampler2D diffuse_map;
 layout(binding = 1) uniform sampler2D normal_map;

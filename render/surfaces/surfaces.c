@@ -1,11 +1,14 @@
 #include "render/surfaces/surfaces.h"
 
+#include "assets/borders/borders.h"
 #include "config/memory.h"
+#include "render/construction/tables.h"
 
 #include <epoxy/gl.h>
 
 #include <stdlib.h>
 
+enum storage { FIRSTS, NEAR, BORDERS, STORAGES };
 enum attribute { POSITION, NORMAL, TANGENT, UV, ATTRIBUTES };
 
 /* A texture and the image it was made of: materials share images. */
@@ -26,6 +29,10 @@ struct surface_item {
     tl_material *materials; /* copies: their maps' images are compared, never read, after the upload */
     size_t texture_count;
     struct uploaded *textures;
+    GLuint storage[STORAGES]; /* of the borders; 0: there are none */
+    size_t storage_bytes;
+    GLuint *profiles;                      /* [material_count] buffers; 0: the material is not sewn */
+    struct tl_construction_tables *tables; /* [material_count] */
 };
 
 struct tl_surfaces {
@@ -45,6 +52,12 @@ static void item_release(struct surface_item *item)
     free(item->textures);
     free(item->parts);
     free(item->materials);
+    if (item->storage[0]) {
+        glDeleteBuffers(STORAGES, item->storage);
+        glDeleteBuffers((GLsizei)item->material_count, item->profiles);
+    }
+    free(item->profiles);
+    free(item->tables);
     if (item->vertex_array) {
         glDeleteVertexArrays(1, &item->vertex_array);
         glDeleteBuffers(ATTRIBUTES, item->buffers);
@@ -213,6 +226,38 @@ static void send_motion(struct surface_item *item, const tl_surface *surface)
     item->motion_revision = surface->motion_revision;
 }
 
+static void send_storage(struct surface_item *item, enum storage storage, const void *data, size_t bytes)
+{
+    glNamedBufferData(item->storage[storage], (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
+    item->storage_bytes += bytes;
+}
+
+/* Sends the borders of pieces, and the profiles of the materials that have seams or hems. */
+static void send_construction(struct surface_item *item, const tl_surface *surface)
+{
+    const tl_borders *borders = surface->borders;
+    bool is_sewn = false;
+    for (size_t m = 0; m < item->material_count; m++)
+        is_sewn |= tl_material_is_sewn(&item->materials[m]);
+    if (!borders || borders->border_count == 0 || !is_sewn)
+        return;
+    glCreateBuffers(STORAGES, item->storage);
+    send_storage(item, FIRSTS, borders->firsts, (borders->triangle_count + 1) * sizeof *borders->firsts);
+    send_storage(item, NEAR, borders->near, borders->firsts[borders->triangle_count] * sizeof *borders->near);
+    send_storage(item, BORDERS, borders->borders, borders->border_count * sizeof *borders->borders);
+    item->profiles = TL_NEW_ARRAY(GLuint, item->material_count);
+    item->tables = TL_NEW_ARRAY(struct tl_construction_tables, item->material_count);
+    for (size_t m = 0; m < item->material_count; m++) {
+        if (!tl_material_is_sewn(&item->materials[m]))
+            continue;
+        tl_construction_tables_make(&item->materials[m].construction, &item->tables[m]);
+        glCreateBuffers(1, &item->profiles[m]);
+        glNamedBufferData(item->profiles[m], sizeof item->tables[m].profiles, item->tables[m].profiles,
+                          GL_STATIC_DRAW);
+        item->storage_bytes += sizeof item->tables[m].profiles;
+    }
+}
+
 static bool send_topology(tl_gpu *gpu, struct surface_item *item, const tl_surface *surface, tl_error *error)
 {
     item_release(item);
@@ -238,6 +283,7 @@ static bool send_topology(tl_gpu *gpu, struct surface_item *item, const tl_surfa
         if (!upload_material(gpu, item, surface->name, &surface->materials[m], error))
             return false;
     }
+    send_construction(item, surface);
     item->topology_revision = surface->topology_revision;
     return true;
 }
@@ -290,13 +336,39 @@ static int bind_weave(const struct surface_item *item, const tl_weave *weave, fl
     return 1 << TL_MAP_USES;
 }
 
+/* `number` is that of the surface's first triangle in the shader. */
+static int bind_construction(const struct surface_item *item, const struct tl_mesh_part *part, size_t number)
+{
+    if (!item->storage[0] || !item->profiles[part->material])
+        return 0;
+    const struct tl_construction_tables *tables = &item->tables[part->material];
+    for (GLuint i = 0; i < STORAGES; i++)
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TL_STORAGE_FIRSTS + i, item->storage[i]);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TL_STORAGE_PROFILES, item->profiles[part->material]);
+    glUniform1ui(TL_UNIFORM_SEWN_FIRST, (GLuint)number);
+    glUniform4fv(TL_UNIFORM_SEWN_SIZES, 1, tables->sizes.raw);
+    glUniform4fv(TL_UNIFORM_SEWN_ROWS, 1, tables->rows.raw);
+    glUniform3fv(TL_UNIFORM_SEWN_THREAD, 1, item->materials[part->material].construction.thread.raw);
+    return TL_FLAG_SEWN;
+}
+
+static int set_back(const struct tl_back *back)
+{
+    if (!back->is_given)
+        return 0;
+    glUniform3fv(TL_UNIFORM_BACK_DIFFUSE, 1, back->diffuse.raw);
+    glUniform3fv(TL_UNIFORM_BACK_SPECULAR, 1, back->specular.raw);
+    return TL_FLAG_BACK;
+}
+
 /* Units without a map are cleared: software GL samples whatever is bound, wanted or not, and compiles each
  * shader again for every set of formats that it meets. */
-static void set_material(const struct surface_item *item, const struct tl_mesh_part *part)
+static void set_material(const struct surface_item *item, const struct tl_mesh_part *part, size_t number)
 {
     const tl_material *material = &item->materials[part->material];
     glBindTextures(0, TL_MAP_USES + TL_WEAVE_USES, NULL);
-    int flags = bind_weave(item, material->weave, part->uv_metres);
+    int flags = bind_weave(item, material->weave, part->uv_metres) | bind_construction(item, part, number) |
+                set_back(&material->back);
     float rows[TL_MAP_USES][6];
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
         const struct tl_map *map = map_of(material, use);
@@ -347,6 +419,15 @@ const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t
     return &item->materials[item->parts[part].material];
 }
 
+/* The number of a surface's first triangle among those of all surfaces. */
+static size_t first_number(const tl_surfaces *surfaces, size_t index)
+{
+    size_t number = 0;
+    for (size_t i = 0; i < index; i++)
+        number += surfaces->items[i].index_count / 3;
+    return number;
+}
+
 /* Draws from the index buffer that is bound; `number` is the first triangle's number in the shader. */
 static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_index, size_t first_index,
                          size_t index_count, size_t number)
@@ -354,7 +435,7 @@ static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_
     const struct surface_item *item = &surfaces->items[index];
     const struct tl_mesh_part *part = &item->parts[part_index];
     glBindVertexArray(item->vertex_array);
-    set_material(item, part);
+    set_material(item, part, first_number(surfaces, index));
     tl_detail_maps_bind(surfaces->detail, index, part_index, part->uv_metres, TL_UNIFORM_DETAIL,
                         TL_DETAIL_UNIT);
     glUniform1ui(TL_UNIFORM_FIRST_TRIANGLE, (GLuint)number);
@@ -365,11 +446,9 @@ void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t par
 {
     const struct surface_item *item = &surfaces->items[index];
     const struct tl_mesh_part *part = &item->parts[part_index];
-    size_t first_triangle = part->first_index / 3;
+    size_t first_triangle = first_number(surfaces, index) + part->first_index / 3;
     if (item->hidden)
         return;
-    for (size_t i = 0; i < index; i++)
-        first_triangle += surfaces->items[i].index_count / 3;
     draw_indices(surfaces, index, part_index, part->first_index, part->index_count, first_triangle);
 }
 
@@ -418,7 +497,7 @@ size_t tl_surfaces_bytes(const tl_surfaces *surfaces)
         const struct surface_item *item = &surfaces->items[i];
         for (size_t t = 0; t < item->texture_count; t++)
             bytes += tl_texture_bytes(&item->textures[t].texture);
-        bytes += item->index_count * sizeof(uint32_t);
+        bytes += item->index_count * sizeof(uint32_t) + item->storage_bytes;
         for (int a = 0; a < ATTRIBUTES; a++)
             bytes += item->attribute_counts[a] * attribute_bytes[a];
     }

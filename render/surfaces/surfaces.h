@@ -28,15 +28,26 @@ enum tl_surface_uniform {
     TL_UNIFORM_DIFFUSE,
     TL_UNIFORM_SPECULAR,
     TL_UNIFORM_SCALARS,     /* glossiness, normal scale, occlusion strength, alpha cutoff */
-    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES; and TL_FLAG_FACETED */
+    TL_UNIFORM_MAP_FLAGS,   /* bits by tl_map_use; the weave's bit is 1 << TL_MAP_USES; and the flags below */
     TL_UNIFORM_WEAVE_SCALE, /* repeats per UV unit */
     TL_UNIFORM_UV_ROWS,     /* 2 vec3 a map: rows of the 2x3 UV transform */
     TL_UNIFORM_FIRST_TRIANGLE =
         TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES, /* number of the draw's first triangle */
     TL_UNIFORM_SURFACE_END,
-    TL_UNIFORM_DETAIL = 20 /* as render/detail/maps.h has them */
+    TL_UNIFORM_DETAIL = 20,      /* as render/detail/maps.h has them */
+    TL_UNIFORM_SEWN_FIRST = 110, /* as in construction.glsl */
+    TL_UNIFORM_SEWN_SIZES,
+    TL_UNIFORM_SEWN_ROWS,
+    TL_UNIFORM_SEWN_THREAD,
+    TL_UNIFORM_BACK_DIFFUSE,
+    TL_UNIFORM_BACK_SPECULAR
 };
+/* Bindings of shader storage: the borders by triangle, and the profiles of the part's material. */
+enum tl_surface_storage { TL_STORAGE_FIRSTS = 4, TL_STORAGE_NEAR, TL_STORAGE_BORDERS, TL_STORAGE_PROFILES };
 
+/* Seams and hems are drawn; the back has colours of its own. */
+#define TL_FLAG_SEWN (1 << (TL_MAP_USES + 1))
+#define TL_FLAG_BACK (1 << (TL_MAP_USES + 2))
 /* The material's gloss is not a lobe about the mirror direction. */
 #define TL_FLAG_FACETED (1 << 30)
 

@@ -191,7 +191,8 @@ static void test_refusals(void **state)
            FOLDER "/preset.yaml:1: scene: no such table: expected one of cloth, light, image");
     write_text(FOLDER "/fabric.yaml", "light:\n  regions: 6\n");
     refuse(NULL, "scene.fabric=" FOLDER "/fabric.yaml",
-           FOLDER "/fabric.yaml:1: light: no such table: expected one of fabric, weave, material");
+           FOLDER "/fabric.yaml:1: light: no such table: expected one of fabric, weave, material, "
+                  "construction");
     refuse(FOLDER, NULL, FOLDER ": is a folder: name a file in it");
 }
 

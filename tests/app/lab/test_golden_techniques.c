@@ -31,6 +31,7 @@ static void draw(tl_gpu *gpu, const struct tl_experiment_picture *picture, tl_im
     struct tl_settings settings;
     tl_error error = {0};
     assert_ok(tl_picture_settings(picture, TL_PICTURE_SOLID, SIDE, false, &settings, &error), error);
+    settings.construction.show = TL_CONSTRUCTION_NEVER; /* a sheet's hems are another subject */
     tl_session *session = tl_session_create(&settings, &error);
     assert_ok(session != NULL, error);
     tl_renderer *renderer = tl_renderer_create(gpu, &error);

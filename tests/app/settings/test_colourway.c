@@ -145,6 +145,7 @@ static void a_files_own_material_is_dyed(void **state)
                 "  Velvet: {lace: {fabric: wool}}\n"
                 "  Own: {all: {fabric: wool}, lace: {fabric: none}}\n");
     made = look_of("Same", &file, &appearance);
+    file.construction = tl_construction_of(&settings.construction); /* sewn like any garment */
     assert_memory_equal(&made, &file, sizeof made);
     tl_appearance_release(&appearance);
 
