@@ -84,8 +84,9 @@ static void describe_layers(cJSON *object, const tl_material *material)
         cJSON_AddNumberToObject(object, "openness", (double)material->openness);
 }
 
-static cJSON *describe_material(const tl_material *material)
+static cJSON *describe_material(const tl_model *model, size_t index)
 {
+    const tl_material *material = &model->materials[index];
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "name", material->name);
     cJSON_AddNumberToObject(object, "glossiness", (double)material->glossiness);
@@ -106,6 +107,9 @@ static cJSON *describe_material(const tl_material *material)
         snprintf(size, sizeof size, "%d x %d", maps[i].image->width, maps[i].image->height);
         cJSON_AddStringToObject(object, maps[i].name, size);
     }
+    for (size_t i = 0; i < model->extension_count; i++)
+        if (model->extensions[i].material == index)
+            cJSON_AddStringToObject(object, model->extensions[i].name, model->extensions[i].shown);
     return object;
 }
 
@@ -184,7 +188,7 @@ static cJSON *describe_model(const tl_model *model)
     tl_info_describe_garment(object, model);
     cJSON *materials = cJSON_AddArrayToObject(object, "materials");
     for (size_t i = 0; i < model->material_count; i++)
-        cJSON_AddItemToArray(materials, describe_material(&model->materials[i]));
+        cJSON_AddItemToArray(materials, describe_material(model, i));
     describe_variants(object, model);
     cJSON *clips = cJSON_AddArrayToObject(object, "clips");
     for (size_t i = 0; i < model->clip_count; i++) {

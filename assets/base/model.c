@@ -76,6 +76,7 @@ void tl_model_release(tl_model *model)
     for (size_t i = 0; i < model->defect_count; i++)
         free(model->defects[i]);
     free(model->defects);
+    free(model->extensions);
     free(model->images);
     free(model->materials);
     free(model->clips);

@@ -16,6 +16,12 @@ struct tl_clip {
     double duration_s;
 };
 
+struct tl_material_extension { /* what a material of a glTF file names, and what becomes of it */
+    size_t material;
+    char name[48];
+    const char *shown; /* "exact", "approximated", "ignored" */
+};
+
 struct tl_variant { /* KHR_materials_variants: another choice of materials for the same parts */
     char name[64];
     int *materials; /* [mesh.part_count] */
@@ -26,6 +32,8 @@ typedef struct tl_model {
     tl_mesh mesh; /* rest pose: node transforms and skins applied, no animation */
     size_t material_count;
     tl_material *materials; /* at least one */
+    size_t extension_count;
+    struct tl_material_extension *extensions; /* by material */
     size_t image_count;
     tl_image *images; /* the maps that materials point to */
     size_t variant_count;

@@ -161,6 +161,8 @@ struct gltf_material {
     const char *name;
     float base_colour[4], metallic, roughness, normal_scale, occlusion_strength, alpha_cutoff;
     enum gltf_alpha alpha;
+    const char *const *used; /* names of its extensions */
+    size_t used_count;
     float emission[3], emissive_strength;
     bool double_sided;
     struct gltf_texture base_colour_map, metallic_roughness_map, normal_map, occlusion_map, emission_map;

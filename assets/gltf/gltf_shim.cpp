@@ -36,7 +36,7 @@ struct Owner {
     std::vector<gltf_mapping> mappings;
     std::vector<int> mapped_variants;
     std::vector<std::string> variant_names;
-    std::vector<const char *> used, variants;
+    std::vector<const char *> used, variants, material_extensions;
 };
 
 /* tinygltf's own callbacks are not used: its path expansion hands names from the file to a shell
@@ -478,8 +478,18 @@ void copy_geometry(Owner &owner)
 void copy_looks(Owner &owner)
 {
     const tinygltf::Model &model = owner.model;
+    size_t extensions = 0;
     for (const tinygltf::Material &material : model.materials)
+        extensions += material.extensions.size();
+    owner.material_extensions.reserve(extensions); /* not moved: materials point into it */
+    for (const tinygltf::Material &material : model.materials) {
         owner.materials.push_back(copy_material(model, material));
+        gltf_material &to = owner.materials.back();
+        to.used = owner.material_extensions.data() + owner.material_extensions.size();
+        to.used_count = material.extensions.size();
+        for (const auto &extension : material.extensions)
+            owner.material_extensions.push_back(extension.first.c_str());
+    }
     for (const tinygltf::Image &image : model.images)
         owner.images.push_back(copy_image(image));
     copy_variants(owner);

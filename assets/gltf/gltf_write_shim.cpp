@@ -265,7 +265,7 @@ void tell_what_is_left_out(const tl_material &from, bool metal, const char *path
     std::string left;
     const std::pair<bool, const char *> parts[] = {
         {from.gloss.model != TL_REFLECT_PHONG && !is_stretched(from), "its reflectance model"},
-        {from.openness > 0, "its holes"},
+        {from.openness > 0 && from.alpha_cutoff > 0, "its openness beside its mask"},
         {metal && glms_vec3_max(from.transmission) > 0, "transmission of a metal"},
         {from.weave != nullptr, "its weave"},
         {from.height_map.image != nullptr, "its heights"}};
@@ -274,6 +274,33 @@ void tell_what_is_left_out(const tl_material &from, bool metal, const char *path
             left += std::string(left.empty() ? "" : ", ") + part.second;
     if (!left.empty())
         tl_info("%s: %s: glTF cannot represent %s", path, from.name, left.c_str());
+}
+
+/* Openness is what blending reads as (model_materials.c); a surface with a mask keeps that. */
+void add_alpha(const tl_material &from, tinygltf::Material &to)
+{
+    if (from.alpha_cutoff > 0) {
+        to.alphaMode = "MASK";
+        to.alphaCutoff = static_cast<double>(from.alpha_cutoff);
+    } else if (from.openness > 0) {
+        to.alphaMode = "BLEND";
+        to.pbrMetallicRoughness.baseColorFactor[3] = 1 - static_cast<double>(from.openness);
+    }
+}
+
+/* glTF's factors end at 1; more is strength. */
+void add_emission(Writer &writer, const tl_material &from, tinygltf::Material &to, const char *path,
+                  tl_error *error)
+{
+    if (!tl_material_emits(&from))
+        return;
+    double strength = std::fmax(static_cast<double>(glms_vec3_max(from.emission)), 1);
+    to.emissiveFactor.clear();
+    for (float channel : from.emission.raw)
+        to.emissiveFactor.push_back(static_cast<double>(channel) / strength);
+    if (strength > 1)
+        extend(writer, to, "KHR_materials_emissive_strength", {{"emissiveStrength", number(strength)}});
+    add_map(writer, from.emission_map, AS_IT_IS, to.emissiveTexture, path, error);
 }
 
 /* glTF has one base colour for both lobes: the diffuse one, or for a metal the specular one. */
@@ -297,10 +324,8 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
     to.normalTexture.scale = static_cast<double>(from.normal_scale);
     to.occlusionTexture.strength = static_cast<double>(from.occlusion_strength);
     to.doubleSided = from.double_sided;
-    if (from.alpha_cutoff > 0) {
-        to.alphaMode = "MASK";
-        to.alphaCutoff = static_cast<double>(from.alpha_cutoff);
-    }
+    add_alpha(from, to);
+    add_emission(writer, from, to, path, error);
     tinygltf::PbrMetallicRoughness &pbr = to.pbrMetallicRoughness;
     add_map(writer, from.diffuse_map, AS_IT_IS, pbr.baseColorTexture, path, error);
     if (is_stretched(from))

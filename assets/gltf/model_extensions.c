@@ -18,9 +18,9 @@ vec3s model_dielectric_f0(const struct material_build *build)
     float f0 = root * root * unit(from->specular);
     f0 *= model_map_mean(build, &from->specular_map, "a", "KHR_materials_specular: its strength").a;
     if (from->specular < 1)
-        model_approximate(build->model,
-                          "KHR_materials_specular: weakens reflection at normal incidence; at grazing "
-                          "angles it stays full");
+        model_approximate_extension(
+            build, "KHR_materials_specular: weakens reflection at normal incidence; at grazing "
+                   "angles it stays full");
     if (build->metallic <= 0.5f)
         model_colour_map(build, &from->specular_colour_map, &build->to->specular_map);
     vec3s out;
@@ -64,12 +64,12 @@ static void apply_anisotropy(const struct material_build *build)
     float brighter = model_ward_factor(gloss->width_weft, gloss->width_warp);
     for (int c = 0; c < 3; c++)
         build->to->specular.raw[c] = fminf(build->to->specular.raw[c] * brighter, 1);
-    model_approximate(build->model,
-                      "KHR_materials_anisotropy: shown by Ward's elliptical lobe of the same widths "
-                      "instead of GGX: shorter tails, brighter at normal incidence, darker at grazing views");
+    model_approximate_extension(
+        build, "KHR_materials_anisotropy: shown by Ward's elliptical lobe of the same widths "
+               "instead of GGX: shorter tails, brighter at normal incidence, darker at grazing views");
     if (build->roughness_varies)
-        model_approximate(build->model,
-                          "KHR_materials_anisotropy: roughness varies over a texture: its mean is used");
+        model_approximate_extension(
+            build, "KHR_materials_anisotropy: roughness varies over a texture: its mean is used");
 }
 
 /* Mean albedo of the "Charlie" sheen over all views [Estevez and Kulla 2017], by the midpoint rule over view,
@@ -120,9 +120,9 @@ static void apply_sheen(const struct material_build *build)
             unit(build->to->diffuse.raw[c] * (1 - most * albedo) + colour[c] * albedo);
         build->to->specular.raw[c] *= 1 - most * albedo;
     }
-    model_approximate(build->model,
-                      "KHR_materials_sheen: its mean light is added to the diffuse colour: no brighter "
-                      "rim");
+    model_approximate_extension(
+        build, "KHR_materials_sheen: its mean light is added to the diffuse colour: no brighter "
+               "rim");
 }
 
 /* Mean base colour, which filters transmitted light. */
@@ -152,9 +152,9 @@ static void apply_transmission(const struct material_build *build)
         to->specular.raw[c] = unit(to->specular.raw[c] / kept);
         to->transmission.raw[c] = unit(base.raw[c] * share * build->roughness / kept);
     }
-    model_approximate(build->model,
-                      "KHR_materials_transmission: smooth parts let light straight through, neither "
-                      "tinted nor bent; rough parts scatter it evenly");
+    model_approximate_extension(
+        build, "KHR_materials_transmission: smooth parts let light straight through, neither "
+               "tinted nor bent; rough parts scatter it evenly");
 }
 
 /* A tl_material has the same term [KHR_materials_diffuse_transmission]. */
@@ -193,8 +193,8 @@ static void apply_clearcoat(const struct material_build *build)
     build->to->coat = share;
     build->to->coat_glossiness = tl_glossiness_from_roughness(roughness);
     if (from->clearcoat_normal_map.used)
-        model_approximate(build->model,
-                          "KHR_materials_clearcoat: the coat follows the surface's own normals");
+        model_approximate_extension(build,
+                                    "KHR_materials_clearcoat: the coat follows the surface's own normals");
 }
 
 void model_apply_extensions(const struct material_build *build)

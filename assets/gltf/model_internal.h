@@ -98,6 +98,13 @@ void model_read_materials(const gltf_document *document, tl_model *model);
 bool model_read_variants(const gltf_document *document, const struct gltf_primitive *const *sources,
                          tl_model *model, tl_error *error);
 
+/* The extensions of a material that are shown differently, while it is read. */
+#define EXTENSIONS_MAX 16
+struct extension_notes {
+    size_t count;
+    char names[EXTENSIONS_MAX][48];
+};
+
 /* A material while it is read. `base`, `metallic` and `roughness` are the means over the surface. */
 struct material_build {
     struct texture_reader *textures;
@@ -107,7 +114,13 @@ struct material_build {
     float metallic, roughness;
     bool roughness_varies;
     tl_material *to;
+    struct extension_notes *notes;
 };
+/* Notes that an extension is shown differently, for the model and for the material: "NAME: how". */
+void model_approximate_extension(const struct material_build *build, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* Adds what becomes of each extension that the file's material names. (model_extension_notes.c) */
+void model_list_extensions(const struct material_build *build, size_t material);
 /* F0 of the dielectric part [KHR_materials_ior, KHR_materials_specular]. (model_extensions.c) */
 vec3s model_dielectric_f0(const struct material_build *build);
 /* Applies the other extensions to `to`, which must be complete without them. (model_extensions.c) */

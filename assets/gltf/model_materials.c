@@ -53,7 +53,8 @@ static void read_emission(struct texture_reader *textures, const struct gltf_mat
 
 /* glTF's metallic-roughness model in two lobes: diffuse = base (1 - metallic), F0 = mix(F0 of the
  * dielectric, base, metallic). */
-static tl_material read_material(struct texture_reader *textures, const struct gltf_material *from)
+static tl_material read_material(struct texture_reader *textures, const struct gltf_material *from,
+                                 size_t index)
 {
     tl_material to = tl_material_default(from->name && from->name[0] ? from->name : "unnamed");
     float metallic = unit(from->metallic, 1), roughness = unit(from->roughness, 1);
@@ -71,7 +72,9 @@ static tl_material read_material(struct texture_reader *textures, const struct g
         to.glossiness = packed->glossiest;
         metallic *= packed->metallic_mean;
     }
+    struct extension_notes notes = {0};
     struct material_build build = {.textures = textures,
+                                   .notes = &notes,
                                    .model = textures->model,
                                    .from = from,
                                    .metallic = metallic,
@@ -93,6 +96,7 @@ static tl_material read_material(struct texture_reader *textures, const struct g
     if (from->alpha == GLTF_BLEND)
         apply_blending(&build, base);
     read_emission(textures, from, &to);
+    model_list_extensions(&build, index);
     return to;
 }
 
@@ -106,7 +110,7 @@ void model_read_materials(const gltf_document *document, tl_model *model)
     model->materials = TL_NEW_ARRAY(tl_material, count + 1);
     model->material_count = count + 1;
     for (size_t i = 0; i < count; i++)
-        model->materials[i] = read_material(&textures, &document->materials[i]);
+        model->materials[i] = read_material(&textures, &document->materials[i], i);
     model->materials[count] = tl_material_default("default");
     free(textures.loaded);
 }

@@ -206,7 +206,7 @@ struct model_mean model_map_mean(const struct material_build *build, const struc
         build->textures, texture, is_colour ? TEXTURE_COLOUR_MEAN : TEXTURE_DATA_MEAN, 0, &map);
     for (int c = 0; c < 4; c++)
         if (strchr(is_colour ? "rgb" : which, "rgba"[c]) && loaded->varies[c])
-            model_approximate(build->model, "%s varies over a texture: its mean is used", what);
+            model_approximate_extension(build, "%s varies over a texture: its mean is used", what);
     if (!loaded->has_means)
         return (struct model_mean){1, 1, 1, 1};
     return (struct model_mean){loaded->means[0], loaded->means[1], loaded->means[2], loaded->means[3]};

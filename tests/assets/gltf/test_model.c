@@ -615,6 +615,10 @@ static void check_round_trip(const char *from)
         assert_string_equal(b->name, a->name);
         assert_true(b->double_sided == a->double_sided);
         assert_near(b->alpha_cutoff, a->alpha_cutoff, 1e-6);
+        assert_near(b->openness, a->openness, 1e-6);
+        for (int c = 0; c < 3; c++)
+            assert_near(b->emission.raw[c], a->emission.raw[c], 1e-6 * (1 + (double)a->emission.raw[c]));
+        assert_true(!b->emission_map.image == !a->emission_map.image);
         check_glossiness(a, b);
         assert_true(!b->diffuse_map.image == !a->diffuse_map.image);
         if (a->diffuse_map.image && b->diffuse_map.image)
@@ -630,6 +634,15 @@ static void exports_round_trip(void **state)
 {
     (void)state;
     check_round_trip(small_path());
+    static const char path[] = TOILE_SCRATCH_DIR "/model_material.glb";
+    tl_model veil =
+        load_with_material("{\"name\":\"veil\",\"alphaMode\":\"BLEND\",\"emissiveFactor\":[1,0.5,0],"
+                           "\"emissiveTexture\":{\"index\":0},\"extensions\":{"
+                           "\"KHR_materials_emissive_strength\":{\"emissiveStrength\":3}},"
+                           "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.3],"
+                           "\"metallicFactor\":0}}");
+    tl_model_release(&veil);
+    check_round_trip(path);
     check_round_trip(test_data("avatars/CesiumMan.glb"));
     check_round_trip(test_data("models/SheenChair/SheenChair.gltf"));
 }

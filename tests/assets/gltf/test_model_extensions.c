@@ -363,6 +363,34 @@ static void real_files_are_read(void **state)
     tl_model_release(&model);
 }
 
+static const char *shown_as(const tl_model *model, const char *name)
+{
+    for (size_t i = 0; i < model->extension_count; i++)
+        if (strcmp(model->extensions[i].name, name) == 0) {
+            assert_int_equal(model->extensions[i].material, 1); /* of the two, the one that names them */
+            return model->extensions[i].shown;
+        }
+    return "";
+}
+
+/* By material: what it names, and what becomes of that. */
+static void extensions_of_a_material_are_listed(void **state)
+{
+    (void)state;
+    tl_model model = load_with(MATT, "\"KHR_materials_ior\":{\"ior\":1.4},\"KHR_materials_iridescence\":{},"
+                                     "\"KHR_materials_sheen\":{\"sheenColorFactor\":[0.5,0.5,0.5]},"
+                                     "\"KHR_materials_specular\":{\"specularColorFactor\":[1,0.5,0.5]}");
+    assert_int_equal(model.extension_count, 4);
+    assert_string_equal(shown_as(&model, "KHR_materials_ior"), "exact");
+    assert_string_equal(shown_as(&model, "KHR_materials_sheen"), "approximated");
+    assert_string_equal(shown_as(&model, "KHR_materials_specular"), "exact"); /* a colour alone */
+    assert_string_equal(shown_as(&model, "KHR_materials_iridescence"), "ignored");
+    tl_model_release(&model);
+    model = load_with(MATT, "\"KHR_materials_specular\":{\"specularFactor\":0.5}");
+    assert_string_equal(shown_as(&model, "KHR_materials_specular"), "approximated");
+    tl_model_release(&model);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -379,6 +407,7 @@ int main(void)
         cmocka_unit_test(invalid_parameters_are_clamped),
         cmocka_unit_test(exports_round_trip),
         cmocka_unit_test(real_files_are_read),
+        cmocka_unit_test(extensions_of_a_material_are_listed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
