@@ -170,6 +170,9 @@ static void check_twins(tl_renderer *renderer, vec3s target, float distance_m)
     tl_error error;
     open_cloth(&cloth, &jeans, target, distance_m);
     cloth.scene.settings.reference.terminator = TL_TERMINATOR_GEOMETRIC;
+    for (size_t i = 0; i < cloth.borders.border_count; i++) /* the lower side is a dart's leg */
+        if (cloth.borders.borders[i].from[1] == 1 && cloth.borders.borders[i].to[1] == 1)
+            cloth.borders.borders[i].kind = (float)TL_BORDER_DART;
     struct layers *layers = TL_NEW(struct layers);
     draw_layers(&cloth, renderer, layers);
     struct tl_reference_scene scene;
