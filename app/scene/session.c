@@ -6,6 +6,7 @@
 #include "app/scene/moving.h"
 #include "app/scene/moving_light.h"
 #include "app/scene/playback.h"
+#include "app/scene/tuck.h"
 #include "assets/avatar.h"
 #include "cloth/contact/crossings.h"
 #include "cloth/energy/strain.h"
@@ -35,6 +36,7 @@ struct tl_session {
 
     int clip; /* -1: rest pose */
     struct tl_moving body;
+    float *tucked; /* by how much the drawn body is moved inwards, under a garment as authored; or NULL */
 
     tl_cloth *cloth; /* NULL: no garment, or one that is played back */
     bool authored;   /* the cloth starts as the garment's file has it */
@@ -78,6 +80,9 @@ static void pose_avatar(tl_session *session, double time_s)
     tl_moving_update(&session->body);
     if (session->collider)
         tl_collider_move(session->collider, session->body.positions);
+    if (session->tucked)
+        tl_tuck_apply(session->tucked, session->body.normals, session->body.positions,
+                      session->avatar->model.mesh.vertex_count);
 }
 
 static void read_back_cloth(tl_session *session)
@@ -124,6 +129,9 @@ static bool drape(tl_session *session, tl_error *error)
         return false;
     session->cloth = tl_drape(&request, session->collider, error);
     if (!session->cloth)
+        return false;
+    if (session->authored && body &&
+        !(session->tucked = tl_tuck_find(&session->garment->model.mesh, body, error)))
         return false;
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
     read_back_start(session);
@@ -306,6 +314,7 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_light_release(&session->light);
     tl_strains_destroy(&session->strain.rest);
     free(session->strain.of_vertices);
+    free(session->tucked);
     free(session->crossed.triangles);
     tl_appearance_release(&session->appearance);
     for (size_t i = 0; i < TL_COUNT(session->spares); i++)
@@ -611,14 +620,17 @@ static const tl_borders *borders_of_garment(const tl_session *session)
 tl_frame tl_session_frame(tl_session *session)
 {
     session->surface_count = 0;
-    if (session->avatar)
-        session->surfaces[session->surface_count++] =
-            tl_moving_surface(&session->body, "avatar", &session->appearance.avatar);
+    if (session->avatar) {
+        tl_surface *body = &session->surfaces[session->surface_count++];
+        *body = tl_moving_surface(&session->body, "avatar", &session->appearance.avatar);
+        body->has_own_normals = session->tucked != NULL;
+    }
     if (session->garment) {
         tl_surface *garment = &session->surfaces[session->surface_count++];
         *garment = tl_moving_surface(&session->dress, TL_SURFACE_GARMENT, &session->appearance.garment);
         garment->strains = strains_of_garment(session);
         garment->crossed = crossed_of_garment(session);
+        garment->has_own_normals = tl_session_garment_state(session) == TL_GARMENT_AUTHORED;
         garment->borders = borders_of_garment(session);
     }
     for (size_t i = 0; i < session->surface_count; i++)

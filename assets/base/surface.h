@@ -16,6 +16,7 @@ typedef struct tl_surface {
     size_t vertex_count;
     const vec3s *positions; /* metres, world */
     const vec3s *normals;   /* unit; towards the outside */
+    bool has_own_normals;   /* they are a file's, or of other positions: no means of the faces */
     const vec4s *tangents;  /* unit xyz, handedness w: bitangent = w * cross(n, t) */
     const vec2s *uvs;
     const vec3s *strains; /* along the warp, along the weft (length over rest length, less 1), shear (cosine

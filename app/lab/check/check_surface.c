@@ -222,6 +222,8 @@ void tl_measure_sides(const struct tl_checked *checked, struct tl_finding *findi
 {
     for (size_t s = 0; s < checked->frame->surface_count; s++) {
         const tl_surface *surface = &checked->frame->surfaces[s];
+        if (surface->has_own_normals)
+            continue;
         uint32_t *group = join_vertices(surface, false);
         struct fan *fans = gather_fans(surface, group);
         for (size_t v = 0; v < surface->vertex_count; v++) {

@@ -295,6 +295,17 @@ static void turned_normal(struct copy *copy)
     copy->normals[VERTEX] = glms_vec3_rotate(copy->normals[VERTEX], glm_rad(5), along);
 }
 
+/* They are not means of the faces, and need not be. */
+static void turned_normals_of_a_file_pass(const struct stand *stand)
+{
+    struct copy *copy = copy_of(stand);
+    copy->checked.image = NULL;
+    copy->surface.has_own_normals = true;
+    turned_normal(copy);
+    assert_clean(&copy->checked);
+    release_copy(copy);
+}
+
 static void long_normal(struct copy *copy)
 {
     copy->normals[VERTEX] = glms_vec3_scale(copy->normals[VERTEX], 1.001f);
@@ -331,6 +342,7 @@ static void faults_of_geometry_are_named(void **state)
     break_surface(stand, infinite_tangent, "surface.finite");
     break_surface(stand, flipped_normal, "surface.sides");
     break_surface(stand, turned_normal, "surface.sides");
+    turned_normals_of_a_file_pass(stand);
     break_surface(stand, long_normal, "surface.normals");
     break_surface(stand, skewed_tangent, "surface.tangents");
     break_surface(stand, other_handedness, "surface.handed");

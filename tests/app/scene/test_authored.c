@@ -40,6 +40,7 @@ static void assert_as_in_file(tl_session *session, const tl_mesh *mesh)
     tl_surface shown = surface_of(session);
     assert_int_equal(tl_session_garment_state(session), TL_GARMENT_AUTHORED);
     assert_int_equal(shown.vertex_count, mesh->vertex_count);
+    assert_true(shown.has_own_normals);
     assert_memory_equal(shown.normals, mesh->normals, mesh->vertex_count * sizeof *mesh->normals);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         assert_true(shown.positions[i].x == mesh->positions[i].x &&
@@ -122,6 +123,7 @@ static void either_can_be_told(void **state)
     (void)state;
     tl_session *session = open_session("dress", "auto", "auto");
     assert_false(tl_session_is_authored(session));
+    assert_false(surface_of(session).has_own_normals);
     assert_int_not_equal(tl_session_garment_state(session), TL_GARMENT_AUTHORED);
     assert_int_equal(tl_session_frame(session).surface_count, 2); /* the form wears it */
     tl_session_destroy(&session);
