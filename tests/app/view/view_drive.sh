@@ -95,6 +95,9 @@ round() {
     sleep 0.5
     press space "paused at"
     press ctrl+3 "view: fabric satin"
+    press r "view: reset" # hangs again, so it is draped: in satin, which the next key stops or not
+    press ctrl+4 "view: fabric denim"
+    logged "view: dress hangs in denim" "$1"
 }
 # At rest unused memory is returned to the system: the rest is in use.
 settle() {
