@@ -128,10 +128,11 @@ bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
     }
     if (topic)
         return print_command_help(topic, error);
-    printf("toile %s: garment review. usage: toile COMMAND [SCENE] [OPTIONS]\n\n"
-           "SCENE is a YAML file, a .glb, .gltf or .obj model, a sewing pattern (.json), or nothing: the "
-           "built-in scene.\n\n",
-           TOILE_VERSION);
+    printf(
+        "toile %s: garment review. usage: toile COMMAND [SCENE] [OPTIONS]\n\n"
+        "SCENE is a YAML file, a .glb, .gltf or .obj model, a sewing pattern (.json), a point cache (.pc2, "
+        ".mdd) beside its mesh, or nothing: the built-in scene.\n\n",
+        TOILE_VERSION);
     for (size_t i = 0; i < TL_COUNT(commands); i++)
         printf("  %-9s %s\n", commands[i].name, commands[i].help);
     printf("\n`toile COMMAND --help` explains a command, `toile help options` lists every option.\n");

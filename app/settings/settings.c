@@ -3,6 +3,8 @@
 
 #include "assets/base/units.h"
 #include "assets/model.h"
+#include "assets/motion/motion_mesh.h"
+#include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern.h"
 #include "config/embedded.h"
 #include "config/log.h"
@@ -205,6 +207,17 @@ static bool apply_pattern(const struct tl_binding *all, const char *path, tl_err
     return tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
 }
 
+/* A point cache in place of a scene moves the mesh beside it. */
+static bool apply_motion(const struct tl_binding *all, const char *path, tl_error *error)
+{
+    char *mesh = tl_motion_find_mesh(path, error);
+    bool applied = mesh &&
+                   tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", mesh, "SCENE", NULL, error) &&
+                   tl_options_set(all, TL_SETTINGS_TABLES, "scene.motion", path, "SCENE", NULL, error);
+    free(mesh);
+    return applied;
+}
+
 static bool has_own_colourways(const struct tl_scene_params *scene)
 {
     return strcmp(scene->colourways, OWN) == 0;
@@ -230,9 +243,10 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool applied = tl_model_is_file(scene)     ? apply_model(all, scene, error)
-                   : tl_pattern_is_file(scene) ? apply_pattern(all, scene, error)
-                                               : apply_scene(all, scene, error);
+    bool applied = tl_point_cache_is_file(scene) ? apply_motion(all, scene, error)
+                   : tl_model_is_file(scene)     ? apply_model(all, scene, error)
+                   : tl_pattern_is_file(scene)   ? apply_pattern(all, scene, error)
+                                                 : apply_scene(all, scene, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
     return applied;
