@@ -67,11 +67,12 @@ static void print_tables(const struct tl_measures *measures)
         print_panel(&measures->panels[i]);
     if (measures->panel_count != 1)
         print_panel(&measures->whole);
-    printf("\n%-24s %9s %9s %9s\n", "opening, mm", "at rest", "worn", "%");
+    printf("\n%-24s %9s %9s %9s %9s\n", "opening, mm", "at rest", "worn", "%", "height");
     for (size_t i = 0; i < measures->opening_count; i++) {
         const struct tl_opening_measures *opening = &measures->openings[i];
-        printf("%-24s %9.1f %9.1f %9.2f\n", opening->name, MM * opening->rest_m, MM * opening->worn_m,
-               opening->rest_m > 0 ? percent(opening->worn_m / opening->rest_m - 1) : 0);
+        printf("%-24s %9.1f %9.1f %9.2f %9.1f\n", opening->name, MM * opening->rest_m, MM * opening->worn_m,
+               opening->rest_m > 0 ? percent(opening->worn_m / opening->rest_m - 1) : 0,
+               MM * opening->height_m);
     }
     if (measures->girths[TL_GIRTH_WAIST].height_m > 0)
         printf("\n%-24s %9s %9s %9s %9s %9s\n", "girth, mm", "height", "body", "at rest", "worn", "ease");
@@ -132,6 +133,9 @@ static void write_lines(FILE *out, const struct tl_measures *measures)
         fputs("opening,", out);
         write_name(out, opening->name);
         fprintf(out, ",length,mm,%.2f,%.2f,,,\n", MM * opening->rest_m, MM * opening->worn_m);
+        fputs("opening,", out);
+        write_name(out, opening->name);
+        fprintf(out, ",height,mm,,%.2f,,,\n", MM * opening->height_m);
     }
     for (int i = 0; i < TL_GIRTHS; i++) {
         const struct tl_girth_measures *girth = &measures->girths[i];
@@ -188,6 +192,7 @@ static cJSON *describe(const struct tl_measures *measures)
         cJSON *item = cJSON_AddObjectToObject(openings, measures->openings[i].name);
         cJSON_AddNumberToObject(item, "rest", MM * measures->openings[i].rest_m);
         cJSON_AddNumberToObject(item, "worn", MM * measures->openings[i].worn_m);
+        cJSON_AddNumberToObject(item, "height", MM * measures->openings[i].height_m);
     }
     cJSON *girths = cJSON_AddObjectToObject(object, "girths_mm");
     for (int i = 0; i < TL_GIRTHS; i++) {

@@ -183,6 +183,7 @@ static void measure_openings(const struct tl_topology *topology, const vec2s (*r
         const struct tl_opening *opening = &openings.items[i];
         memcpy(out->openings[i].name, opening->name, sizeof opening->name);
         out->openings[i].worn_m = opening->length;
+        out->openings[i].height_m = (double)opening->centre.y;
         for (size_t k = 0; k < opening->side_count; k++)
             out->openings[i].rest_m += rest_side(topology, rest, opening->triangles[k], opening->vertices[k],
                                                  opening->vertices[(k + 1) % opening->side_count]);

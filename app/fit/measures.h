@@ -32,6 +32,7 @@ struct tl_panel_measures {
 struct tl_opening_measures {
     char name[TL_OPENING_NAME];
     double rest_m, worn_m;
+    double height_m; /* of its middle as worn: the centre of the loop, as a wire */
 };
 
 /* A level of the body. */

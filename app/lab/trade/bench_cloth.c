@@ -4,8 +4,8 @@
 #include "app/lab/experiments/closed_form.h"
 #include "app/lab/trade/baseline.h"
 #include "app/lab/trade/bench.h"
+#include "app/lab/trade/worn.h"
 #include "app/measure/cost.h"
-#include "assets/avatar.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "config/interrupt.h"
@@ -204,23 +204,17 @@ static bool cut_dress(int wanted, tl_garment *out, tl_error *error)
 
 static void settle_dress(const tl_garment *dress, struct dress_run *run)
 {
-    struct tl_cloth_fabric fabric = *(const struct tl_cloth_fabric *)tl_cloth_fabric_options.defaults;
     struct tl_cloth_params params = *(const struct tl_cloth_params *)tl_cloth_options.defaults;
     params.solver = run->solver;
-    tl_avatar form = tl_avatar_form();
-    tl_collider *collider = tl_collider_create(&form.model.mesh, true, &run->refusal);
-    tl_cloth *cloth = tl_cloth_create(dress, &fabric, &params, &run->refusal);
-    struct tl_stopwatch watch = tl_stopwatch_start();
-    run->done = collider && cloth && tl_cloth_settle(cloth, collider, &run->refusal);
-    run->taken = tl_stopwatch_read(&watch);
-    if (cloth) {
-        struct tl_cloth_report report = tl_cloth_measure(cloth, NULL);
+    struct tl_worn worn;
+    run->done = tl_worn_settle(dress, &params, &worn, &run->refusal);
+    run->taken = worn.taken;
+    if (worn.cloth) {
+        struct tl_cloth_report report = tl_cloth_measure(worn.cloth, NULL);
         run->particles = report.vertex_count;
         run->settled = report.settled;
     }
-    tl_cloth_destroy(&cloth);
-    tl_collider_destroy(&collider);
-    tl_avatar_release(&form);
+    tl_worn_release(&worn);
 }
 
 static bool run_dresses(struct cloth_bench *bench, tl_error *error)

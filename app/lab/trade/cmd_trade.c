@@ -57,12 +57,19 @@ static void write_cloth_html(const void *trade, FILE *out)
     tl_trade_cloth_write_html(trade, out);
 }
 
+static void write_fit_csv(const void *fit, FILE *out)
+{
+    tl_trade_fit_write_csv(fit, out);
+}
+
 static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_trade_cloth trade;
     bool done = tl_trade_cloth(arguments->quick, &trade, error);
     if (trade.row_count)
         done = write_both(arguments->output, &trade, write_cloth_csv, write_cloth_html, done, error);
+    if (trade.fit.row_count && done)
+        done = tl_folder_print(arguments->output, "fit.csv", &trade.fit, write_fit_csv, error);
     tl_trade_cloth_release(&trade);
     return done;
 }

@@ -322,7 +322,7 @@ bool tl_trade_cloth(bool quick, struct tl_trade_cloth *out, tl_error *error)
     *out = (struct tl_trade_cloth){0};
     struct cloth_run run = {.trade = out, .quick = quick, .sizes = quick ? &quick_sizes : &all_sizes};
     omp_set_num_threads(1); /* CPU time of one core, undisturbed */
-    bool done = out->complete = measure_all(&run, error);
+    bool done = out->complete = measure_all(&run, error) && tl_trade_fit(quick, &out->fit, error);
     release_shape(&run.finest);
     release_shape(&run.fallen);
     release_shape(&run.rested);
@@ -335,5 +335,6 @@ void tl_trade_cloth_release(struct tl_trade_cloth *trade)
         free(trade->refusals[i]);
     free(trade->refusals);
     free(trade->rows);
+    tl_trade_fit_release(&trade->fit);
     *trade = (struct tl_trade_cloth){0};
 }

@@ -8,6 +8,7 @@
 #ifndef TOILE_APP_LAB_TRADE_TRADE_CLOTH_H
 #define TOILE_APP_LAB_TRADE_TRADE_CLOTH_H
 
+#include "app/lab/trade/trade_fit.h"
 #include "app/measure/cost.h"
 #include "config/error.h"
 
@@ -33,6 +34,7 @@ struct tl_trade_cloth {
     char **refusals; /* "name: message" */
     size_t refusal_count;
     int truth_side;
+    struct tl_trade_fit fit;
     double truth_error_m; /* of the finest converged sheet against itself at twice the step */
     bool complete;
 };

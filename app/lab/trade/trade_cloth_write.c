@@ -235,6 +235,7 @@ void tl_trade_cloth_write_html(const struct tl_trade_cloth *trade, FILE *out)
                 out);
     print_front(&chart, out);
     release_chart(&chart);
+    tl_trade_fit_write_html(&trade->fit, out);
     tl_report_heading(out, "Size by size");
     tl_report_paragraph(out,
                         "A drape comes to rest as a garment does before its first frame: preview brings it "

@@ -8,8 +8,8 @@ refuse "trade of cloth takes no scene" "name no scene" trade scene.yaml --axis c
 refuse "bench cloth takes no scene" "name no scene" bench cloth scene.yaml
 
 check "trade" $TOILE trade --axis cloth --quick --quiet -o measured
-check "both files" test -s measured/trade.csv -a -s measured/report.html
-check "nothing else" test "$(ls measured | wc -l)" -eq 2
+check "its files" test -s measured/trade.csv -a -s measured/fit.csv -a -s measured/report.html
+check "nothing else" test "$(ls measured | wc -l)" -eq 3
 
 status=0
 $TOILE stability cloth --quick --json --quiet -o extremes >extremes.json || status=$?
@@ -33,6 +33,20 @@ for side in sides:
     assert error["preview 16"] < 0.5 * error["preview 4"]
     assert error["settle 240 Hz"] < 0.5 * error["settle 60 Hz"]
     assert error["reference"] < 0.01 * min(error["preview 16"], error["settle 240 Hz"])
+PYTHON
+check "what settings do to a fit: few substeps stretch, and the hem hangs lower" python3 - <<'PYTHON'
+import csv
+rows = {row["name"]: row for row in csv.DictReader(open("measured/fit.csv"))}
+assert rows.keys() == {"reference", "default", "preview 8", "settle 60 Hz"}, rows.keys()
+off = {name: {key[:-7]: float(row[key]) for key in row if key.endswith("_off_mm") and row[key]} for name, row in rows.items()}
+for name, row in rows.items():
+    assert None not in row and None not in row.values() and row["garment"] == "dress" and row["waist_mm"] == "", row
+    assert set(off[name]) == {"hem_height", "neck", "bust_ease", "waist_ease", "hip_ease"}, row
+    assert 300 < float(row["hem_height_mm"]) < 900 and 500 < float(row["neck_mm"]) < 800, row
+    assert 0 < float(row["waist_ease_mm"]) < float(row["hip_ease_mm"]), row
+assert not any(off["reference"].values()), off
+assert abs(off["settle 60 Hz"]["hem_height"]) < 5 < -off["preview 8"]["hem_height"] < 100, off
+assert float(rows["preview 8"]["rms_strain"]) > 1.5 * float(rows["reference"]["rms_strain"])
 PYTHON
 check_report measured/report.html 5
 check "it shows the front" grep -q 'class="front"' measured/report.html

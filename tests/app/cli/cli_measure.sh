@@ -7,6 +7,7 @@ quick="--set cloth.edge_m=0.05 --set cloth.settle_s=2 --quiet"
 check "a built-in cut is measured" sh -c "$TOILE measure --garment dress $quick -o dress.csv >dress.txt"
 check "its panels are listed" grep -Eq '^bodice 1 +[0-9.]+ +[0-9.]+ ' dress.txt
 check "its openings are named" sh -c "for name in neck 'left armhole' 'right armhole' hem; do grep -q \"^\$name  *[0-9]\" dress.txt || exit 1; done"
+check "the hem's height is that of its lowest cloth or above it" sh -c "grep -q '^opening,\"hem\",height,mm,,[4-8][0-9][0-9]\.' dress.csv"
 check "its girths stand beside the body's" grep -Eq '^waist +1[0-9]{3} +6[0-9]{2}\.[0-9] +[67][0-9]{2}\.[0-9]' dress.txt
 check "the CSV has a head" sh -c "[ \"\$(head -1 dress.csv)\" = kind,name,quantity,unit,rest,worn,mean,p95,max ]"
 check "every line of it has nine fields" sh -c "! grep -Evq '^([^,]*,){8}[^,]*$' dress.csv"

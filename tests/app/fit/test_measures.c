@@ -117,6 +117,7 @@ static void strains_by_panel(void **state)
         bool is_sleeve = i % 2 == 0;
         assert_near(opening->worn_m, around[is_sleeve], 1e-6);
         assert_near(opening->rest_m, around[is_sleeve] / (is_sleeve ? 1.04 : 1), 1e-5);
+        assert_near(opening->height_m, i < 2 ? 1.2 : 0.8, 1e-6);
     }
     assert_true(measures.girths[TL_GIRTH_WAIST].height_m == 0); /* there is no body */
     tl_measures_release(&measures);

@@ -10,13 +10,14 @@
 
 #define FRAMES 7
 
-static struct tl_headless open_headless(void)
+/* `assignment`: one more; NULL: none. */
+static struct tl_headless open_headless_with(const char *assignment)
 {
-    static const char *const assignments[] = {"cloth.edge_m=0.08",      "cloth.settle_s=0.3",
-                                              "image.width=48",         "image.height=64",
-                                              "reference.replicates=2", "scene.preset=draft"};
+    const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.3",     "image.width=48",
+                                       "image.height=64",   "reference.replicates=2", "scene.preset=draft",
+                                       assignment};
     const struct tl_settings_source source = {.assignments = assignments,
-                                              .assignment_count = TL_COUNT(assignments)};
+                                              .assignment_count = TL_COUNT(assignments) - !assignment};
     struct tl_settings settings;
     struct tl_headless headless = {0};
     tl_error error = {0};
@@ -25,6 +26,11 @@ static struct tl_headless open_headless(void)
     const tl_frame frame = tl_session_frame(headless.session);
     tl_orbit_take(&headless.settings.camera, &frame.camera);
     return headless;
+}
+
+static struct tl_headless open_headless(void)
+{
+    return open_headless_with(NULL);
 }
 
 /* A path that turns fast, so that each frame shows something else. */
@@ -145,11 +151,57 @@ static void the_oracle_judges_each_image_by_its_own_frame(void **state)
     tl_headless_release(&headless);
 }
 
+/* Where the garment is after a flight within a budget (0: without one). */
+struct flown {
+    vec3s *positions;
+    size_t count;
+    bool is_reduced; /* some frame was at lower levels */
+};
+
+static struct flown fly_within(double budget_ms)
+{
+    struct tl_headless headless = open_headless_with("light.pem_size=16");
+    const struct tl_fly_options options = {.frames = FRAMES, .budget_ms = budget_ms};
+    struct tl_path path = make_path(&headless.settings);
+    struct tl_flight flight;
+    tl_error error = {0};
+    assert_ok(tl_fly(&headless, &options, &path, &flight, &error), error);
+    assert_int_equal(flight.count, FRAMES);
+    struct flown flown = {.count = tl_session_models(headless.session).garment->mesh.vertex_count};
+    flown.positions = TL_NEW_ARRAY(vec3s, flown.count);
+    tl_cloth_positions(tl_session_cloth(headless.session), flown.positions);
+    for (int i = 0; i < FRAMES; i++)
+        for (int control = 0; control < TL_CONTROL_COUNT; control++)
+            flown.is_reduced = flown.is_reduced || flight.frames[i].levels.of[control] > 0;
+    tl_flight_release(&flight);
+    tl_headless_release(&headless);
+    return flown;
+}
+
+/* How a garment falls does not depend on the budget: it is the same to the bit with none, with any, and with
+ * one that nothing fits, where the image is at its lowest levels. */
+static void no_budget_changes_a_fit(void **state)
+{
+    (void)state;
+    const double budgets[] = {100, 33, 20, 1e-3};
+    struct flown without = fly_within(0);
+    assert_false(without.is_reduced);
+    for (size_t i = 0; i < TL_COUNT(budgets); i++) {
+        struct flown within = fly_within(budgets[i]);
+        assert_int_equal(within.count, without.count);
+        assert_memory_equal(within.positions, without.positions, within.count * sizeof *within.positions);
+        assert_true(within.is_reduced || budgets[i] > 1);
+        free(within.positions);
+    }
+    free(without.positions);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flown_again_it_shows_the_same),
         cmocka_unit_test(the_oracle_judges_each_image_by_its_own_frame),
+        cmocka_unit_test(no_budget_changes_a_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,238 @@
+#include "app/lab/trade/trade_fit.h"
+
+#include "app/fit/measures.h"
+#include "app/lab/trade/worn.h"
+#include "app/report/cells.h"
+#include "app/report/report.h"
+#include "config/log.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MM             1e3
+#define PERCENT        100
+#define QUICK_EDGE_M   0.05f
+#define TRUTH_SPEED    1e-3 /* m/s: what the reference settles to; a third of the default */
+#define TRUTH_SETTLE_S 30
+
+/* One choice of settings; what is 0 is the default. */
+struct fit_setting {
+    const char *name;
+    int solver;
+    bool quick;
+    int substeps;
+    double dt;     /* s */
+    float edge_m;  /* of another mesh; left out in quick runs */
+    double speed;  /* m/s, settle_speed */
+    bool no_cages; /* settles the fine mesh alone */
+    bool no_limit; /* without the limit of strain */
+    bool passes;   /* without contact of the cloth with itself */
+};
+static const struct fit_setting settings[] = {
+    {.name = "reference", .solver = TL_CLOTH_REFERENCE, .quick = true, .speed = TRUTH_SPEED},
+    {.name = "default", .quick = true},
+    {.name = "preview 8", .quick = true, .substeps = 8},
+    {.name = "preview 15", .substeps = 15},
+    {.name = "preview 60", .substeps = 60},
+    {.name = "preview 120", .substeps = 120},
+    {.name = "settle 60 Hz", .solver = TL_CLOTH_SETTLE, .quick = true},
+    {.name = "settle 240 Hz", .solver = TL_CLOTH_SETTLE, .dt = 1.0 / 240},
+    {.name = "rest at 10 mm/s", .speed = 1e-2},
+    {.name = "rest at 1 mm/s", .speed = 1e-3},
+    {.name = "no coarse versions", .no_cages = true},
+    {.name = "no strain limit", .no_limit = true},
+    {.name = "no self-contact", .passes = true},
+    {.name = "edges of 40 mm", .edge_m = 0.04f},
+    {.name = "edges of 30 mm", .edge_m = 0.03f},
+    {.name = "edges of 14 mm", .edge_m = 0.014f},
+    {.name = "edges of 10 mm", .edge_m = 0.01f},
+};
+
+static const char *const figure_names[TL_FIT_FIGURES] = {
+    "hem_height", "neck", "waist", "bust_ease", "waist_ease", "hip_ease",
+};
+
+static struct tl_cloth_params params_of(const struct fit_setting *setting, float edge_m)
+{
+    struct tl_cloth_params params = *(const struct tl_cloth_params *)tl_cloth_options.defaults;
+    params.solver = setting->solver;
+    params.edge_m = edge_m;
+    params.substeps = setting->substeps > 0 ? setting->substeps : params.substeps;
+    params.dt = setting->dt > 0 ? setting->dt : params.dt;
+    params.settle_speed = setting->speed > 0 ? setting->speed : params.settle_speed;
+    params.settle_s = setting->solver == TL_CLOTH_REFERENCE ? TRUTH_SETTLE_S : params.settle_s;
+    params.cages = params.cages && !setting->no_cages;
+    params.strain_limit = setting->no_limit ? 0 : params.strain_limit;
+    params.self_contact = !setting->passes;
+    return params;
+}
+
+static const struct tl_opening_measures *opening_of(const struct tl_measures *measures, const char *name)
+{
+    for (size_t i = 0; i < measures->opening_count; i++)
+        if (strcmp(measures->openings[i].name, name) == 0)
+            return &measures->openings[i];
+    return NULL;
+}
+
+static double ease_of(const struct tl_measures *measures, int level)
+{
+    const struct tl_girth_measures *girth = &measures->girths[level];
+    return girth->rest_m > 0 ? girth->rest_m - girth->body_m : (double)NAN;
+}
+
+static void take_figures(const tl_garment *garment, const struct tl_worn *worn, double out[TL_FIT_FIGURES])
+{
+    vec3s *positions = TL_NEW_ARRAY(vec3s, garment->model.mesh.vertex_count);
+    tl_cloth_positions(worn->cloth, positions);
+    const struct tl_measures_source source = {garment, positions, tl_cloth_weld(worn->cloth),
+                                              &worn->form.model.mesh};
+    struct tl_measures measures = tl_measures_take(&source);
+    const struct tl_opening_measures *hem = opening_of(&measures, "hem"),
+                                     *neck = opening_of(&measures, "neck"),
+                                     *waist = opening_of(&measures, "waist");
+    out[TL_FIT_HEM] = hem ? hem->height_m : (double)NAN;
+    out[TL_FIT_NECK] = neck ? neck->worn_m : (double)NAN;
+    out[TL_FIT_WAIST] = waist ? waist->worn_m : (double)NAN;
+    out[TL_FIT_BUST_EASE] = ease_of(&measures, TL_GIRTH_BUST);
+    out[TL_FIT_WAIST_EASE] = ease_of(&measures, TL_GIRTH_WAIST);
+    out[TL_FIT_HIP_EASE] = ease_of(&measures, TL_GIRTH_HIP);
+    tl_measures_release(&measures);
+    free(positions);
+}
+
+static bool measure(const char *name, const struct fit_setting *setting, float edge_m, size_t compared_with,
+                    struct tl_trade_fit *out, tl_error *error)
+{
+    const struct tl_cloth_params params = params_of(setting, edge_m);
+    tl_garment garment;
+    if (!tl_garment_cut(name, edge_m, &garment, error))
+        return false;
+    struct tl_worn worn;
+    bool done = tl_worn_settle(&garment, &params, &worn, error);
+    if (done) {
+        struct tl_cloth_report report = tl_cloth_measure(worn.cloth, NULL);
+        struct tl_trade_fit_row row = {.garment = name,
+                                       .name = setting->name,
+                                       .edge_m = (double)edge_m,
+                                       .rms_strain = report.rms_strain,
+                                       .taken = worn.taken,
+                                       .settled = report.settled,
+                                       .particles = report.vertex_count,
+                                       .compared_with = compared_with};
+        take_figures(&garment, &worn, row.figures);
+        out->rows = tl_resize(out->rows, out->row_count + 1, sizeof *out->rows);
+        out->rows[out->row_count++] = row;
+    }
+    tl_worn_release(&worn);
+    tl_garment_release(&garment);
+    return done;
+}
+
+bool tl_trade_fit(bool quick, struct tl_trade_fit *out, tl_error *error)
+{
+    static const char *const garments[] = {"dress", "skirt"};
+    const struct tl_cloth_params *defaults = tl_cloth_options.defaults;
+    const int setting_count = (int)TL_COUNT(settings), garment_count = quick ? 1 : (int)TL_COUNT(garments);
+    struct tl_progress progress = tl_progress_begin("measuring what settings do to a fit");
+    bool done = true;
+    for (int g = 0; g < garment_count; g++) {
+        size_t reference = out->row_count;
+        for (int i = 0; done && i < setting_count; i++) {
+            const struct fit_setting *setting = &settings[i];
+            float edge_m = setting->edge_m > 0 ? setting->edge_m : quick ? QUICK_EDGE_M : defaults->edge_m;
+            if (!quick || setting->quick)
+                done = measure(garments[g], setting, edge_m, reference, out, error);
+            tl_progress_update(&progress, g * setting_count + i + 1, garment_count * setting_count);
+        }
+    }
+    tl_progress_end(&progress);
+    return done;
+}
+
+void tl_trade_fit_release(struct tl_trade_fit *fit)
+{
+    free(fit->rows);
+    *fit = (struct tl_trade_fit){0};
+}
+
+/* ---- Results ---- */
+
+/* Empty where the garment has no such figure. */
+static void print_mm(FILE *out, double value_m)
+{
+    if (isfinite(value_m))
+        fprintf(out, ",%.3f", MM * value_m);
+    else
+        fputc(',', out);
+}
+
+void tl_trade_fit_write_csv(const struct tl_trade_fit *fit, FILE *out)
+{
+    fputs("garment,name,edge_mm,particles,settled,cpu_ms,wall_ms,rms_strain", out);
+    for (int k = 0; k < TL_FIT_FIGURES; k++)
+        fprintf(out, ",%s_mm", figure_names[k]);
+    for (int k = 0; k < TL_FIT_FIGURES; k++)
+        fprintf(out, ",%s_off_mm", figure_names[k]);
+    fputc('\n', out);
+    for (size_t i = 0; i < fit->row_count; i++) {
+        const struct tl_trade_fit_row *row = &fit->rows[i], *truth = &fit->rows[row->compared_with];
+        fprintf(out, "%s,\"%s\",%g,%zu,%d,%.1f,%.1f,%.6g", row->garment, row->name, MM * row->edge_m,
+                row->particles, row->settled, row->taken.cpu_ms, row->taken.wall_ms, row->rms_strain);
+        for (int k = 0; k < TL_FIT_FIGURES; k++)
+            print_mm(out, row->figures[k]);
+        for (int k = 0; k < TL_FIT_FIGURES; k++)
+            print_mm(out, row->figures[k] - truth->figures[k]);
+        fputc('\n', out);
+    }
+}
+
+/* A figure of the reference itself, and of others how far they are from it. */
+static void add_figure(struct tl_cells *cells, const struct tl_trade_fit_row *row,
+                       const struct tl_trade_fit_row *truth, int figure)
+{
+    double value = row->figures[figure];
+    if (!isfinite(value))
+        tl_cells_add(cells, "-");
+    else if (row == truth)
+        tl_cells_add(cells, "%.1f", MM * value);
+    else
+        tl_cells_add(cells, "%+.1f", MM * (value - truth->figures[figure]));
+}
+
+static void print_garment(const struct tl_trade_fit *fit, size_t first, FILE *out)
+{
+    static const char *const heads[] = {"",     "edges mm", "CPU s to rest", "rms strain", "hem height",
+                                        "neck", "waist",    "bust ease",     "waist ease", "hip ease"};
+    const struct tl_trade_fit_row *truth = &fit->rows[first];
+    struct tl_cells cells = {0};
+    for (size_t i = 0; i < TL_COUNT(heads); i++)
+        tl_cells_add(&cells, "%s", heads[i]);
+    for (size_t i = first; i < fit->row_count && fit->rows[i].compared_with == first; i++) {
+        const struct tl_trade_fit_row *row = &fit->rows[i];
+        tl_cells_add(&cells, "%s", row->name);
+        tl_cells_add(&cells, "%g", MM * row->edge_m);
+        tl_cells_add(&cells, "%.1f%s", 1e-3 * row->taken.cpu_ms, row->settled ? "" : ", not at rest");
+        tl_cells_add(&cells, "%.2f %%", PERCENT * row->rms_strain);
+        for (int k = 0; k < TL_FIT_FIGURES; k++)
+            add_figure(&cells, row, truth, k);
+    }
+    tl_report_paragraph(out, truth->garment);
+    tl_cells_print(&cells, TL_COUNT(heads), out);
+}
+
+void tl_trade_fit_write_html(const struct tl_trade_fit *fit, FILE *out)
+{
+    if (!fit->row_count)
+        return;
+    tl_report_heading(out, "What each setting does to the fit, in millimetres");
+    tl_report_paragraph(
+        out, "Built-in garments at rest on the form: the height of the hem above the ground, the lengths of "
+             "openings as worn, and the ease, which is the girth of the cloth at rest minus the body's. The "
+             "first row has the figures of the reference, all others how far they are from it.");
+    for (size_t i = 0; i < fit->row_count; i++)
+        if (fit->rows[i].compared_with == i)
+            print_garment(fit, i, out);
+}
