@@ -3,6 +3,7 @@ add_library(toile_light STATIC
   brdf/angles.c
   brdf/brdf.c
   brdf/coat.c
+  brdf/fuzz.c
   brdf/sample.c
   brdf/lobe_fit.c
   brdf/fresnel.c

@@ -46,6 +46,10 @@ static struct tl_material_params params_of(const tl_material *material)
     memcpy(params.diffuse, material->diffuse.raw, sizeof params.diffuse);
     memcpy(params.specular, material->specular.raw, sizeof params.specular);
     memcpy(params.transmission, material->transmission.raw, sizeof params.transmission);
+    params.fuzz = glms_vec3_max(material->fuzz.colour);
+    params.fuzz_roughness = material->fuzz.roughness;
+    for (int c = 0; c < 3; c++)
+        params.fuzz_colour[c] = params.fuzz > 0 ? material->fuzz.colour.raw[c] / params.fuzz : 1;
     return params;
 }
 
@@ -57,7 +61,9 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
     for (int c = 0; c < 3; c++) { /* light from inside a thread is gloss of the thread's colour */
         material->specular.raw[c] = fminf(params->specular[c] + params->thread * params->diffuse[c], 1);
         material->diffuse.raw[c] = (1 - params->thread) * params->diffuse[c];
+        material->fuzz.colour.raw[c] = params->fuzz * params->fuzz_colour[c];
     }
+    material->fuzz.roughness = params->fuzz_roughness;
     material->glossiness = params->glossiness;
     material->gloss = gloss_of(params);
     material->coat = params->coat;

@@ -333,7 +333,7 @@ static void choose_role(struct tl_scene_params *scene)
 /* Parts of a material beyond two lobes: those that environment maps do not show, and those that they do. */
 static bool is_more_than_maps_show(const struct tl_material_params *look)
 {
-    return look->model != TL_REFLECT_PHONG || look->openness > 0;
+    return look->model != TL_REFLECT_PHONG || look->openness > 0 || look->fuzz > 0;
 }
 
 static bool is_layered(const struct tl_material_params *look)
@@ -352,12 +352,13 @@ static void warn_of_unused_options(const struct tl_settings *settings)
     bool shows_all =
         light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
     if (by_maps && others)
-        tl_warn("material: model and openness are shown by light.visibility rays and by light.method "
+        tl_warn("material: model, openness and fuzz are shown by light.visibility rays and by light.method "
                 "reference only: environment maps show two lobes, a coat and light that comes through");
     else if (!by_maps && !shows_all && (layers || others))
-        tl_warn("material: model, coat, transmission and openness are shown by light.visibility rays and by "
-                "light.method reference only: shadow maps know two plain lobes; light.method maps shows coat "
-                "and transmission, without shadows");
+        tl_warn(
+            "material: model, coat, fuzz, transmission and openness are shown by light.visibility rays and "
+            "by light.method reference only: shadow maps know two plain lobes; light.method maps shows coat "
+            "and transmission, without shadows");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn("light.composition: rays always compose by ratio; this option is for light.visibility vsm "

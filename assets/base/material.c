@@ -11,6 +11,7 @@ tl_material tl_material_default(const char *name)
                             .specular = {{0.04f, 0.04f, 0.04f}},
                             .gloss = {.index = 1.5f},
                             .coat_glossiness = 0.95f,
+                            .fuzz = {.roughness = 0.5f},
                             .normal_scale = 1,
                             .occlusion_strength = 1,
                             .diffuse_map = none,
@@ -41,7 +42,12 @@ bool tl_material_transmits(const tl_material *material)
 bool tl_material_is_layered(const tl_material *material)
 {
     return material->gloss.model != TL_REFLECT_PHONG || material->coat > 0 || material->openness > 0 ||
-           tl_material_transmits(material);
+           tl_material_has_fuzz(material) || tl_material_transmits(material);
+}
+
+bool tl_material_has_fuzz(const tl_material *material)
+{
+    return glms_vec3_max(material->fuzz.colour) > 0;
 }
 
 /* The rotation is counter-clockwise with v down, as KHR_texture_transform has it. */

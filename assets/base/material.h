@@ -99,6 +99,12 @@ struct tl_back {
     vec3s diffuse, specular; /* as the front's; maps and yarns of the front do not tint it */
 };
 
+/* Short fibres that stand on the cloth: wool, fleece, brushed cotton; render/brdf/fuzz.h has the lobe. */
+struct tl_fuzz {
+    vec3s colour;    /* linear, times the amount; 0: none */
+    float roughness; /* [0.4, 1]; smaller: closer to the silhouette */
+};
+
 typedef struct tl_material {
     char name[64];
     vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
@@ -125,14 +131,17 @@ typedef struct tl_material {
     const tl_weave *weave;               /* detail, or NULL */
     struct tl_construction construction; /* of surfaces that have borders (tl_surface) */
     struct tl_back back;
+    struct tl_fuzz fuzz; /* over everything else */
 } tl_material;
 
 /* Matt mid-grey, no maps. */
 tl_material tl_material_default(const char *name);
 
 /* Whether the material has more than two cosine lobes about the normal and the mirror direction: microfacets,
- * a coat, or transmission. */
+ * a coat, fuzz, or transmission. */
 bool tl_material_is_layered(const tl_material *material);
+/* Whether fibres stand on it. */
+bool tl_material_has_fuzz(const tl_material *material);
 /* Whether seams or hems are drawn. */
 bool tl_material_is_sewn(const tl_material *material);
 /* Whether the material scatters light through to the other side. */

@@ -54,10 +54,16 @@ static const struct tl_option material_rows[] = {
         "fraction of the surface that is holes between threads; larger: more of the background shows"),
     TL_OPTION_COLOUR(material_params, back, AFFECTS, 0, 1,
                      "diffuse albedo of the inside: the fabric's back, or a lining; 0 0 0: as the front"),
+    TL_OPTION_FLOAT(material_params, fuzz, AFFECTS, 0, 1, "",
+                    "amount of short fibres that stand on the cloth, as of wool and fleece; larger: a paler "
+                    "edge; 0: none"),
+    TL_OPTION_COLOUR(material_params, fuzz_colour, AFFECTS, 0, 1, "colour of these fibres"),
+    TL_OPTION_FLOAT(material_params, fuzz_roughness, AFFECTS, 0.4, 1, "",
+                    "smaller: they show closer to the silhouette only"),
 };
 #define DEFAULTS                                                                                             \
     .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \
-    .index = 1.5f, .coat_glossiness = 0.95f
+    .index = 1.5f, .coat_glossiness = 0.95f, .fuzz_colour = {1, 1, 1}, .fuzz_roughness = 0.5f
 
 const struct tl_option_table tl_material_options =
     TL_OPTION_TABLE("material", "appearance of the garment: a diffuse and a glossy lobe", material_rows,

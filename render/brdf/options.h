@@ -16,7 +16,8 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     float coat, coat_glossiness;
     float transmission[3];
     float openness;
-    float back[3]; /* diffuse colour of the back; 0: as the front */
+    float back[3];                              /* diffuse colour of the back; 0: as the front */
+    float fuzz, fuzz_colour[3], fuzz_roughness; /* struct tl_fuzz's colour is the first two multiplied */
 };
 extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table

@@ -1,6 +1,7 @@
 #include "render/frame/facts.h"
 
 #include "config/simd.h"
+#include "render/brdf/fuzz.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"
 #include "render/env/exponent.h"
@@ -74,6 +75,8 @@ static uint32_t layered_exponents(const tl_material *material, float low, float 
     uint32_t needed = 0;
     if (material->coat > 0)
         needed |= tl_exponents_needed(material->coat_glossiness, material->coat_glossiness);
+    if (tl_material_has_fuzz(material))
+        needed |= TL_FUZZ_EXPONENTS;
     if (!tl_material_is_faceted(material))
         return needed;
     float least, greatest, unused;

@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
+#include "render/brdf/fuzz.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
@@ -34,7 +35,10 @@ struct lobes {
     struct tl_brdf brdf;
     struct tl_brdf_frame frame;
     vec3s viewer;
-    float base; /* what the coat leaves */
+    float base; /* what coat and fuzz leave */
+    bool has_fuzz;
+    struct tl_fuzz fuzz;
+    struct tl_fuzz_lobes fibres; /* of fuzz; about the smooth normal */
 };
 
 /* What a block of samples shares. */
@@ -317,7 +321,7 @@ static void add_coat(const struct block *block, const tl_sample *sample, const t
 {
     vec3s n = into_environment(block, sample->smooth);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * viewed_by(lobes, n)), lobes->viewer);
-    float share = 1 - lobes->base;
+    float share = lobes->fibres.under * material->coat * tl_coat_reflectance(viewed_by(lobes, n));
     lobes->items[lobes->count++] =
         (struct tl_fitted_lobe){.direction = glms_vec3_normalize(mirror),
                                 .exponent = tl_lobe_exponent(material->coat_glossiness),
@@ -330,7 +334,13 @@ static void part_lobes(const struct block *block, const tl_material *material, t
 {
     vec3s view = glms_vec3_normalize(glms_vec3_sub(block->request->eye, sample->point));
     lobes->viewer = into_environment(block, view);
-    lobes->base = 1 - material->coat * tl_coat_reflectance(fmaxf(glms_vec3_dot(sample->smooth, view), 0));
+    float facing = fmaxf(glms_vec3_dot(sample->smooth, view), 0);
+    lobes->has_fuzz = tl_material_has_fuzz(material);
+    lobes->fuzz = material->fuzz;
+    lobes->fibres.under = 1;
+    if (lobes->has_fuzz)
+        lobes->fibres = tl_fuzz_lobes_of(&material->fuzz, facing);
+    lobes->base = lobes->fibres.under * (1 - material->coat * tl_coat_reflectance(facing));
     if (material->gloss.model != TL_REFLECT_PHONG) {
         add_fan(block, sample, material, lobes);
         sample->specular = (vec3s){{0, 0, 0}};
@@ -423,6 +433,36 @@ static vec3s sun_on_lobes(const struct block *block, size_t index, const struct 
     return light;
 }
 
+/* Seen and whole light of the regions through the fibres. */
+TL_INLINE void see_fibres(const struct block *block, size_t index, const struct lobes *lobes, vec3s smooth,
+                          vec3s *seen, vec3s *all)
+{
+    const struct tl_compose_request *request = block->request;
+    const struct tl_region_lights *lights = request->lights;
+    float seen_lanes[3][TL_LANES] = {0}, all_lanes[3][TL_LANES] = {0};
+    for (int g = 0; g < lights->group_count; g++) {
+        const struct tl_region_group *group = &lights->groups[g];
+        if (glms_vec3_dot(group->axis, smooth) < -group->reach_sine)
+            continue;
+        float visibility[TL_LANES], open[TL_LANES], visible[TL_LANES];
+        read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
+        for (int lane = 0; lane < TL_LANES; lane++) {
+            float cosine = group->x[lane] * smooth.x + group->y[lane] * smooth.y + group->z[lane] * smooth.z;
+            float mean = group->sine[lane] * disc_height(cosine * group->inverse_sine[lane]);
+            open[lane] = tl_fuzz_lobes_at(lobes->fibres.weights, mean);
+            visible[lane] = open[lane] * visibility[lane];
+        }
+        for (int c = 0; c < 3; c++) {
+            add_weights(all_lanes[c], group->power[c], open);
+            add_weights(seen_lanes[c], group->power[c], visible);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        seen->raw[c] = tl_sum_lanes(seen_lanes[c]);
+        all->raw[c] = tl_sum_lanes(all_lanes[c]);
+    }
+}
+
 static vec3s share_of(vec3s part, vec3s all)
 {
     vec3s share;
@@ -453,6 +493,46 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
     return light;
 }
 
+/* The unshadowed light of the environment that fibres send to the viewer. */
+static vec3s exact_fibres(const struct block *block, const struct lobes *lobes, vec3s smooth)
+{
+    vec3s light = {{0, 0, 0}};
+    for (int k = 0; k < TL_FUZZ_POWERS; k++) {
+        const struct tl_exponent_blend power = {.index = TL_FUZZ_INDEX(k)};
+        vec3s arriving = tl_lobes_fetch(block->request->lobes, smooth, power);
+        light = glms_vec3_add(light, glms_vec3_scale(arriving, lobes->fibres.weights[k]));
+    }
+    return glms_vec3_maxv(light, glms_vec3_zero());
+}
+
+/* The light of fuzz; under ambient occlusion with the share that the diffuse lobe gets. */
+TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const struct lobes *lobes,
+                                vec3s smooth, const struct received *two)
+{
+    const struct tl_compose_request *request = block->request;
+    const int method = request->params->method;
+    const bool by_occlusion = method == TL_METHOD_AO || method == TL_METHOD_AO_COLOUR;
+    const bool shadowed = method != TL_METHOD_UNSHADOWED && !by_occlusion;
+    vec3s light = exact_fibres(block, lobes, smooth);
+    if (shadowed) {
+        vec3s seen, all;
+        see_fibres(block, index, lobes, smooth, &seen, &all);
+        light = glms_vec3_mul(light, share_of(seen, all));
+    }
+    for (int i = 0; i < request->suns->count; i++) {
+        const struct tl_sun *sun = &request->suns->items[i];
+        const float *visibility = request->sun_visibility[i];
+        float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
+        float open = shadowed && visibility ? above * visibility[index] : 1;
+        light = glms_vec3_add(
+            light, glms_vec3_scale(sun->power, open * tl_fuzz_value(&lobes->fuzz, smooth, sun->direction,
+                                                                    lobes->viewer)));
+    }
+    if (by_occlusion)
+        light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));
+    return glms_vec3_mul(light, lobes->fuzz.colour);
+}
+
 /* The material of a sample that has more than two lobes, or NULL. Mirrors show the two, and so do the other
  * sides of the layers. */
 static const tl_material *rich_material(const struct tl_compose_request *request, size_t index)
@@ -462,7 +542,9 @@ static const tl_material *rich_material(const struct tl_compose_request *request
         return NULL;
     const tl_material *material =
         tl_triangle_material(request->ranges, samples->items[index].triangle & ~TL_SAMPLE_BACK);
-    return material->coat > 0 || material->gloss.model != TL_REFLECT_PHONG ? material : NULL;
+    const bool is_rich =
+        material->coat > 0 || material->gloss.model != TL_REFLECT_PHONG || tl_material_has_fuzz(material);
+    return is_rich ? material : NULL;
 }
 
 static float share_of_sample(const struct tl_compose_request *request, size_t index)
@@ -515,8 +597,10 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
         replace_by_occlusion(&sums, method, &received);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;
     vec3s colour = colour_of(sample, request->params->lobe, arriving);
-    if (rich)
+    if (lobes.count > 0)
         colour = glms_vec3_add(colour, light_of_lobes(block, index, &lobes, frame.smooth, &received));
+    if (lobes.has_fuzz)
+        colour = glms_vec3_add(colour, light_of_fibres(block, index, &lobes, frame.smooth, &received));
     return glms_vec3_scale(colour, share_of_sample(request, index));
 }
 
@@ -597,6 +681,12 @@ TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t inde
     ratio.glossy = rich && lobes.facets > 0 ? ratio_of_lobes(block, index, &lobes, frame.smooth)
                    : kind.glossy            ? share_of(seen[GLOSSY], all[GLOSSY])
                                             : ratio.diffuse;
+    ratio.fuzz = ratio.diffuse;
+    if (lobes.has_fuzz) {
+        vec3s open, visible;
+        see_fibres(block, index, &lobes, frame.smooth, &visible, &open);
+        ratio.fuzz = share_of(visible, open);
+    }
     return ratio;
 }
 

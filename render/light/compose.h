@@ -11,7 +11,8 @@
  *
  * A material whose gloss is not a lobe about r has a few lobes (render/brdf/lobe_fit.h), a coat has one more;
  * each is taken as the glossy one is, but that none has mirrors' rays: what they reflect of the scene is
- * black. Under suns facets are evaluated themselves. */
+ * black. Under suns facets are evaluated themselves. Fuzz is a lobe about the smooth normal over all of these
+ * (render/brdf/fuzz.h): its exact light times the share of the regions that is seen through it. */
 #ifndef TOILE_RENDER_LIGHT_COMPOSE_H
 #define TOILE_RENDER_LIGHT_COMPOSE_H
 
@@ -52,6 +53,7 @@ void tl_compose(const struct tl_compose_request *request, float *light);
 /* The ratio of seen to exact light, of the regions alone (suns have visibility of their own), by channel. */
 struct tl_light_ratio {
     vec3s diffuse, glossy; /* of all lobes of the gloss together */
+    vec3s fuzz;            /* of fibres (render/brdf/fuzz.h); as `diffuse` where there are none */
 };
 
 /* Writes the ratio of every sample, from the sums that tl_compose makes: method PEM, two lobes, no coat and

@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "render/brdf/coat.h"
+#include "render/brdf/fuzz.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,14 +108,15 @@ static bool look_behind(struct tl_transparency *transparency, tl_gpu *gpu,
 static tl_sample other_side(const tl_sample *sample, const tl_material *material, vec3s eye)
 {
     vec3s view = glms_vec3_normalize(glms_vec3_sub(eye, sample->point));
-    float coat = material->coat * tl_coat_reflectance(fmaxf(glms_vec3_dot(sample->smooth, view), 0));
+    float facing = fmaxf(glms_vec3_dot(sample->smooth, view), 0);
+    float base = tl_fuzz_under(material, facing) * (1 - material->coat * tl_coat_reflectance(facing));
     tl_sample other = *sample;
     other.triangle ^= TL_SAMPLE_BACK;
     other.normal = glms_vec3_negate(sample->normal);
     other.smooth = glms_vec3_negate(sample->smooth);
     other.mirror = other.normal;
     other.glossiness = 0;
-    other.diffuse = glms_vec3_scale(material->transmission, 1 - coat);
+    other.diffuse = glms_vec3_scale(material->transmission, base);
     other.specular = (vec3s){{0, 0, 0}};
     return other;
 }

@@ -28,7 +28,8 @@ enum {
     TABLE_AXES = 80,
     TABLE_SCALES = 83,
     EMISSION = 84,
-    EMISSION_ROWS = 85
+    EMISSION_ROWS = 85,
+    LAMP_FUZZ = 87
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -149,6 +150,8 @@ static void define_all(const struct tl_local_request *request, const struct lit_
         define(defines, "SHADOW_MAP");
     if (part->material->coat > 0)
         define(defines, "COAT");
+    if (tl_material_has_fuzz(part->material))
+        define(defines, "FUZZ");
     if (pass->define)
         define(defines, pass->define);
     size_t length = strlen(defines);
@@ -212,6 +215,10 @@ static void set_gloss(const tl_material *material)
     glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
                 1 - material->openness);
     glUniform2f(GLOSS_OPTICS, gloss->index, gloss->extinction);
+    if (tl_material_has_fuzz(material)) {
+        const struct tl_fuzz *fuzz = &material->fuzz;
+        glUniform4f(LAMP_FUZZ, fuzz->colour.x, fuzz->colour.y, fuzz->colour.z, fuzz->roughness);
+    }
 }
 
 static void bind_shadow(const struct tl_lamp_shadows *shadows, enum tl_lamp_shadow kind)

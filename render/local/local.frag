@@ -1,5 +1,6 @@
 #version 450 core
 // The light of one lamp on the surfaces of the G-buffer, added to the light target.
+#include "fuzz_terms.glsl"
 #include "gloss.glsl"
 #include "ground.glsl"
 #include "material.glsl"
@@ -11,6 +12,10 @@ layout(location = 75) uniform int lamp_layer;
 layout(location = 76) uniform vec4 lamp_ground; // disc of the ground, if it can block the light of this lamp
 
 layout(location = 77) uniform vec3 lamp_layers; // coverage of the coat, exponent of its lobe, 1 - openness
+
+#ifdef FUZZ
+layout(location = 87) uniform vec4 lamp_fuzz; // colour, roughness
+#endif
 
 #ifdef EMISSION
 layout(location = 84) uniform vec3 emission;
@@ -209,6 +214,19 @@ vec3 under_coat(vec3 light, vec3 l, vec3 n)
     return light;
 }
 
+// Adds the fibres that stand on everything else, which keeps what they leave.
+vec3 under_fuzz(vec3 light, vec3 l, vec3 n)
+{
+#ifdef FUZZ
+    vec3 v = direction_or(eye - point, n);
+    float facing = clamp(dot(n, v), 0.0, 1.0), albedo = fuzz_albedo(facing, lamp_fuzz.w);
+    float towards = dot(direction_or(v - dot(n, v) * n, vec3(0.0)), l);
+    light *= 1.0 - albedo * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
+    light += self_shadow(dot(n, l)) * albedo * fuzz_lobe(dot(n, l), towards, facing, lamp_fuzz.w) * lamp_fuzz.rgb;
+#endif
+    return light;
+}
+
 void main()
 {
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
@@ -238,10 +256,16 @@ void main()
     vec3 n = side * smooth_normal;
     sent *= 1.0 - lamp_layers.x * fresnel_dielectric(1.5, max(dot(n, direction_or(eye - point, n)), 0.0));
 #endif
+#ifdef FUZZ
+    vec3 up = side * smooth_normal;
+    float facing = clamp(dot(up, direction_or(eye - point, up)), 0.0, 1.0);
+    sent *= 1.0 - fuzz_albedo(facing, lamp_fuzz.w) * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
+#endif
     out_light = vec4(texelFetch(seen_point, texel, 0).w * lamp_layers.z * sent, 0.0);
 #else
     float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l) * own_shadow;
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
+    light = under_fuzz(light, l, side * smooth_normal);
     out_light = vec4(shown * irradiance_at(point) * light, 0.0);
 #endif
 }

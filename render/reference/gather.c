@@ -1,6 +1,7 @@
 #include "render/reference/gather.h"
 
 #include "config/simd.h"
+#include "render/brdf/fuzz.h"
 #include "render/reference/lamps.h"
 
 #include <float.h>
@@ -169,7 +170,7 @@ static vec3s finite_product(vec3s radiance, vec3s share)
     return light;
 }
 
-/* The weights of coat and facets for a direction from the environment, by the balance heuristic: f /
+/* The weights of coat, facets and fuzz for a direction from the environment, by the balance heuristic: f /
  * (p_environment + n p_lobe), where `sample_pdf` is the number of environment samples times their pdf. */
 static vec3s layered_share(const struct gather *gather, int i, vec3s direction, float sample_pdf)
 {
@@ -186,6 +187,11 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
         vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
         float pdf = tl_brdf_pdf(&layers->brdf, &layers->frame, direction, viewer);
         share = glms_vec3_add(share, glms_vec3_scale(gloss, layers->base / (sample_pdf + count * pdf)));
+    }
+    if (glms_vec3_max(layers->fuzz.colour) > 0) { /* broad: the environment's samples are enough */
+        float fibres =
+            tl_fuzz_value(&layers->fuzz, layers->fuzz_normal, direction, gather->points->viewer[i]);
+        share = glms_vec3_add(share, glms_vec3_scale(layers->fuzz.colour, fibres / sample_pdf));
     }
     return share;
 }

@@ -1,6 +1,7 @@
 #include "render/reference/lamps.h"
 
 #include "render/brdf/brdf.h"
+#include "render/brdf/fuzz.h"
 #include "render/env/exponent.h"
 
 #include <float.h>
@@ -20,7 +21,7 @@ static float visibility_from(const struct tl_reference_scene *scene, const struc
     return shown * seen[0];
 }
 
-/* kd/pi cos + f_r cos below the coat, plus the coat, of a point that faces light from `l`. */
+/* kd/pi cos + f_r cos below coat and fuzz, plus these, of a point that faces light from `l`. */
 static vec3s reflected(const struct tl_shading_point *point, const struct tl_brdf *brdf,
                        const struct tl_brdf_frame *frame, vec3s l)
 {
@@ -33,7 +34,11 @@ static vec3s reflected(const struct tl_shading_point *point, const struct tl_brd
     float coat = layers->coat > 0 ? layers->coat * tl_lobe_cosine(layers->coat_exponent,
                                                                   glms_vec3_dot(layers->coat_axis, l))
                                   : 0;
-    return glms_vec3_adds(glms_vec3_scale(sent, layers->base), coat);
+    sent = glms_vec3_adds(glms_vec3_scale(sent, layers->base), coat);
+    if (!(glms_vec3_max(layers->fuzz.colour) > 0))
+        return sent;
+    float fibres = tl_fuzz_value(&layers->fuzz, layers->fuzz_normal, l, point->viewer);
+    return glms_vec3_add(sent, glms_vec3_scale(layers->fuzz.colour, fibres));
 }
 
 vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *point,

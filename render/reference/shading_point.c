@@ -2,6 +2,7 @@
 
 #include "render/brdf/coat.h"
 #include "render/brdf/fresnel.h"
+#include "render/brdf/fuzz.h"
 #include "render/construction/look.h"
 #include "render/detail/detail_terms.h"
 #include "render/env/exponent.h"
@@ -244,7 +245,9 @@ static void set_coat(const struct sample_place *place, vec3s smooth, struct tl_s
     vec3s n = glms_vec3_scale(smooth, place->side);
     float cosine = fmaxf(glms_vec3_dot(n, result->viewer), 0);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * cosine), result->viewer);
-    layers->coat = place->material->coat * tl_coat_reflectance(cosine);
+    float share = place->material->coat * tl_coat_reflectance(cosine);
+    layers->coat = layers->base * share;
+    layers->base *= 1 - share;
     layers->coat_axis = direction_or(mirror, n);
     layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
 }
@@ -255,9 +258,11 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
     struct tl_shading_layers *layers = &result->layers;
     result->layered = true;
     layers->openness = material->openness;
+    layers->fuzz = material->fuzz;
+    layers->fuzz_normal = glms_vec3_scale(smooth, place->side);
+    layers->base = tl_fuzz_under(material, glms_vec3_dot(layers->fuzz_normal, result->viewer));
     if (material->coat > 0)
         set_coat(place, smooth, result);
-    layers->base = 1 - layers->coat;
     layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
     if (layers->faceted) {
         layers->brdf = tl_brdf_bumped(material, result->f0, result->glossiness, result->widening);

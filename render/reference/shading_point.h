@@ -23,16 +23,18 @@ struct tl_ray_differential {
 struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y);
 
 /* The parts of a material beyond two lobes. The colours of the lobes here and in tl_shading_point are already
- * multiplied by 1 - coat. */
+ * multiplied by `base`. */
 struct tl_shading_layers {
     float openness;    /* fraction that is seen straight through */
     vec3s transmitted; /* kt: diffuse transmission of light from the other side: K_1(-normal, w) */
     vec3s behind;      /* origin of rays to that light */
-    float coat;        /* Fresnel reflectance of the coat times its coverage */
+    float coat;        /* Fresnel reflectance of the coat times its coverage and what fuzz leaves */
     vec3s coat_axis;
     float coat_exponent;
-    bool faceted; /* gloss is `brdf` times `base` instead of the lobe about `axis` */
-    float base;   /* 1 - coat */
+    bool faceted;        /* gloss is `brdf` times `base` instead of the lobe about `axis` */
+    float base;          /* what coat and fuzz leave */
+    struct tl_fuzz fuzz; /* about `fuzz_normal`; colour 0: none */
+    vec3s fuzz_normal;
     struct tl_brdf brdf;
     struct tl_brdf_frame frame;
 };

@@ -218,6 +218,8 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     part.has_bumps = woven || part.own_moments || part.borders || part.maps[TL_MAP_NORMAL].texels;
     part.is_glossy = glms_vec3_max(material->specular) > 0;
     part.transmits = tl_material_transmits(material);
+    part.has_fuzz = tl_material_has_fuzz(material);
+    materials->have_fuzz |= part.has_fuzz;
     materials->openness = fmaxf(materials->openness, material->openness);
     part.is_faceted = material->gloss.model != TL_REFLECT_PHONG;
     part.fan_count = fan;
@@ -246,6 +248,7 @@ void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surf
     materials->detail = *detail;
     materials->surface_count = count;
     materials->openness = 0;
+    materials->have_fuzz = false;
     materials->first_parts = TL_NEW_ARRAY(size_t, count + 1);
     for (size_t s = 0; s < count; s++)
         materials->first_parts[s + 1] = materials->first_parts[s] + surfaces[s]->part_count;

@@ -37,6 +37,7 @@ struct tl_shade_part {
     bool has_bumps;                 /* the tangent is read */
     bool is_glossy;                 /* something is reflected */
     bool transmits;                 /* light comes through from the other side */
+    bool has_fuzz;                  /* fibres stand on it */
     bool is_faceted;                /* the gloss is not one cosine lobe: */
     float ward_squares[2];          /* squared widths of Ward's facets without maps and bumps */
     int fan_count;                  /* lobes at most that stand for them */
@@ -52,6 +53,7 @@ struct tl_shade_materials {
     size_t *first_parts; /* [surface_count + 1] */
     struct tl_shade_part *parts;
     float openness; /* the greatest; 0: no part can be looked through */
+    bool have_fuzz; /* of any part */
     size_t image_count, fan_count, construction_count;
     struct tl_shade_image **images; /* each image is packed once */
     struct tl_shade_fan **fans;

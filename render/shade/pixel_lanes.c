@@ -1,4 +1,5 @@
 #include "config/memory.h"
+#include "render/brdf/fuzz.h"
 #include "render/env/lobes_fetch.h"
 #include "render/shade/pixels_internal.h"
 #include "render/shade/ward_lanes_internal.h"
@@ -422,6 +423,70 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
         light[i] += (through[i] * other_lobe[i]) * coming_through;
 }
 
+/* ---- Fuzz ---- */
+
+/* f_r cos of white fibres under a sun, of a lane whose smooth normal is n. */
+TL_INLINE float fibres_under(const struct tl_fuzz *fuzz, vec3s n, vec3s viewer, vec3s sun)
+{
+    float x = tl_maxf(tl_minf(glms_vec3_dot(n, viewer), 1), 0);
+    vec3s flat = glms_vec3_sub(viewer, glms_vec3_scale(n, glms_vec3_dot(n, viewer)));
+    float towards = glms_vec3_dot(tl_unit_or(flat, (vec3s){{0, 0, 0}}), sun);
+    return fuzz_albedo(x, fuzz->roughness) * fuzz_lobe(glms_vec3_dot(n, sun), towards, x, fuzz->roughness);
+}
+
+TL_INLINE void add_fibres_of_sun(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                                 int sun, const float normal[3][TL_LANES], tl_quad fibres[TL_LANES])
+{
+    const struct tl_sun *item = &scene->request->suns->items[sun];
+    const struct tl_look_lanes *look = &lanes->look;
+    for (int i = 0; i < look->count; i++) {
+        const vec3s n = tl_lane_vector(normal, i);
+        float seen = tl_pixel_sun_above(item, glms_vec3_dot(scene->suns[sun], n)) *
+                     tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
+        if (seen > 0)
+            fibres[i] += tl_pixel_quad(item->power) *
+                         (seen * fibres_under(&look->part->material->fuzz, n, tl_lane_vector(look->viewer, i),
+                                              scene->suns[sun]));
+    }
+}
+
+/* Fibres over all that is below them. */
+TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                        tl_quad light[TL_LANES])
+{
+    const struct tl_look_lanes *look = &lanes->look;
+    const struct tl_fuzz *fuzz = &look->part->material->fuzz;
+    const struct tl_lobe_map *maps = scene->request->lobes->maps;
+    float normal[3][TL_LANES], weights[TL_FUZZ_POWERS][TL_LANES], under[TL_LANES];
+    struct fetch_lanes fetch[TL_FUZZ_POWERS];
+    for (int i = 0; i < TL_LANES; i++) {
+        const vec3s n = glms_vec3_scale(tl_lane_vector(look->smooth, i), look->side[i]);
+        const struct tl_fuzz_lobes lobes =
+            tl_fuzz_lobes_of(fuzz, glms_vec3_dot(n, tl_lane_vector(look->viewer, i)));
+        const vec3s d = tl_pixel_turned(scene, n);
+        const struct tl_octahedral_place place = tl_octahedral_place(d.x, d.y, d.z);
+        tl_lane_store(normal, i, n);
+        under[i] = lobes.under;
+        for (int k = 0; k < TL_FUZZ_POWERS; k++) {
+            weights[k][i] = lobes.weights[k];
+            place_fetch(&fetch[k], i, maps[TL_FUZZ_INDEX(k)].side, place);
+        }
+    }
+    tl_quad fibres[TL_LANES];
+    for (int i = 0; i < look->count; i++) {
+        tl_quad sum = {0, 0, 0, 0};
+        for (int k = 0; k < TL_FUZZ_POWERS; k++)
+            sum += weights[k][i] * fetch_lane(&maps[TL_FUZZ_INDEX(k)], &fetch[k], i);
+        for (int c = 0; c < 3; c++)
+            sum[c] = tl_maxf(sum[c], 0);
+        fibres[i] = sum * lanes->fuzz_ratio[i];
+    }
+    for (int i = 0; i < scene->request->suns->count; i++)
+        add_fibres_of_sun(scene, lanes, i, normal, fibres);
+    for (int i = 0; i < look->count; i++)
+        light[i] = light[i] * under[i] + tl_pixel_quad(fuzz->colour) * fibres[i];
+}
+
 /* ---- All of it ---- */
 
 TL_INLINE void find_viewers(const struct tl_pixel_scene *scene, struct tl_pixel_lanes *lanes)
@@ -448,6 +513,8 @@ TL_CLONES static void light_lanes(const struct tl_pixel_scene *scene, const stru
         add_lobe(scene, lanes, &gloss, light);
     for (int i = 0; i < scene->request->suns->count; i++)
         add_sun(scene, lanes, i, &gloss, light);
+    if (part->has_fuzz)
+        add_fuzz(scene, lanes, light);
 }
 
 TL_CLONES void tl_pixel_lanes_shade(const struct tl_pixel_scene *scene, struct tl_pixel_lanes *lanes)

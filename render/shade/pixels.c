@@ -18,6 +18,7 @@ struct pixel_run {
     const struct tl_shade_part *part;
     tl_quad diffuse[3], glossy[3]; /* ratios at the corners; where the run is flat `diffuse` is the light */
     tl_quad other[3];              /* ... of the diffuse light of the other side */
+    tl_quad fuzz[3];               /* ... of fibres */
     tl_quad normals[3], tangents[3];
     tl_quad uvs[3];                /* u, v, u, v */
     tl_quad slopes[3], slope;      /* of the weights, not normalised: across twice, up twice; their sum */
@@ -88,6 +89,9 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
             ratio = tl_ratio_at(request->ratios, triangle->surface_index, vertex, !triangle->back);
             run->other[i] = *(const tl_quad *)ratio->diffuse;
         }
+        if (run->part->has_fuzz)
+            run->fuzz[i] = *(const tl_quad *)tl_fuzz_ratio_at(request->ratios, triangle->surface_index,
+                                                              vertex, triangle->back);
         run->normals[i] = tl_pixel_quad(surface->normals[vertex]);
         const vec4s tangent = surface->tangents ? surface->tangents[vertex] : (vec4s){{0, 0, 0, 0}};
         run->tangents[i] = (tl_quad){tangent.x, tangent.y, tangent.z, tangent.w};
@@ -100,7 +104,7 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
     run->is_mixed = covered > 0 && covered < 3;
     run->is_fading = fades(request, triangle);
     run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->is_faceted &&
-                   !run->part->transmits && has_one_normal(run);
+                   !run->part->transmits && !run->part->has_fuzz && has_one_normal(run);
     if (run->is_flat)
         flatten(scene, run);
 }
@@ -230,6 +234,8 @@ TL_INLINE void shade_pixel(const struct tl_pixel_scene *scene, const struct pixe
     lanes->to[lane] = to;
     lanes->diffuse_ratio[lane] = weighted_quad(run->diffuse, ratio_weights);
     lanes->glossy_ratio[lane] = weighted_quad(run->glossy, ratio_weights);
+    if (run->part->has_fuzz)
+        lanes->fuzz_ratio[lane] = weighted_quad(run->fuzz, ratio_weights);
     if (run->part->transmits) /* what is not seen itself may well be covered: by the body, for one */
         lanes->other_ratio[lane] = weighted_quad(run->other, weights.at);
     fill_lane(run, &weights, &lanes->look, lane);

@@ -3,8 +3,9 @@
  *
  *     c = kd E(n, 1) ratio_d + sum of lobes weight E(direction, s) ratio_g + kt E(-n, 1) ratio_d' + suns
  *
- * where ratio_d' is that of the other side, from which light comes through. The layers behind open cloth are
- * blended as render/light/transparency.h has it, each with the share that the nearer ones let through.
+ * where fuzz is left out (render/brdf/fuzz.h: its exact light times a ratio of its own), and ratio_d' is that
+ * of the other side, from which light comes through. The layers behind open cloth are blended as
+ * render/light/transparency.h has it, each with the share that the nearer ones let through.
  *
  * The error against composing each sample is measured by tests/render/shade. Linear, premultiplied by cover.
  * Results do not depend on the number of threads. */

@@ -28,6 +28,7 @@ struct tl_pixel_lanes {
     size_t pixel[TL_LANES];
     tl_quad diffuse_ratio[TL_LANES], glossy_ratio[TL_LANES];
     tl_quad other_ratio[TL_LANES]; /* diffuse, of the other side; where the part transmits */
+    tl_quad fuzz_ratio[TL_LANES];  /* where the part has fuzz */
     float cover[TL_LANES];
     tl_quad *to[TL_LANES]; /* where the colour is written */
 };

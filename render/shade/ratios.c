@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_triangle_ranges *ranges)
+static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_triangle_ranges *ranges,
+                            bool have_fuzz)
 {
     size_t vertices = 0;
     for (size_t s = 0; s < ranges->surface_count; s++)
@@ -18,10 +19,12 @@ static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_tri
     }
     for (size_t s = 0; s < ranges->surface_count; s++)
         ratios->first_vertex[s + 1] = ratios->first_vertex[s] + ranges->surfaces[s]->vertex_count;
-    if (vertices == ratios->vertex_count)
+    if (vertices == ratios->vertex_count && have_fuzz == (ratios->fuzz != NULL))
         return;
     free(ratios->items);
+    free(ratios->fuzz);
     free(ratios->stamps);
+    ratios->fuzz = have_fuzz ? tl_alloc_lines(2 * vertices, sizeof *ratios->fuzz) : NULL;
     ratios->items = TL_NEW_ARRAY(struct tl_vertex_ratio, 2 * vertices);
     ratios->stamps = TL_NEW_ARRAY(uint32_t, 2 * vertices);
     ratios->vertex_count = vertices;
@@ -159,7 +162,7 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
 
 void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
-    follow_surfaces(ratios, request->ranges);
+    follow_surfaces(ratios, request->ranges, request->materials->have_fuzz);
     list_corners(ratios, request);
     struct tl_compose_request compose = {.samples = &ratios->samples,
                                          .lights = request->lights,
@@ -177,6 +180,11 @@ void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_requ
         *ratio = (struct tl_vertex_ratio){.glossy = {0, 0, 0, covered ? 1.0f : 0.0f}};
         memcpy(ratio->diffuse, ratios->made[i].diffuse.raw, sizeof(vec3s));
         memcpy(ratio->glossy, ratios->made[i].glossy.raw, sizeof(vec3s));
+        if (ratios->fuzz) {
+            float *fuzz = ratios->fuzz[ratios->places[i]];
+            memcpy(fuzz, ratios->made[i].fuzz.raw, sizeof(vec3s));
+            fuzz[3] = 0;
+        }
     }
 }
 
@@ -184,6 +192,7 @@ void tl_ratios_release(struct tl_vertex_ratios *ratios)
 {
     free(ratios->first_vertex);
     free(ratios->items);
+    free(ratios->fuzz);
     free(ratios->stamps);
     free(ratios->taps);
     free(ratios->places);
@@ -194,7 +203,8 @@ void tl_ratios_release(struct tl_vertex_ratios *ratios)
 
 size_t tl_ratios_bytes(const struct tl_vertex_ratios *ratios)
 {
-    return 2 * ratios->vertex_count * (sizeof *ratios->items + sizeof *ratios->stamps) +
+    const size_t fuzz = ratios->fuzz ? sizeof *ratios->fuzz : 0;
+    return 2 * ratios->vertex_count * (sizeof *ratios->items + fuzz + sizeof *ratios->stamps) +
            ratios->capacity *
                (sizeof(tl_sample) + sizeof *ratios->taps + sizeof *ratios->places + sizeof *ratios->made);
 }

@@ -21,6 +21,7 @@ struct tl_vertex_ratios {
     size_t surface_count, vertex_count;
     size_t *first_vertex;          /* [surface_count + 1] */
     struct tl_vertex_ratio *items; /* [2 vertex_count]: front, back */
+    float (*fuzz)[4];              /* ...: of fibres by channel, and 0; NULL: no part has any */
     uint32_t *stamps;              /* ...: update in which it was last seen; 0: never */
     uint32_t update;
     uint64_t light_revision;
@@ -55,6 +56,13 @@ static inline const struct tl_vertex_ratio *tl_ratio_at(const struct tl_vertex_r
                                                         uint32_t vertex, bool back)
 {
     return &ratios->items[2 * (ratios->first_vertex[surface] + vertex) + back];
+}
+
+/* ... of the fibres there; some part must have fuzz. */
+static inline const float *tl_fuzz_ratio_at(const struct tl_vertex_ratios *ratios, size_t surface,
+                                            uint32_t vertex, bool back)
+{
+    return ratios->fuzz[2 * (ratios->first_vertex[surface] + vertex) + back];
 }
 
 #endif

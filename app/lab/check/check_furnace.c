@@ -16,7 +16,8 @@ struct albedo {
 
 static bool is_two_lobes(const tl_material *material)
 {
-    return !tl_material_is_faceted(material) && !(material->coat > 0) && !tl_material_shows_more(material);
+    return !tl_material_is_faceted(material) && !(material->coat > 0) && !tl_material_has_fuzz(material) &&
+           !tl_material_shows_more(material);
 }
 
 static void add_sample(const struct tl_resources *inside, const tl_sample *sample, struct albedo *albedo)

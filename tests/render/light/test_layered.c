@@ -59,6 +59,7 @@ struct feature {
     float weft, warp, coat, transmission, openness;
     int ward;
     double error; /* relative RMSE against the oracle at most: see test_against_the_oracle */
+    float fuzz;
 };
 
 static const struct feature features[] = {
@@ -73,7 +74,9 @@ static const struct feature features[] = {
     {.name = "coat", .coat = 1, .error = 0.05},
     {.name = "transmission", .transmission = 0.5f, .error = 0.05},
     {.name = "openness", .openness = 0.4f, .error = 0.05},
-    {.name = "all", TL_REFLECT_WARD, 0.35f, 0.12f, 1, 0.3f, 0.4f, .error = 0.05},
+    {.name = "fuzz", .fuzz = 1, .error = 0.05},
+    {.name = "fuzz over a coat", .coat = 1, .fuzz = 0.5f, .transmission = 0.3f, .error = 0.05},
+    {.name = "all", TL_REFLECT_WARD, 0.35f, 0.12f, 1, 0.3f, 0.4f, .error = 0.05, .fuzz = 0.4f},
 };
 
 static void set_feature(const struct feature *feature, tl_material *material)
@@ -87,6 +90,7 @@ static void set_feature(const struct feature *feature, tl_material *material)
     material->coat_glossiness = 0.97f;
     material->transmission = (vec3s){{feature->transmission, feature->transmission, feature->transmission}};
     material->openness = feature->openness;
+    material->fuzz.colour = (vec3s){{feature->fuzz, 0.8f * feature->fuzz, 0.6f * feature->fuzz}};
 }
 
 /* Images may err as much as the method does with two lobes (3 to 5 % when each pixel has one sample), though
@@ -203,6 +207,7 @@ static void test_extremes(void **state)
         {.name = "facets 1", .model = TL_REFLECT_TORRANCE_SPARROW, .weft = 1},
         {.name = "open .99", .openness = 0.99f},
         {.name = "all through", .transmission = 1},
+        {.name = "all fuzz", .fuzz = 1},
         {.name = "everything", TL_REFLECT_BANKS, 1e-3f, 1, 1, 1, 0.99f, 0},
     };
     const float glossinesses[] = {0, 0.5f, 1};

@@ -114,11 +114,13 @@ static void shadows_equal_the_reference(void **state)
 static void layers_equal_the_reference(void **state)
 {
     struct test_device *device = *state;
-    for (int kind = 0; kind < 3; kind++) {
+    for (int kind = 0; kind < 4; kind++) {
         struct test_scene scene;
         test_scene_open_lamplit(&scene, shiny_sphere(32), 96, 96);
         tl_material *ball = &scene.shapes[0].material;
-        if (kind == 0) { /* a coat over Ward */
+        if (kind == 3) /* fibres over a coat */
+            ball->fuzz = (struct tl_fuzz){{{1, 0.8f, 0.5f}}, 0.5f};
+        if (kind == 0 || kind == 3) { /* a coat over Ward */
             ball->gloss = (struct tl_gloss){
                 .model = TL_REFLECT_WARD, .width_weft = 0.3f, .width_warp = 0.15f, .index = 1.5f};
             ball->coat = 0.8f;
@@ -151,11 +153,13 @@ static void layers_equal_the_reference(void **state)
         tl_image expected = test_scene_draw(&scene, device->renderer);
         scene.settings.light.method = TL_METHOD_PEM;
         struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
-        static const char *const names[] = {"coat", "voile", "mirror"};
+        static const char *const names[] = {"coat", "voile", "mirror", "fuzz"};
         print_message("%s: rel. RMSE %.4f, largest %.3f of the peak, %zu pixels\n", names[kind], off.rel_rmse,
                       off.largest, off.pixels);
         assert_true(off.pixels > 2000);
         assert_true(off.rel_rmse < 0.05);
+        if (kind == 0 || kind == 3)
+            assert_true(off.rel_rmse < 1e-3);
         if (kind == 2) { /* there is something to see in it */
             scene.settings.light.reflect_scene = false;
             assert_true(test_scene_error(&scene, device->renderer, &expected).rel_rmse > 0.2);

@@ -155,6 +155,12 @@ static void be_satin(struct drawn_scene *drawn)
     cloth->gloss.rotation = 0.3f;
 }
 
+static void be_fuzzy(struct drawn_scene *drawn)
+{
+    be_glossy(drawn);
+    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{1, 0.7f, 0.4f}}, 0.5f};
+}
+
 static void be_torrance_sparrow(struct drawn_scene *drawn)
 {
     be_glossy(drawn);
@@ -197,6 +203,12 @@ static void be_voile(struct drawn_scene *drawn)
     cloth_of(drawn)->diffuse = (vec3s){{0.46f, 0.46f, 0.45f}};
     cloth_of(drawn)->openness = 0.41f;
     cloth_of(drawn)->transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
+}
+
+static void be_fuzzy_voile(struct drawn_scene *drawn)
+{
+    be_voile(drawn);
+    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{0.7f, 0.7f, 0.7f}}, 0.6f};
 }
 
 static void be_open_all(struct drawn_scene *drawn)
@@ -303,6 +315,7 @@ static const struct picture_case pictures[] = {
     {"glossy", be_glossy, 0.0052, 0.0103, 0.0398, COVER_TOLERANCE},
     {"satin", be_satin, 0.0042, 0.0069, 0.0277, COVER_TOLERANCE},
     {"torrance-sparrow", be_torrance_sparrow, 0.0051, 0.0099, 0.0401, COVER_TOLERANCE},
+    {"fuzz", be_fuzzy, 0.0052, 0.0103, 0.0398, COVER_TOLERANCE},
     {"woven satin", be_woven, 0.0042, 0.0069, 0.0282, COVER_TOLERANCE},
     {"maps", be_mapped, 0.0185, 0.0493, 0.2082, COVER_TOLERANCE},
     {"cut-outs", be_holed, 0.0082, 0.0106, 0.0898, COVER_TOLERANCE},
@@ -313,6 +326,7 @@ static const struct picture_case pictures[] = {
     {"maps, scale 0.5", be_half_as_fine, 0.026, 0.069, 0.266, COVER_TOLERANCE},
     {"voile", be_voile, 0.0058, 0.009, 0.032, COVER_TOLERANCE},
     {"voile from below", be_voile_from_below, 0.0062, 0.0062, 0.0314, COVER_TOLERANCE},
+    {"voile with fuzz", be_fuzzy_voile, 0.0058, 0.009, 0.032, COVER_TOLERANCE},
     {"open, all of it", be_open_all, 0.0068, 0.0107, 0.0374, COVER_TOLERANCE},
     {"voile, scale 0.5", be_half_as_fine_voile, 0.0088, 0.0155, 0.076, 0.411},
 };
