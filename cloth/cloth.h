@@ -116,6 +116,12 @@ double tl_cloth_frame_speed(const tl_cloth *cloth);
 /* Whether settling has ended at rest; false for cloth that was not settled, or not long enough. */
 bool tl_cloth_is_settled(const tl_cloth *cloth);
 
+/* Closes the seams, without gravity, against a collider at rest; pairs that something holds apart stay open.
+ * Cloth that is not settled after that hangs in the air as it was sewn.
+ *
+ * Errors and Lifetime: as tl_cloth_settle. */
+bool tl_cloth_sew(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
+
 /* Closes the seams, resolves penetration at the start and simulates until the cloth is at rest, with strong
  * damping and against a collider at rest. The clock stays at 0. Reports progress; stops early when
  * tl_interrupted() is true.

@@ -78,35 +78,67 @@ static bool settle_coarser(tl_cloth *cloth, const tl_collider *collider)
     return carried;
 }
 
+static struct tl_advance_params advance_params(const struct tl_cloth_params *params, double drag)
+{
+    return (struct tl_advance_params){.drag = drag,
+                                      .contact_budget = CONTACT_BUDGET,
+                                      /* slower slip than settle_speed counts as rest: such contacts stick */
+                                      .min_slip_speed = fmax(TL_MIN_SLIP_SPEED, params->settle_speed)};
+}
+
+static bool close_seams(tl_cloth *cloth, const tl_collider *collider, const struct tl_cloth_params *params,
+                        tl_error *error)
+{
+    const struct tl_cloth_params now = params_of_phase(params, 0);
+    const double pair_count = (double)cloth->seams.pair_count;
+    struct tl_progress progress = tl_progress_begin("sewing");
+    bool good = true;
+    if (collider && cloth->seams.elapsed_s == 0)
+        tl_seams_find_ways(&cloth->seams, &cloth->topology, cloth->particles.x, collider);
+    while (good && tl_seams_are_closing(&cloth->seams)) {
+        const struct tl_advance_params advance = advance_params(params, tl_seams_drag(&cloth->seams));
+        tl_cloth_use_solver(cloth, &now);
+        good = tl_cloth_advance(cloth, collider, &advance, error);
+        tl_progress_update(&progress, pair_count - (double)cloth->seams.pair_count, pair_count);
+    }
+    tl_progress_end(&progress);
+    return good;
+}
+
+bool tl_cloth_sew(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    const struct tl_cloth_params chosen = cloth->params;
+    bool good = close_seams(cloth, collider, &chosen, error);
+    tl_cloth_use_solver(cloth, &chosen);
+    memset(cloth->particles.v, 0, cloth->particles.count * sizeof(vec3d));
+    return good;
+}
+
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
-    struct tl_progress progress = tl_progress_begin("settling the cloth");
-    double frame_s = 1 / params->frame_rate, settled_s = 0, phase_s = 0;
+    double frame_s = 1 / params->frame_rate;
+    /* The frame that ends sewing counts. */
+    double settled_s = tl_seams_are_closing(&cloth->seams) ? frame_s : 0, phase_s = settled_s;
     size_t phase = 0;
-    bool good = true, tried = false, carried = false;
-    struct stops stops = {0};
     cloth->settled = false;
-    if (collider && cloth->seams.elapsed_s == 0)
-        tl_seams_find_ways(&cloth->seams, &cloth->topology, cloth->particles.x, collider);
+    bool good = !(params->settle_s > 0) || close_seams(cloth, collider, params, error);
+    bool tried = false, carried = false;
+    struct tl_progress progress = tl_progress_begin("settling the cloth");
+    struct stops stops = {0};
     while (good && !cloth->settled && settled_s < params->settle_s) {
-        if (!tried && !tl_seams_are_closing(&cloth->seams)) {
+        if (!tried) {
             tried = true;
             tl_cloth_use_solver(cloth, params);
             carried = settle_coarser(cloth, collider);
             phase = carried ? TL_COUNT(phases) - 1 : phase;
         }
-        /* Slower slip than settle_speed counts as rest, so such contacts stick. */
-        const struct tl_advance_params advance = {
-            .drag = tl_seams_are_closing(&cloth->seams) ? tl_seams_drag(&cloth->seams) : phases[phase].drag,
-            .contact_budget = CONTACT_BUDGET,
-            .min_slip_speed = fmax(TL_MIN_SLIP_SPEED, params->settle_speed)};
+        const struct tl_advance_params advance = advance_params(params, phases[phase].drag);
         const struct tl_cloth_params now = params_of_phase(params, phase);
         tl_cloth_use_solver(cloth, &now);
         good = tl_cloth_advance(cloth, collider, &advance, error);
-        double elapsed_s = tl_seams_are_closing(&cloth->seams) ? 0 : frame_s;
-        settled_s += elapsed_s;
-        phase_s += elapsed_s;
+        settled_s += frame_s;
+        phase_s += frame_s;
         double min_s = carried ? CARRIED_MIN_S : phases[phase].min_s;
         bool at_rest = phase_s > min_s && tl_cloth_frame_speed(cloth) < params->settle_speed &&
                        (!carried || stops.frames >= FRAMES_TO_GATHER_SPEED);

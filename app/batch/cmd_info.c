@@ -171,7 +171,7 @@ static void describe_pins(cJSON *object, const tl_model *model)
         cJSON_AddNumberToObject(colours, tl_pin_colour_names[TL_PIN_RED + channel], (double)painted[channel]);
 }
 
-static cJSON *describe_model(const tl_model *model)
+static cJSON *describe_model(tl_model *model)
 {
     cJSON *object = cJSON_CreateObject();
     struct tl_box box = tl_box_of(model->mesh.positions, model->mesh.vertex_count);

@@ -5,6 +5,7 @@
 #include "assets/base/placing.h"
 #include "assets/charts/rest.h"
 #include "assets/pattern/pattern_cut.h"
+#include "assets/stitches/stitches.h"
 #include "cloth/contact/crossings.h"
 #include "config/memory.h"
 
@@ -58,6 +59,22 @@ static void describe_openings(cJSON *object, const tl_model *model)
     free(weld);
 }
 
+/* Lengths of the openings as they are cut, in mm: the panels hang apart. */
+static void describe_cut(cJSON *object, const tl_garment *garment)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    struct tl_openings openings = tl_sewn_openings(garment, mesh->positions, weld);
+    const struct tl_measures_source source = {.garment = garment, .positions = mesh->positions, .weld = weld};
+    struct tl_measures measures = tl_measures_take(&source);
+    cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
+    for (size_t i = 0; i < measures.opening_count; i++)
+        cJSON_AddNumberToObject(lengths, measures.openings[i].name, 1e3 * measures.openings[i].rest_m);
+    tl_measures_release(&measures);
+    tl_openings_release(&openings);
+    free(weld);
+}
+
 void tl_info_describe_sewn(cJSON *object, const tl_pattern *pattern)
 {
     const float edge_m = 0.02f;
@@ -67,24 +84,34 @@ void tl_info_describe_sewn(cJSON *object, const tl_pattern *pattern)
         cJSON_AddStringToObject(object, "openings_mm", error.message);
         return;
     }
-    const tl_mesh *mesh = &garment.model.mesh;
-    uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
-    struct tl_openings openings = tl_sewn_openings(&garment, mesh->positions, weld);
-    const struct tl_measures_source source = {
-        .garment = &garment, .positions = mesh->positions, .weld = weld};
-    struct tl_measures measures = tl_measures_take(&source);
-    cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
-    for (size_t i = 0; i < measures.opening_count; i++) /* at rest: the panels hang apart */
-        cJSON_AddNumberToObject(lengths, measures.openings[i].name, 1e3 * measures.openings[i].rest_m);
-    tl_measures_release(&measures);
-    tl_openings_release(&openings);
-    free(weld);
+    describe_cut(object, &garment);
     tl_garment_release(&garment);
 }
 
-void tl_info_describe_garment(cJSON *object, const tl_model *model)
+/* A file of panels and stitches, upright as it will be sewn. */
+static void describe_stitches(cJSON *object, tl_model *model)
+{
+    const struct tl_placing placing = {.z_up = model->units.z_up, .scale = 1};
+    tl_garment garment = {.model = *model};
+    tl_error error;
+    add_count(object, "stitches", model->stitch_count);
+    tl_stitches_sew(&garment);
+    tl_placing_apply(&placing, &garment.model.mesh);
+    struct tl_charts charts = tl_charts_find(&garment.model.mesh);
+    (void)tl_rest_take(TL_REST_AUTO, &charts, &garment, &error); /* AUTO takes what there is */
+    describe_cut(object, &garment);
+    tl_charts_release(&charts);
+    *model = garment.model;
+    garment.model = (tl_model){0};
+    tl_garment_release(&garment);
+}
+
+void tl_info_describe_garment(cJSON *object, tl_model *model)
 {
     add_count(object, "crossings", tl_crossings_of_mesh(&model->mesh, model->mesh.positions, NULL));
     describe_rest(object, model);
-    describe_openings(object, model);
+    if (model->stitch_count > 0)
+        describe_stitches(object, model);
+    else
+        describe_openings(object, model);
 }

@@ -7,8 +7,8 @@
 
 #include <cJSON.h>
 
-/* Adds members to the object. */
-void tl_info_describe_garment(cJSON *object, const tl_model *model);
+/* Adds members to the object. Sews the model if it has stitches: it may get more vertices. */
+void tl_info_describe_garment(cJSON *object, tl_model *model);
 
 /* Adds the openings of a sewing pattern: the edges that no stitch joins, as long as they are cut. */
 void tl_info_describe_sewn(cJSON *object, const tl_pattern *pattern);

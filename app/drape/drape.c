@@ -132,6 +132,7 @@ static struct tl_cache_key key_of(const struct tl_drape_request *request)
     size_t count = garment->model.mesh.vertex_count;
     tl_cache_key_add(&key, TL_DRAPE_VERSION, strlen(TL_DRAPE_VERSION));
     tl_cache_key_add(&key, &request->options, sizeof request->options);
+    tl_cache_key_add(&key, &request->only_sewn, sizeof request->only_sewn);
     add_mesh(&key, &garment->model.mesh);
     ADD(&key, garment->pattern, count);
     ADD(&key, garment->modelled, garment->model.mesh.index_count / 3);
@@ -153,12 +154,19 @@ static struct tl_cache_key key_of(const struct tl_drape_request *request)
 
 /* ---- Making, storing, restoring ---- */
 
+static bool settle(const struct tl_drape_request *request, tl_cloth *cloth, tl_collider *collider,
+                   tl_error *error)
+{
+    return request->only_sewn ? tl_cloth_sew(cloth, collider, error)
+                              : tl_cloth_settle(cloth, collider, error);
+}
+
 /* `strain`: as it hung before it was carried into a pose. */
 static tl_cloth *make(const struct tl_drape_request *request, tl_collider *collider, double *strain,
                       tl_error *error)
 {
     tl_cloth *cloth = tl_cloth_create(request->garment, request->fabric, request->params, error);
-    if (!cloth || (request->settles && !tl_cloth_settle(cloth, collider, error))) {
+    if (!cloth || (request->settles && !settle(request, cloth, collider, error))) {
         tl_cloth_destroy(&cloth);
         return NULL;
     }

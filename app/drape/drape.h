@@ -16,6 +16,7 @@ struct tl_drape_request {
     const struct tl_cloth_fabric *fabric;
     const struct tl_cloth_params *params;
     bool settles;     /* false: as authored; the cloth starts at the garment's own positions */
+    bool only_sewn;   /* where it settles: no further than until its seams are closed */
     uint64_t options; /* a hash of all options whose rows affect a drape */
 };
 

@@ -9,6 +9,7 @@
 #include "assets/pattern/pattern.h"
 #include "assets/pattern/pattern_worn.h"
 #include "assets/refine.h"
+#include "assets/stitches/stitches.h"
 #include "cloth/contact/collider.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -120,14 +121,15 @@ bool tl_scene_plays_motion(const struct tl_settings *settings)
 }
 
 /* Splits long edges, across which cloth cannot fold. A garment that is played back is left as it is: its
- * motion has one position for each vertex of the file. */
+ * motion has one position for each vertex of the file. So is one with seams, whose sides are divided alike.
+ */
 static bool refine_garment(const struct tl_settings *settings, tl_garment *garment, tl_error *error)
 {
     float max_m = settings->cloth.longest_edge_m;
     const tl_mesh *mesh = &garment->model.mesh;
     size_t triangles = mesh->index_count / 3;
     float longest_m = tl_mesh_longest_edge(mesh);
-    if (tl_scene_plays_motion(settings) || !(max_m > 0) || !(longest_m > max_m))
+    if (tl_scene_plays_motion(settings) || !(max_m > 0) || !(longest_m > max_m) || garment->seam_count > 0)
         return true;
     if (!tl_garment_refine(garment, max_m, error))
         return false;
@@ -180,7 +182,48 @@ static bool place_garment(const struct tl_settings *settings, tl_garment *garmen
     return true;
 }
 
-/* Reads the garment from a file, places, lifts and refines it. */
+/* Sews panels by the file's stitches. Their recorded motion is of the file's own vertices. */
+static void take_stitches(const struct tl_settings *settings, tl_garment *garment)
+{
+    if (tl_scene_plays_motion(settings))
+        return;
+    const struct tl_stitches_report report = tl_stitches_sew(garment);
+    if (report.sewn == 0)
+        return;
+    char *added = report.added > 0 ? tl_format("; %zu vertices were added, so that both sides of every seam "
+                                               "have as many",
+                                               report.added)
+                                   : tl_copy_string("");
+    tl_info("%s: its %zu stitches join %zu pairs of vertices%s", garment->model.name,
+            garment->model.stitch_count, report.sewn, added);
+    free(added);
+}
+
+/* The foot of the neck, as a share of the height: the head takes an eighth of it. */
+#define SHOULDER 0.83f
+
+/* Panels hang around the body that their maker had, which may have stood elsewhere. */
+static void report_hanging(const tl_garment *garment, const tl_avatar *wearer)
+{
+    if (!wearer || garment->seam_count == 0)
+        return;
+    struct tl_box panels = tl_box_of(garment->model.mesh.positions, garment->model.mesh.vertex_count);
+    struct tl_box body = tl_box_of(wearer->model.mesh.positions, wearer->model.mesh.vertex_count);
+    vec3s middle = glms_vec3_lerp(panels.lower, panels.upper, 0.5f);
+    float shoulder_m = body.lower.y + SHOULDER * (body.upper.y - body.lower.y);
+    bool is_around = middle.x > body.lower.x && middle.x < body.upper.x && middle.z > body.lower.z &&
+                     middle.z < body.upper.z;
+    if (!is_around || panels.lower.y < body.lower.y || panels.lower.y > body.upper.y)
+        tl_info(
+            "%s: its panels hang from %.2f to %.2f m, and %s stands from %.2f to %.2f m: --move %.2f,%.2f,"
+            "%.2f would hang their top at its shoulders",
+            garment->model.name, (double)panels.lower.y, (double)panels.upper.y, wearer->model.name,
+            (double)body.lower.y, (double)body.upper.y,
+            (double)(0.5f * (body.lower.x + body.upper.x) - middle.x), (double)(shoulder_m - panels.upper.y),
+            (double)(0.5f * (body.lower.z + body.upper.z) - middle.z));
+}
+
+/* Reads the garment from a file, places, lifts, sews and refines it. */
 static bool read_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
                          float *lifted_m, tl_error *error)
 {
@@ -191,7 +234,11 @@ static bool read_garment(const struct tl_settings *settings, const tl_avatar *we
     bool placed = place_garment(settings, out, error);
     if (placed)
         *lifted_m = lift_garment(settings, wearer, out);
-    if (placed && wearer)
+    if (placed) {
+        take_stitches(settings, out);
+        report_hanging(out, wearer);
+    }
+    if (placed && wearer && out->seam_count == 0)
         report_line(
             tl_describe_size(out->model.name, &out->model.mesh, wearer->model.name, &wearer->model.mesh));
     if (placed && refine_garment(settings, out, error) && take_rest(settings, out, error))

@@ -40,6 +40,7 @@ struct tl_session {
 
     tl_cloth *cloth; /* NULL: no garment, or one that is played back */
     bool authored;   /* the cloth starts as the garment's file has it */
+    bool only_sewn;  /* it starts as it is when its seams have closed */
     float lifted_m;  /* the garment, onto the ground */
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
@@ -100,6 +101,16 @@ static bool is_authored(const tl_session *session)
            (scene->drape == TL_DRAPE_AUTO && sewn && tl_option_is_file_name(scene->garment));
 }
 
+/* Nothing would hold up a garment that nobody wears and no pin holds: it is sewn and left in the air. */
+static bool is_only_sewn(const tl_session *session)
+{
+    const struct tl_settings *settings = &session->settings;
+    const tl_garment *garment = session->garment;
+    bool pinned = garment->pin_count > 0 || settings->cloth.pin_above_m > 0 ||
+                  settings->cloth.pin_colour != TL_PIN_NO_COLOUR;
+    return settings->scene.drape == TL_DRAPE_AUTO && !session->avatar && garment->seam_count > 0 && !pinned;
+}
+
 /* Starts as authored: the cloth is not settled, and no image shows normals other than the file's before it
  * has moved. */
 static void read_back_start(tl_session *session)
@@ -114,6 +125,7 @@ static bool drape(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
     session->authored = is_authored(session);
+    session->only_sewn = is_only_sewn(session);
     const tl_mesh *body = session->avatar ? &session->avatar->model.mesh : NULL;
     const struct tl_drape_request request = {
         .garment = session->garment,
@@ -122,6 +134,7 @@ static bool drape(tl_session *session, tl_error *error)
         .fabric = &settings->fabric,
         .params = &settings->cloth,
         .settles = !session->authored,
+        .only_sewn = session->only_sewn,
         .options = tl_settings_hash(settings, (struct tl_option_filter){.any_of = TL_AFFECTS_DRAPE}),
     };
     session->collider = tl_collider_create(body, settings->image.ground, error);
@@ -718,7 +731,8 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
     return nearest < FLT_MAX;
 }
 
-const char *const tl_garment_state_names[] = {"", "as authored", "at rest", "moved, not at rest"};
+const char *const tl_garment_state_names[] = {"", "as authored", "sewn, not draped", "at rest",
+                                              "moved, not at rest"};
 
 enum tl_garment_state tl_session_garment_state(const tl_session *session)
 {
@@ -726,6 +740,8 @@ enum tl_garment_state tl_session_garment_state(const tl_session *session)
         return TL_GARMENT_IS_NOT_CLOTH;
     if (session->frame == 0 && session->authored && session->clip < 0)
         return TL_GARMENT_AUTHORED;
+    if (session->frame == 0 && session->only_sewn)
+        return TL_GARMENT_SEWN;
     bool rests = session->frame == 0
                      ? !session->authored && tl_cloth_is_settled(session->cloth)
                      : tl_cloth_frame_speed(session->cloth) < session->settings.cloth.settle_speed;
@@ -740,6 +756,11 @@ float tl_session_lifted_m(const tl_session *session)
 bool tl_session_is_authored(const tl_session *session)
 {
     return session->cloth && session->authored;
+}
+
+bool tl_session_is_undraped(const tl_session *session)
+{
+    return session->cloth && (session->authored || session->only_sewn);
 }
 
 bool tl_session_plays_clip(const tl_session *session)

@@ -175,6 +175,7 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
 enum tl_garment_state {
     TL_GARMENT_IS_NOT_CLOTH, /* none, a solid, or one that plays a recorded motion */
     TL_GARMENT_AUTHORED,
+    TL_GARMENT_SEWN, /* and not draped: nobody wears it */
     TL_GARMENT_AT_REST,
     TL_GARMENT_MOVED, /* not at rest */
 };
@@ -186,6 +187,10 @@ enum tl_garment_state tl_session_garment_state(const tl_session *session);
 
 /* True for cloth that starts as its file has it (scene.drape). Errors: none. Threads: the session's. */
 bool tl_session_is_authored(const tl_session *session);
+
+/* True for cloth that has not been draped: as authored, or only sewn. Errors: none. Threads: the session's.
+ */
+bool tl_session_is_undraped(const tl_session *session);
 
 /* By how much the garment stands above where its file has it: one without an avatar is lifted out of the
  * ground. Errors: none. Threads: the session's. */

@@ -2,6 +2,7 @@
 #include "app/settings/layers.h"
 
 #include "assets/base/units.h"
+#include "assets/garment.h"
 #include "assets/model.h"
 #include "assets/motion/motion_mesh.h"
 #include "assets/motion/point_cache.h"
@@ -66,7 +67,7 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_ENUM(struct tl_scene_params, drape, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
                    drape_names,
                    "how the garment starts: authored: as its file has it; settle: at rest on its avatar; "
-                   "auto: files as authored, the rest settled"),
+                   "auto: files as authored, the rest settled, or only sewn when nobody wears it"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),
@@ -201,8 +202,8 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
-/* A pattern in place of a scene is worn by the body that the options name. */
-static bool apply_pattern(const struct tl_binding *all, const char *path, tl_error *error)
+/* A pattern, or panels with stitches, in place of a scene are worn by the body that the options name. */
+static bool apply_garment(const struct tl_binding *all, const char *path, tl_error *error)
 {
     return tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
 }
@@ -244,9 +245,10 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
     bool applied = tl_point_cache_is_file(scene) ? apply_motion(all, scene, error)
-                   : tl_model_is_file(scene)     ? apply_model(all, scene, error)
-                   : tl_pattern_is_file(scene)   ? apply_pattern(all, scene, error)
-                                                 : apply_scene(all, scene, error);
+                   : tl_pattern_is_file(scene) || tl_garment_has_stitches(scene)
+                       ? apply_garment(all, scene, error)
+                   : tl_model_is_file(scene) ? apply_model(all, scene, error)
+                                             : apply_scene(all, scene, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
     return applied;
@@ -320,12 +322,12 @@ static bool read_colourways(struct tl_settings *settings, tl_error *error)
 /* A model alone is what a motion moves, and what --units means. */
 static void choose_role(struct tl_scene_params *scene)
 {
-    bool moves = strcmp(scene->motion, "none") != 0 && strcmp(scene->garment, "none") == 0 &&
-                 tl_option_is_file_name(scene->avatar);
+    bool is_alone = strcmp(scene->garment, "none") == 0;
+    bool moves = strcmp(scene->motion, "none") != 0 && is_alone && tl_option_is_file_name(scene->avatar);
     if (moves) {
         strcpy(scene->garment, scene->avatar);
         strcpy(scene->avatar, "none");
-    } else if (scene->avatar_units == TL_UNITS_AUTO) {
+    } else if (is_alone && scene->avatar_units == TL_UNITS_AUTO) {
         scene->avatar_units = scene->units;
     }
 }

@@ -63,11 +63,11 @@ void tl_act_drape(struct tl_review *review, int argument)
     const struct tl_settings *shown = tl_session_settings(review->session);
     if (!tl_session_cloth(review->session))
         tl_review_report(review, "there is no cloth to drape");
-    else if (tl_session_is_authored(review->session))
+    else if (tl_session_is_undraped(review->session))
         tl_review_set(review, "scene.drape", "settle");
     else
         tl_act_reset(review, argument);
-    if (strcmp(tl_settings_avatar(&shown->scene), "none") == 0 && tl_session_is_authored(review->session))
+    if (strcmp(tl_settings_avatar(&shown->scene), "none") == 0 && tl_session_is_undraped(review->session))
         tl_review_report(review, "draping without an avatar: nothing holds the garment up");
 }
 

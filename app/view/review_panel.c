@@ -173,13 +173,13 @@ static void describe_status(const struct tl_review *review, char *status, size_t
     const char *stop = status + size;
     char *end = status;
     *end = '\0';
-    bool drapes = review->loader && (review->drapes_again || (state == TL_GARMENT_AUTHORED &&
-                                                              review->wanted.scene.drape == TL_DRAPE_SETTLE));
+    bool undraped = state == TL_GARMENT_AUTHORED || state == TL_GARMENT_SEWN;
+    bool drapes = review->loader &&
+                  (review->drapes_again || (undraped && review->wanted.scene.drape == TL_DRAPE_SETTLE));
     if (drapes)
         end = append(end, stop, "draping  ");
     else if (state != TL_GARMENT_IS_NOT_CLOTH)
-        end = append(end, stop, "%s%s  ", tl_garment_state_names[state],
-                     state == TL_GARMENT_AUTHORED ? " (D drapes it)" : "");
+        end = append(end, stop, "%s%s  ", tl_garment_state_names[state], undraped ? " (D drapes it)" : "");
     if (review->playing && review->play_speed < 0.95)
         end =
             append(end, stop, "plays at %.1f x: this machine is slower than the cloth  ", review->play_speed);

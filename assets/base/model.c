@@ -81,6 +81,7 @@ void tl_model_release(tl_model *model)
     free(model->materials);
     free(model->clips);
     free(model->points);
+    free(model->stitches);
     free(model->pins);
     free(model->colours);
     free(model->name);

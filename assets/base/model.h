@@ -22,6 +22,11 @@ struct tl_material_extension { /* what a material of a glTF file names, and what
     const char *shown; /* "exact", "approximated", "ignored" */
 };
 
+struct tl_stitch { /* of an OBJ file: a point is sewn to one of an edge (assets/stitches/stitches.h) */
+    uint32_t point, edge[2]; /* points of the file */
+    float at;                /* share of the edge, from its first end */
+};
+
 struct tl_variant { /* KHR_materials_variants: another choice of materials for the same parts */
     char name[64];
     int *materials; /* [mesh.part_count] */
@@ -46,6 +51,8 @@ typedef struct tl_model {
      */
     size_t point_count;
     uint32_t *points; /* [vertex_count] point of each vertex; NULL: each is its own */
+    size_t stitch_count;
+    struct tl_stitch *stitches;
     /* Two ways to mark the vertices that hold cloth in place; NULL: the file has none. A glTF's attribute
      * _PIN (or _pin; such names are free to applications [glTF 2.0, 3.7.2.1]), 0 where a part has none; and
      * COLOR_0, white where a part has none. */

@@ -33,6 +33,8 @@ struct wave_object {
     vec3s *normals;   /* not yet unit */
     struct wave_corner *corners;
     struct wave_face *faces;
+    size_t stitch_count;
+    struct tl_stitch *stitches;
     char **materials; /* names; the first is "", of faces without one */
     char **libraries; /* names of MTL files, as given */
     size_t ignored_count;
@@ -42,6 +44,9 @@ struct wave_object {
 /* Reads and checks a whole file: every number is finite, every index in range. wave_release frees *out. */
 bool wave_read(const char *path, struct wave_object *out, tl_error *error);
 void wave_release(struct wave_object *object);
+
+/* Whether the file has stitches; false for one that cannot be read. Reads all of it, but parses nothing. */
+bool wave_has_stitches(const char *path);
 
 /* Reads an OBJ file and its MTL files into a model of which only the name is set. On failure the caller
  * releases it. */

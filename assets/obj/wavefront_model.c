@@ -178,6 +178,9 @@ bool wave_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_e
     wave_read_materials(path, &object, out);
     out->points = builder.points;
     out->point_count = object.position_count;
+    out->stitch_count = object.stitch_count;
+    out->stitches = object.stitches;
+    object.stitches = NULL;
     free(builder.vertices);
     free(builder.corner_vertices);
     wave_release(&object);

@@ -1,6 +1,7 @@
 #include "assets/obj/wavefront_internal.h"
 #include "assets/text/text.h"
 
+#include "config/file.h"
 #include "config/memory.h"
 
 #include <errno.h>
@@ -11,13 +12,14 @@
 #define LIMIT_FACE_CORNERS 1024 /* ear clipping takes their square */
 #define LIMIT_MATERIALS    1024
 #define LIMIT_LIBRARIES    16
+#define LIMIT_STITCHES     ((size_t)1 << 20)
 #define LIMIT_IGNORED      16 /* keywords listed; a file that is no OBJ has thousands */
 
 /* The state of reading. */
 struct obj_reader {
     struct tl_text text;
     struct wave_object *object;
-    size_t position_capacity, uv_capacity, normal_capacity, corner_capacity, face_capacity;
+    size_t position_capacity, uv_capacity, normal_capacity, corner_capacity, face_capacity, stitch_capacity;
     uint32_t group, material; /* of the next face */
     tl_error *error;
 };
@@ -135,6 +137,34 @@ static size_t find_or_add(char ***strings, size_t *count, size_t limit, const ch
     return (*count)++;
 }
 
+/* Codim-IPC's lines: a vertex, the two ends of an edge, all from 0, and where on that edge. */
+static bool read_stitch(struct obj_reader *reader)
+{
+    struct wave_object *object = reader->object;
+    uint32_t points[3];
+    if (object->stitch_count == LIMIT_STITCHES)
+        return fail_limit(reader, "stitches", LIMIT_STITCHES);
+    for (int i = 0; i < 3; i++) {
+        const char *word = tl_text_word(&reader->text);
+        char *end = NULL;
+        errno = 0;
+        unsigned long value = word && word[0] >= '0' && word[0] <= '9' ? strtoul(word, &end, 10) : 0;
+        if (!end || *end || errno || value >= TL_LIMIT_MESH_VERTICES)
+            return tl_fail(reader->error, TL_INPUT,
+                           "%s: line %zu: stitch: \"%.40s\" is no vertex: expected a vertex and the two ends "
+                           "of an edge, counted from 0, and where on the edge, 0 to 1",
+                           reader->text.path, reader->text.line, word ? word : "");
+        points[i] = (uint32_t)value;
+    }
+    float at;
+    if (!tl_text_numbers(&reader->text, "place on a stitch's edge", 1, &at, reader->error))
+        return false;
+    object->stitches =
+        grow(object->stitches, object->stitch_count, &reader->stitch_capacity, sizeof *object->stitches);
+    object->stitches[object->stitch_count++] = (struct tl_stitch){points[0], {points[1], points[2]}, at};
+    return true;
+}
+
 static bool use_material(struct obj_reader *reader)
 {
     struct wave_object *object = reader->object;
@@ -198,6 +228,8 @@ static bool read_line(struct obj_reader *reader, const char *keyword)
         return read_normal(reader);
     if (strcmp(keyword, "f") == 0)
         return read_face(reader);
+    if (strcmp(keyword, "stitch") == 0)
+        return read_stitch(reader);
     if (strcmp(keyword, "usemtl") == 0)
         return use_material(reader);
     if (strcmp(keyword, "g") == 0 || strcmp(keyword, "o") == 0)
@@ -227,6 +259,34 @@ static bool check_corners(const struct obj_reader *reader)
     return true;
 }
 
+static bool check_stitches(const struct obj_reader *reader)
+{
+    const struct wave_object *object = reader->object;
+    for (size_t i = 0; i < object->stitch_count; i++) {
+        const struct tl_stitch *stitch = &object->stitches[i];
+        if (stitch->point >= object->position_count || stitch->edge[0] >= object->position_count ||
+            stitch->edge[1] >= object->position_count)
+            return tl_fail(reader->error, TL_INPUT,
+                           "%s: stitch %zu has a vertex out of range: there are %zu, counted from 0: export "
+                           "the file again",
+                           reader->text.path, i + 1, object->position_count);
+    }
+    return true;
+}
+
+bool wave_has_stitches(const char *path)
+{
+    static const char keyword[] = "\nstitch ";
+    char *data;
+    size_t size;
+    tl_error error;
+    if (!tl_path_has_extension(path, "obj") || !tl_file_read(path, &data, &size, &error))
+        return false;
+    bool found = memmem(data, size, keyword, sizeof keyword - 1) != NULL;
+    free(data);
+    return found;
+}
+
 bool wave_read(const char *path, struct wave_object *out, tl_error *error)
 {
     *out = (struct wave_object){0};
@@ -237,7 +297,7 @@ bool wave_read(const char *path, struct wave_object *out, tl_error *error)
     bool good = true;
     for (const char *keyword; good && (keyword = tl_text_line(&reader.text));)
         good = read_line(&reader, keyword);
-    good = good && check_corners(&reader);
+    good = good && check_corners(&reader) && check_stitches(&reader);
     tl_text_close(&reader.text);
     if (!good)
         wave_release(out);
@@ -261,5 +321,6 @@ void wave_release(struct wave_object *object)
     free(object->normals);
     free(object->corners);
     free(object->faces);
+    free(object->stitches);
     *object = (struct wave_object){0};
 }

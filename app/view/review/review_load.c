@@ -93,7 +93,7 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
 static bool hangs(const struct tl_review *review)
 {
     return !review->playing && tl_session_frame_number(review->session) == 0 &&
-           tl_session_cloth(review->session) && !tl_session_is_authored(review->session);
+           tl_session_cloth(review->session) && !tl_session_is_undraped(review->session);
 }
 
 /* Whether the garment hangs in another fabric than it was draped in: it would hang otherwise. Cloth that

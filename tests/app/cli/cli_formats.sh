@@ -106,7 +106,9 @@ mv seen.exr start.exr
 $TOILE render morph.glb $small --set image.ground=false --frame 30 -o seen.exr
 check "morph.glb: its clip bends it" sh -c "! cmp -s start.exr seen.exr"
 open_file dyed.obj '^ *name red$'
-open_file panels.obj '^parts 1$'
+open_file panels.obj '^stitches 22$'
+$TOILE export panels.obj --set image.ground=false --quiet -o sewn.obj
+check "panels.obj: its sides are sewn" sh -c "$TOILE info sewn.obj --json | tr -d ' \n\t' | grep -Eq '\"openings_mm\":\{[^,]*,[^,]*\}'"
 open_file tube.json '^stitches 2$' --set cloth.settle_s=0.2
 open_file scan.ply '^units mm$'
 open_file moved.pc2 '^points 81$'
