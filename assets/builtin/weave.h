@@ -7,9 +7,21 @@
 #include "assets/base/material.h"
 #include "config/options.h"
 
-/* The face of the cloth: twill is 3/1, its lines rising to the right (Z); satin is of five ends, counter 2;
- * in both the warp floats on the face. */
-enum tl_weave_pattern { TL_WEAVE_NONE, TL_WEAVE_PLAIN, TL_WEAVE_TWILL, TL_WEAVE_SATIN };
+/* The face of the cloth: knits have loops (assets/builtin/knit.h), rib and purl change between their sides,
+ * interlock is two ribs locked into each other; pile is fibres alone, as of fleece, melton and velvet. Of
+ * weaves twill is 3/1, its lines rising to the right (Z); satin is of five ends, counter 2; in both the warp
+ * floats on the face. */
+enum tl_weave_pattern {
+    TL_WEAVE_NONE,
+    TL_WEAVE_PLAIN,
+    TL_WEAVE_TWILL,
+    TL_WEAVE_SATIN,
+    TL_WEAVE_JERSEY,
+    TL_WEAVE_RIB,
+    TL_WEAVE_INTERLOCK,
+    TL_WEAVE_PURL,
+    TL_WEAVE_PILE
+};
 
 /* The section of a yarn: an ellipse, of twisted yarns; or a parabola, of filaments that lie flat side by
  * side. The slopes of the ellipse have no bound at its edges, those of the parabola are spread evenly. */
@@ -25,7 +37,20 @@ struct tl_weave_params {
     float weft_gloss;    /* ... on weft yarns */
     float warp_tint[3];  /* factor on material.diffuse on warp yarns, linear */
     float weft_tint[3];
-    int texels_per_yarn; /* resolution of the maps */
+    int texels_per_yarn; /* resolution of the maps; of a wale in knits */
+    /* Knits */
+    float wale_mm, course_mm; /* distance between wales and between courses */
+    float yarn_mm;            /* diameter */
+    int rib;                  /* wales of a rib */
+    /* Fibres on weaves, knits and pile; the maps are of a larger piece then, which repeats less visibly */
+    float slub;     /* how much yarns of a weave vary in width and colour; 0: none does */
+    float nap;      /* area of the fibres that lie on the surface, as a multiple of the surface's */
+    float nap_mm;   /* their mean length */
+    float fibre_mm; /* their diameter */
+    float curl;     /* turns of a fibre in diameters: rad */
+    float clump_mm; /* PILE: size of its clumps, whose height is the crimp */
+    float melange;  /* how much fibres differ in colour */
+    float cavity;   /* how much valleys darken: 0 with horizon maps, which show it themselves */
     /* A picture of heights instead of yarns (app/scene/height_picture.h reads it) */
     char picture[TL_STRING_SIZE]; /* "": none */
     float picture_mm;             /* its width on the cloth: of a repeat */
@@ -35,7 +60,8 @@ struct tl_weave_params {
 #define TL_WEAVE_DEFAULTS                                                                                    \
     .pattern = TL_WEAVE_PLAIN, .warp_pitch_mm = 0.4f, .weft_pitch_mm = 0.4f, .crimp_mm = 0.1f,               \
     .warp_tint = {1, 1, 1}, .weft_tint = {1, 1, 1}, .texels_per_yarn = 32, .picture_mm = 10,                 \
-    .depth_mm = 0.5f
+    .depth_mm = 0.5f, .wale_mm = 0.7f, .course_mm = 0.55f, .yarn_mm = 0.3f, .rib = 2, .nap_mm = 1.5f,        \
+    .fibre_mm = 0.03f, .curl = 0.03f, .clump_mm = 2, .cavity = 1
 extern const struct tl_option_table tl_weave_options; /* "weave" */
 
 /* Makes the maps of one repeat. False, without an error, for the pattern NONE. */

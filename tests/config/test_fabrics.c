@@ -36,8 +36,17 @@ static void check_cloth(const char *name, const struct tl_cloth_fabric *fabric)
 /* Yarn pitches are those of garment fabrics; the crimp is below the finer of them. */
 static void check_weave(const char *name, const struct tl_weave_params *weave)
 {
-    if (weave->pattern == TL_WEAVE_NONE)
+    if (weave->pattern == TL_WEAVE_NONE || weave->pattern == TL_WEAVE_PILE)
         return;
+    if (weave->pattern >=
+        TL_WEAVE_JERSEY) { /* loops touch their neighbours and are higher than they are wide */
+        check_between(name, "wale spacing", (double)weave->wale_mm, 0.3, 1.5);
+        check_between(name, "course spacing", (double)weave->course_mm, 0.6 * (double)weave->wale_mm,
+                      (double)weave->wale_mm);
+        check_between(name, "yarn", (double)weave->yarn_mm, 0.3 * (double)weave->wale_mm,
+                      0.6 * (double)weave->wale_mm);
+        return;
+    }
     check_between(name, "warp pitch", (double)weave->warp_pitch_mm, 0.1, 1.5);
     check_between(name, "weft pitch", (double)weave->weft_pitch_mm, 0.1, 1.5);
     double finer = fmin((double)weave->warp_pitch_mm, (double)weave->weft_pitch_mm);
