@@ -104,5 +104,6 @@ struct tl_tile tl_pile_make(const struct tl_weave_params *params)
             tile.heights[(size_t)row * PILE_TEXELS + (size_t)column] =
                 (float)(0.5e-3 * (double)params->crimp_mm *
                         clumps_at((column + 0.5) / PILE_TEXELS, (row + 0.5) / PILE_TEXELS, cells));
+    tl_tile_even_heights(&tile);
     return tile;
 }

@@ -111,6 +111,57 @@ static float height_at(const struct tl_tile *tile, int column, int row)
         ->heights[(size_t)near(row, tile->height) * (size_t)tile->width + (size_t)near(column, tile->width)];
 }
 
+/* Means over `width` of `count` values that lie `stride` apart and repeat, by a running sum. */
+static void blur_line(const float *from, float *to, int count, size_t stride, int width)
+{
+    double sum = 0;
+    for (int i = 0; i < width; i++)
+        sum += (double)from[(size_t)near(i - width / 2 - 1, count) * stride];
+    for (int i = 0; i < count; i++) {
+        sum += (double)from[(size_t)near(i + width - width / 2 - 1, count) * stride] -
+               (double)from[(size_t)near(i - width / 2 - 1, count) * stride];
+        to[(size_t)i * stride] = (float)(sum / width);
+    }
+}
+
+/* The mean about each texel, twice over a fifth of the tile, so that hardly any wave of that length is left.
+ */
+static float *blurred(const struct tl_tile *tile, const float *values, size_t channels)
+{
+    const size_t row = channels * (size_t)tile->width, count = row * (size_t)tile->height;
+    float *a = TL_NEW_ARRAY(float, count), *b = TL_NEW_ARRAY(float, count);
+    for (int pass = 0; pass < 2; pass++) {
+        const float *from = pass == 0 ? values : b;
+        for (size_t y = 0; y < (size_t)tile->height; y++)
+            for (size_t c = 0; c < channels; c++)
+                blur_line(from + y * row + c, a + y * row + c, tile->width, channels, tile->width / 5);
+        for (size_t x = 0; x < row; x++)
+            blur_line(a + x, b + x, tile->height, row, tile->height / 5);
+    }
+    free(a);
+    return b;
+}
+
+void tl_tile_even_heights(struct tl_tile *tile)
+{
+    float *means = blurred(tile, tile->heights, 1);
+    for (size_t i = 0; i < (size_t)tile->width * (size_t)tile->height; i++)
+        tile->heights[i] -= means[i];
+    free(means);
+}
+
+void tl_tile_even_tints(struct tl_tile *tile)
+{
+    const size_t count = 3 * (size_t)tile->width * (size_t)tile->height;
+    float *means = blurred(tile, tile->tints, 3);
+    double sums[3] = {0};
+    for (size_t i = 0; i < count; i++)
+        sums[i % 3] += (double)tile->tints[i];
+    for (size_t i = 0; i < count; i++)
+        tile->tints[i] *= means[i] > 0 ? (float)(3 * sums[i % 3] / (double)count) / means[i] : 1;
+    free(means);
+}
+
 #define DIRECTIONS 8
 #define STEPS      9
 

@@ -44,6 +44,11 @@ double tl_tile_fibres(uint32_t seed, double across, double run, double ply_m, do
  * has its colour from afar. */
 void tl_tile_shade(struct tl_tile *tile, float share);
 
+/* Evens out what is wider than a fifth of the tile, which would show from afar as a pattern of tiles: heights lose
+ * their mean there, colours keep the tile's. */
+void tl_tile_even_heights(struct tl_tile *tile);
+void tl_tile_even_tints(struct tl_tile *tile);
+
 /* The maps of a weave from the tile: normals by central differences, gloss 0, heights about their mean. */
 tl_weave tl_tile_weave(const struct tl_tile *tile);
 

@@ -276,6 +276,7 @@ static void make_piece(const struct tl_weave_params *params, struct weaving *wea
     if (params->nap > 0)
         tl_nap_lay(params, tint, &tile);
     tl_tile_shade(&tile, params->cavity);
+    tl_tile_even_tints(&tile);
     *out = tl_tile_weave(&tile);
     tl_tile_release(&tile);
 }

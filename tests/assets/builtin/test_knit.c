@@ -217,6 +217,31 @@ static void test_maps(void **state)
     }
 }
 
+/* From afar a tile has one brightness: means over a quarter of it differ by 2 %, though clumps and
+ * yarns differ by a tenth and more. */
+static void test_no_pattern_of_tiles(void **state)
+{
+    (void)state;
+    for (int pattern = TL_WEAVE_PLAIN; pattern <= TL_WEAVE_PILE; pattern++) {
+        const struct tl_weave_params params = furry(pattern);
+        tl_weave weave = make(&params);
+        const int width = weave.tint.width, height = weave.tint.height;
+        double means[4][4] = {{0}}, least = 2, most = 0;
+        for (int row = 0; row < height; row++)
+            for (int column = 0; column < width; column++)
+                means[row * 4 / height][column * 4 / width] +=
+                    (double)tl_image_floats(&weave.tint)[3 * (row * width + column) + 1] * 16 /
+                    (width * height);
+        for (int i = 0; i < 16; i++) {
+            least = fmin(least, means[i / 4][i % 4]);
+            most = fmax(most, means[i / 4][i % 4]);
+        }
+        print_message("pattern %d: means of quarters %.4f to %.4f\n", pattern, least, most);
+        assert_true(most - least < 0.025);
+        tl_weave_release(&weave);
+    }
+}
+
 /* A ball of a strand that lies on the tile's corner is seen in all four. */
 static void test_a_strand_at_the_corner(void **state)
 {
@@ -236,8 +261,11 @@ static void test_a_strand_at_the_corner(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacings), cmocka_unit_test(test_ribs),
-                                       cmocka_unit_test(test_purl_and_interlock), cmocka_unit_test(test_maps),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacings),
+                                       cmocka_unit_test(test_ribs),
+                                       cmocka_unit_test(test_purl_and_interlock),
+                                       cmocka_unit_test(test_maps),
+                                       cmocka_unit_test(test_no_pattern_of_tiles),
                                        cmocka_unit_test(test_a_strand_at_the_corner)};
     return cmocka_run_group_tests_name("knit", tests, NULL, NULL);
 }
