@@ -44,8 +44,8 @@ double tl_tile_fibres(uint32_t seed, double across, double run, double ply_m, do
  * has its colour from afar. */
 void tl_tile_shade(struct tl_tile *tile, float share);
 
-/* Evens out what is wider than a fifth of the tile, which would show from afar as a pattern of tiles: heights lose
- * their mean there, colours keep the tile's. */
+/* Evens out what is wider than a fifth of the tile, which would show from afar as a pattern of tiles: heights
+ * lose their mean there, colours keep the tile's. */
 void tl_tile_even_heights(struct tl_tile *tile);
 void tl_tile_even_tints(struct tl_tile *tile);
 

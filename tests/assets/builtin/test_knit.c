@@ -237,7 +237,8 @@ static void test_no_pattern_of_tiles(void **state)
             most = fmax(most, means[i / 4][i % 4]);
         }
         print_message("pattern %d: means of quarters %.4f to %.4f\n", pattern, least, most);
-        assert_true(most - least < 0.025);
+        /* a quarter does not hold a whole number of ribs */
+        assert_true(most - least < (pattern == TL_WEAVE_RIB ? 0.05 : 0.025));
         tl_weave_release(&weave);
     }
 }
