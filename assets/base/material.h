@@ -29,14 +29,25 @@ struct tl_map {
     bool clamp_u, clamp_v; /* else repeat */
 };
 
+/* Warp and weft yarns of a fabric that differ in brightness, each along all of the cloth. Two tables one
+ * after the other: the sums of the deviations of yarns 0, 1, ... from the mean, which begin and end with 0.
+ * Primes, so that what they do together repeats after metres. */
+#define TL_WARP_YARNS 1021
+#define TL_WEFT_YARNS 877
+struct tl_yarns {
+    float pitch_m[2]; /* of warp yarns along u, of weft yarns along v */
+    float sums[TL_WARP_YARNS + TL_WEFT_YARNS + 2];
+};
+
 /* A woven fabric's repeat, in metres: tiles over the surface in metric UV (see tl_mesh_part.uv_metres). Made
  * by assets/builtin/weave.h. All maps have the same size and are periodic. */
 typedef struct tl_weave {
-    float size_m[2]; /* metres per repeat along u (weft direction) and v (warp direction) */
-    tl_image normal; /* U8 x3, linear: tangent space, +Y up (0.5 + 0.5 n) */
-    tl_image height; /* F32 x1, metres */
-    tl_image gloss;  /* F32 x1: what is added to the material's glossiness; mean about 0 */
-    tl_image tint;   /* F32 x3: factor on the diffuse colour (yarn colours) */
+    float size_m[2];        /* metres per repeat along u (weft direction) and v (warp direction) */
+    tl_image normal;        /* U8 x3, linear: tangent space, +Y up (0.5 + 0.5 n) */
+    tl_image height;        /* F32 x1, metres */
+    tl_image gloss;         /* F32 x1: what is added to the material's glossiness; mean about 0 */
+    tl_image tint;          /* F32 x3: factor on the diffuse colour (yarn colours) */
+    struct tl_yarns *yarns; /* factor on all colours; NULL: yarns are alike. Owned */
 } tl_weave;
 
 /* The shape of the specular lobe; render/brdf has the formulas. PHONG is the lobe of the PEM method, K_s

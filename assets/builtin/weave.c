@@ -5,6 +5,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
 static const char *const pattern_names[] = {"none", "plain",     "twill", "satin", "jersey",
                                             "rib",  "interlock", "purl",  "pile",  NULL};
@@ -57,6 +58,10 @@ static const struct tl_option rows[] = {
     TL_OPTION_FLOAT(
         struct tl_weave_params, cavity, AFFECTS, 0, 1, "",
         "knits, slub and nap: how much valleys darken; 0 with detail.shadow horizon, which shows it itself"),
+    TL_OPTION_FLOAT(
+        struct tl_weave_params, streaks, AFFECTS, 0, 0.5, "",
+        "weaves and knits: how much yarns differ in brightness along all of the cloth, in streaks that do "
+        "not repeat; 0: they are alike"),
     TL_OPTION_PATH(struct tl_weave_params, picture, AFFECTS,
                    "image of heights in place of yarns, a repeating .png or .exr; empty: none"),
     TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, AFFECTS, 0.001, 10000, "mm",
@@ -281,11 +286,42 @@ static void make_piece(const struct tl_weave_params *params, struct weaving *wea
     tl_tile_release(&tile);
 }
 
-bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out)
+/* ---- Yarns that differ along all of the cloth ---- */
+
+/* Most of what a yarn deviates by is its own, the rest it shares with some neighbours, as those of one
+ * cone or of one day do. */
+static void sum_deviations(uint32_t seed, int count, double amount, float *sums)
 {
-    *out = (tl_weave){0};
-    if (params->pattern == TL_WEAVE_NONE)
-        return false;
+    double deviations[TL_WARP_YARNS], mean = 0, sum = 0;
+    for (int i = 0; i < count; i++) {
+        const double own = 2 * tl_tile_random(seed, i, 0) - 1;
+        deviations[i] =
+            amount * (own + 0.35 * tl_tile_noise(seed + 1, i * floor(count / 9.0) / count, count / 9));
+        mean += deviations[i] / count;
+    }
+    for (int i = 0; i < count; i++) {
+        sums[i] = (float)sum;
+        sum += deviations[i] - mean;
+    }
+    sums[count] = 0;
+}
+
+/* What lies on top counts: the warp in twill and satin, both in plain weaves, and loops across and along. */
+static struct tl_yarns *make_streaks(const struct tl_weave_params *params)
+{
+    static const double shares[] = {[TL_WEAVE_PLAIN] = 0.5, [TL_WEAVE_TWILL] = 0.75, [TL_WEAVE_SATIN] = 0.8};
+    const bool is_woven = params->pattern < TL_WEAVE_JERSEY;
+    const double warp = is_woven ? shares[params->pattern] : 0.3;
+    struct tl_yarns *yarns = TL_NEW(struct tl_yarns);
+    yarns->pitch_m[0] = 1e-3f * (is_woven ? params->warp_pitch_mm : params->wale_mm);
+    yarns->pitch_m[1] = 1e-3f * (is_woven ? params->weft_pitch_mm : params->course_mm);
+    sum_deviations(301, TL_WARP_YARNS, warp * (double)params->streaks, yarns->sums);
+    sum_deviations(401, TL_WEFT_YARNS, (1 - warp) * (double)params->streaks, yarns->sums + TL_WARP_YARNS + 1);
+    return yarns;
+}
+
+static void weave_repeat(const struct tl_weave_params *params, tl_weave *out)
+{
     const bool is_woven = params->pattern < TL_WEAVE_JERSEY;
     assert(params->pattern > TL_WEAVE_NONE && params->pattern <= TL_WEAVE_PILE);
     float warp_pitch = params->warp_pitch_mm, weft_pitch = params->weft_pitch_mm, crimp = params->crimp_mm;
@@ -295,7 +331,7 @@ bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out)
                               .weft = make_yarns(weft_pitch, warp_pitch, crimp, params->section, false)};
     if (!is_woven || params->nap > 0 || params->slub > 0 || params->melange > 0) {
         make_piece(params, &weaving, out);
-        return true;
+        return;
     }
     int repeat = weaving.drawing->repeat, side = repeat * params->texels_per_yarn;
     *out = (tl_weave){.size_m = {1e-3f * warp_pitch * (float)repeat, 1e-3f * weft_pitch * (float)repeat},
@@ -308,6 +344,16 @@ bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out)
         for (int column = 0; column < side; column++)
             fill_texel(&weaving, out, column, row);
     }
+}
+
+bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out)
+{
+    *out = (tl_weave){0};
+    if (params->pattern == TL_WEAVE_NONE)
+        return false;
+    weave_repeat(params, out);
+    if (params->streaks > 0 && params->pattern != TL_WEAVE_PILE)
+        out->yarns = make_streaks(params);
     return true;
 }
 
@@ -317,5 +363,6 @@ void tl_weave_release(tl_weave *weave)
     tl_image_release(&weave->height);
     tl_image_release(&weave->gloss);
     tl_image_release(&weave->tint);
+    free(weave->yarns);
     *weave = (tl_weave){0};
 }

@@ -44,6 +44,7 @@ struct tl_weave_params {
     int rib;                  /* wales of a rib */
     /* Fibres on weaves, knits and pile; the maps are of a larger piece then, which repeats less visibly */
     float slub;     /* how much yarns of a weave vary in width and colour; 0: none does */
+    float streaks;  /* how much yarns differ along all of the cloth (struct tl_yarns); 0: they do not */
     float nap;      /* area of the fibres that lie on the surface, as a multiple of the surface's */
     float nap_mm;   /* their mean length */
     float fibre_mm; /* their diameter */

@@ -10,6 +10,10 @@ static inline float term_max(float a, float b)
 {
     return a > b ? a : b;
 }
+static inline float term_min(float a, float b)
+{
+    return a < b ? a : b;
+}
 static inline float term_clamp(float x, float low, float high)
 {
     return x < low ? low : (x > high ? high : x);

@@ -5,6 +5,7 @@
 #include "render/brdf/fuzz.h"
 #include "render/construction/look.h"
 #include "render/detail/detail_terms.h"
+#include "render/detail/yarns.h"
 #include "render/env/exponent.h"
 #include "render/surfaces/surfaces.h"
 
@@ -185,6 +186,16 @@ static vec3s sewn_colour(const struct sample_place *place, vec3s cloth, vec3s th
     return cloth;
 }
 
+static vec3s by_yarns(const struct sample_place *place, vec3s colour)
+{
+    const tl_weave *weave = place->material->weave;
+    if (!place->woven || !weave->yarns)
+        return colour;
+    const struct tl_footprint *at = &place->footprint;
+    return glms_vec3_scale(colour,
+                           tl_yarn_factor(weave->yarns, place->uv_metres, at->uv, at->across, at->down));
+}
+
 static vec3s diffuse_of(const struct sample_place *place)
 {
     vec3s colour = place->material->diffuse;
@@ -192,6 +203,7 @@ static vec3s diffuse_of(const struct sample_place *place)
         colour = times_map(colour, map_at(place, TL_MAP_DIFFUSE));
     if (place->woven)
         colour = times_map(colour, weave_at(place, TL_WEAVE_TINT));
+    colour = by_yarns(place, colour);
     if (shows_back(place))
         colour = place->material->back.diffuse;
     if (has_map(place, TL_MAP_OCCLUSION)) {
@@ -216,6 +228,7 @@ static vec3s f0_of(const struct sample_place *place)
     vec3s f0 = place->material->specular;
     if (has_map(place, TL_MAP_SPECULAR))
         f0 = times_map(f0, map_at(place, TL_MAP_SPECULAR));
+    f0 = by_yarns(place, f0);
     if (shows_back(place))
         f0 = place->material->back.specular;
     return sewn_colour(place, f0, glms_vec3_minv(f0, glms_vec3_fill(CONSTRUCTION_THREAD_F0)));

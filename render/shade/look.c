@@ -2,6 +2,7 @@
 
 #include "render/construction/look.h"
 #include "render/detail/bump_statistics.h"
+#include "render/detail/yarns.h"
 
 /* ---- Maps ---- */
 
@@ -55,6 +56,19 @@ TL_INLINE void multiply(tl_quad values[TL_LANES], const tl_quad factors[TL_LANES
         values[i] *= factors[i];
 }
 
+TL_INLINE void tell_yarns_apart(struct tl_look_lanes *lanes)
+{
+    const struct tl_shade_part *part = lanes->part;
+    for (int i = 0; i < lanes->count; i++) {
+        const float factor =
+            tl_yarn_factor(part->yarns, part->uv_metres, (vec2s){{lanes->uv[0][i], lanes->uv[1][i]}},
+                           (vec2s){{lanes->change[0][0][i], lanes->change[1][0][i]}},
+                           (vec2s){{lanes->change[0][1][i], lanes->change[1][1][i]}});
+        lanes->diffuse[i] *= factor;
+        lanes->f0[i] *= factor;
+    }
+}
+
 /* A back of its own takes nothing from the front's maps. */
 TL_INLINE void show_backs(struct tl_look_lanes *lanes)
 {
@@ -102,6 +116,8 @@ TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_loo
         for (int i = 0; i < count; i++)
             lanes->glossiness[i] += texels[i][3];
     }
+    if (part->yarns)
+        tell_yarns_apart(lanes);
     show_backs(lanes);
     for (int i = 0; i < TL_LANES; i++)
         lanes->glossiness[i] = tl_maxf(tl_minf(lanes->glossiness[i], 1), 0);

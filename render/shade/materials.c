@@ -158,6 +158,8 @@ static void add_weave(struct tl_shade_materials *materials, float uv_metres, boo
         return;
     part->weave_scale[0] = uv_metres / weave->size_m[0];
     part->weave_scale[1] = uv_metres / weave->size_m[1];
+    part->yarns = weave->yarns;
+    part->uv_metres = uv_metres;
     part->weave_tint = find_image(materials, &weave->tint, PACKED_WEAVE, weave);
     if (moments)
         part->weave_moments = find_image(materials, &weave->normal, PACKED_MOMENTS, NULL);

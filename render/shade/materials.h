@@ -29,8 +29,10 @@ struct tl_shade_part {
     const struct tl_texels *weave_tint;  /* factor on kd; what is added to glossiness in the fourth channel */
     const struct tl_texels *weave_moments; /* NULL where they are not kept: */
     const struct tl_texels *weave_normal;
-    float weave_scale[2];      /* repeats per UV unit */
-    const tl_borders *borders; /* NULL: nothing is sewn; with the profiles of seams and hems: */
+    float weave_scale[2];         /* repeats per UV unit */
+    const struct tl_yarns *yarns; /* NULL: they are alike */
+    float uv_metres;              /* of a UV unit; read with yarns */
+    const tl_borders *borders;    /* NULL: nothing is sewn; with the profiles of seams and hems: */
     const struct tl_construction_tables *construction;
     float turn_cosine, turn_sine;   /* of gloss.rotation */
     bool has_maps;                  /* UV is read */

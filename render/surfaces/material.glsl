@@ -92,10 +92,44 @@ bool shows_back()
     return has_map(MAP_BACK) && !gl_FrontFacing;
 }
 
+#ifndef VERTEX_STAGE
+layout(std430, binding = 8) readonly buffer YarnSums
+{
+    float yarn_sums[];
+};
+
+float yarn_sum(float entry)
+{
+    return yarn_sums[int(entry)];
+}
+
+#include "yarn_terms.glsl"
+
+// The factor of yarns that differ from one another along all of the cloth.
+float yarns_here(vec2 uv)
+{
+    if (!has_map(MAP_YARNS))
+        return 1.0;
+#ifdef DETAIL_SHIFTED
+    vec2 across = unmoved_across, down = unmoved_down;
+#else
+    vec2 across = dFdx(uv), down = dFdy(uv);
+#endif
+    vec2 wide = yarn_rows.xy * sqrt(across * across + down * down), at = yarn_rows.xy * uv;
+    return yarn_factor(yarn_rows.z, yarn_rows.w, at.x, at.y, wide.x, wide.y);
+}
+#else
+float yarns_here(vec2 uv)
+{
+    return 1.0;
+}
+#endif
+
 vec3 diffuse(vec3 colour, vec2 uv)
 {
     if (has_map(MAP_WEAVE))
         colour *= weave_texel(weave_tint, uv).rgb;
+    colour *= yarns_here(uv);
     if (shows_back())
         colour = back_diffuse;
     if (has_map(MAP_OCCLUSION))
@@ -109,6 +143,7 @@ vec3 specular_f0(vec2 uv)
     vec3 f0 = material_specular;
     if (has_map(MAP_SPECULAR))
         f0 *= map_texel(specular_map, MAP_SPECULAR, uv).rgb;
+    f0 *= yarns_here(uv);
     if (shows_back())
         f0 = back_specular;
     return sewn_specular(f0);

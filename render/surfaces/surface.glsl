@@ -1,6 +1,6 @@
 // Material of the part being drawn, as tl_surfaces_draw sets it (surfaces.h has the same numbers).
 const int MAP_DIFFUSE = 0, MAP_NORMAL = 1, MAP_GLOSS = 2, MAP_SPECULAR = 3, MAP_OCCLUSION = 4, MAP_WEAVE = 5;
-const int MAP_SEWN = 6, MAP_BACK = 7; // no maps: borders near by, a back of its own
+const int MAP_SEWN = 6, MAP_BACK = 7, MAP_YARNS = 8; // no maps: borders near by, a back of its own, yarns that differ
 
 layout(location = 0) uniform vec3 material_diffuse;
 layout(location = 1) uniform vec3 material_specular;
@@ -21,6 +21,7 @@ layout(location = 112) uniform vec4 construction_rows;
 layout(location = 113) uniform vec3 construction_thread; // colour
 layout(location = 114) uniform vec3 back_diffuse;
 layout(location = 115) uniform vec3 back_specular;
+layout(location = 116) uniform vec4 yarn_rows; // yarns per UV unit along u and v; how many there are in each table
 
 layout(binding = 0) uniform sampler2D diffuse_map;
 layout(binding = 1) uniform sampler2D normal_map;

@@ -7,6 +7,7 @@
 #include <epoxy/gl.h>
 
 #include <stdlib.h>
+#include <string.h>
 
 enum storage { FIRSTS, NEAR, BORDERS, STORAGES };
 enum attribute { POSITION, NORMAL, TANGENT, UV, ATTRIBUTES };
@@ -16,6 +17,11 @@ struct uploaded {
     const tl_image *image;
     bool colour; /* sRGB-decoded: the same image could be used as data elsewhere */
     tl_texture texture;
+};
+
+struct yarn_table {
+    GLuint buffer; /* 0: the material's yarns are alike */
+    float pitch_m[2];
 };
 
 struct surface_item {
@@ -33,6 +39,7 @@ struct surface_item {
     size_t storage_bytes;
     GLuint *profiles;                      /* [material_count] buffers; 0: the material is not sewn */
     struct tl_construction_tables *tables; /* [material_count] */
+    struct yarn_table *yarns;              /* [material_count] */
 };
 
 struct tl_surfaces {
@@ -56,6 +63,9 @@ static void item_release(struct surface_item *item)
         glDeleteBuffers(STORAGES, item->storage);
         glDeleteBuffers((GLsizei)item->material_count, item->profiles);
     }
+    for (size_t m = 0; item->yarns && m < item->material_count; m++)
+        glDeleteBuffers(1, &item->yarns[m].buffer);
+    free(item->yarns);
     free(item->profiles);
     free(item->tables);
     if (item->vertex_array) {
@@ -232,6 +242,21 @@ static void send_storage(struct surface_item *item, enum storage storage, const 
     item->storage_bytes += bytes;
 }
 
+static void send_yarns(struct surface_item *item)
+{
+    item->yarns = TL_NEW_ARRAY(struct yarn_table, item->material_count);
+    for (size_t m = 0; m < item->material_count; m++) {
+        const tl_weave *weave = item->materials[m].weave;
+        if (!weave || !weave->yarns)
+            continue;
+        memcpy(item->yarns[m].pitch_m, weave->yarns->pitch_m, sizeof weave->yarns->pitch_m);
+        glCreateBuffers(1, &item->yarns[m].buffer);
+        glNamedBufferData(item->yarns[m].buffer, sizeof weave->yarns->sums, weave->yarns->sums,
+                          GL_STATIC_DRAW);
+        item->storage_bytes += sizeof weave->yarns->sums;
+    }
+}
+
 /* Sends the borders of pieces, and the profiles of the materials that have seams or hems. */
 static void send_construction(struct surface_item *item, const tl_surface *surface)
 {
@@ -284,6 +309,7 @@ static bool send_topology(tl_gpu *gpu, struct surface_item *item, const tl_surfa
             return false;
     }
     send_construction(item, surface);
+    send_yarns(item);
     item->topology_revision = surface->topology_revision;
     return true;
 }
@@ -336,6 +362,17 @@ static int bind_weave(const struct surface_item *item, const tl_weave *weave, fl
     return 1 << TL_MAP_USES;
 }
 
+static int bind_yarns(const struct surface_item *item, const struct tl_mesh_part *part)
+{
+    const struct yarn_table *yarns = &item->yarns[part->material];
+    if (yarns->buffer == 0 || !(part->uv_metres > 0))
+        return 0;
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, TL_STORAGE_YARNS, yarns->buffer);
+    glUniform4f(TL_UNIFORM_YARN_ROWS, part->uv_metres / yarns->pitch_m[0],
+                part->uv_metres / yarns->pitch_m[1], TL_WARP_YARNS, TL_WEFT_YARNS);
+    return TL_FLAG_YARNS;
+}
+
 /* `number` is that of the surface's first triangle in the shader. */
 static int bind_construction(const struct surface_item *item, const struct tl_mesh_part *part, size_t number)
 {
@@ -368,7 +405,7 @@ static void set_material(const struct surface_item *item, const struct tl_mesh_p
     const tl_material *material = &item->materials[part->material];
     glBindTextures(0, TL_MAP_USES + TL_WEAVE_USES, NULL);
     int flags = bind_weave(item, material->weave, part->uv_metres) | bind_construction(item, part, number) |
-                set_back(&material->back);
+                set_back(&material->back) | bind_yarns(item, part);
     float rows[TL_MAP_USES][6];
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
         const struct tl_map *map = map_of(material, use);

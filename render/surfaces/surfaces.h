@@ -40,14 +40,23 @@ enum tl_surface_uniform {
     TL_UNIFORM_SEWN_ROWS,
     TL_UNIFORM_SEWN_THREAD,
     TL_UNIFORM_BACK_DIFFUSE,
-    TL_UNIFORM_BACK_SPECULAR
+    TL_UNIFORM_BACK_SPECULAR,
+    TL_UNIFORM_YARN_ROWS
 };
-/* Bindings of shader storage: the borders by triangle, and the profiles of the part's material. */
-enum tl_surface_storage { TL_STORAGE_FIRSTS = 4, TL_STORAGE_NEAR, TL_STORAGE_BORDERS, TL_STORAGE_PROFILES };
+/* Bindings of shader storage: the borders by triangle, the profiles of the part's material, and its yarns. */
+enum tl_surface_storage {
+    TL_STORAGE_FIRSTS = 4,
+    TL_STORAGE_NEAR,
+    TL_STORAGE_BORDERS,
+    TL_STORAGE_PROFILES,
+    TL_STORAGE_YARNS
+};
 
 /* Seams and hems are drawn; the back has colours of its own. */
 #define TL_FLAG_SEWN (1 << (TL_MAP_USES + 1))
 #define TL_FLAG_BACK (1 << (TL_MAP_USES + 2))
+/* Yarns differ from one another. */
+#define TL_FLAG_YARNS (1 << (TL_MAP_USES + 3))
 /* The material's gloss is not a lobe about the mirror direction. */
 #define TL_FLAG_FACETED (1 << 30)
 

@@ -275,13 +275,54 @@ static void test_flat_cloth(void **state)
     tl_weave_release(&weave);
 }
 
+/* Sums of deviations begin and end with 0; no yarn deviates by more than its system's share of the amount and
+ * of what neighbours add to it; a satin's warp, which lies on top, varies most. */
+static void test_streaks(void **state)
+{
+    (void)state;
+    struct tl_weave_params params = params_of(TL_WEAVE_SATIN);
+    params.streaks = 0.2f;
+    tl_weave weave;
+    assert_true(tl_weave_create(&params, &weave));
+    assert_near(weave.yarns->pitch_m[0], 0.4e-3, 1e-9);
+    assert_near(weave.yarns->pitch_m[1], 0.5e-3, 1e-9);
+    const int counts[2] = {TL_WARP_YARNS, TL_WEFT_YARNS}, firsts[2] = {0, TL_WARP_YARNS + 1};
+    const double shares[2] = {0.8, 0.2};
+    for (int k = 0; k < 2; k++) {
+        const float *sums = weave.yarns->sums + firsts[k];
+        double square = 0, most = 0;
+        assert_near(sums[0], 0, 0);
+        assert_near(sums[counts[k]], 0, 0);
+        for (int i = 0; i < counts[k]; i++) {
+            const double deviation = (double)(sums[i + 1] - sums[i]);
+            square += deviation * deviation / counts[k];
+            most = fmax(most, fabs(deviation));
+        }
+        const double amount = shares[k] * 0.2;
+        print_message("system %d: root mean square %.4f, at most %.4f\n", k, sqrt(square), most);
+        assert_true(most < 1.4 * amount);
+        /* of what is even between -1 and 1 a third of the square; neighbours add less than half as much */
+        assert_true(sqrt(square) > 0.5 * amount && sqrt(square) < 0.7 * amount);
+    }
+    tl_weave_release(&weave);
+    params.streaks = 0;
+    assert_true(tl_weave_create(&params, &weave));
+    assert_null(weave.yarns);
+    tl_weave_release(&weave);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scale),       cmocka_unit_test(test_crests),
-        cmocka_unit_test(test_interlacing), cmocka_unit_test(test_normals_match_heights),
-        cmocka_unit_test(test_periodic),    cmocka_unit_test(test_mean_is_flat),
-        cmocka_unit_test(test_yarn_values), cmocka_unit_test(test_sections),
+        cmocka_unit_test(test_scale),
+        cmocka_unit_test(test_streaks),
+        cmocka_unit_test(test_crests),
+        cmocka_unit_test(test_interlacing),
+        cmocka_unit_test(test_normals_match_heights),
+        cmocka_unit_test(test_periodic),
+        cmocka_unit_test(test_mean_is_flat),
+        cmocka_unit_test(test_yarn_values),
+        cmocka_unit_test(test_sections),
         cmocka_unit_test(test_flat_cloth),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

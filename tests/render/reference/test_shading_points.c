@@ -75,6 +75,13 @@ static struct maps maps_make(void)
         for (int c = 0; c < 3; c++)
             tl_image_floats(&maps.weave.tint)[3 * i + c] = 0.7f + 0.2f * cosf((float)(i + 5 * c) * 0.3927f);
     }
+    maps.weave.yarns = TL_NEW(struct tl_yarns); /* deviations of up to 0.3 and 0.2, in smooth waves */
+    maps.weave.yarns->pitch_m[0] = 0.05f;
+    maps.weave.yarns->pitch_m[1] = 0.004f;
+    for (int i = 1; i < TL_WARP_YARNS; i++)
+        maps.weave.yarns->sums[i] = 0.3f * sinf((float)i);
+    for (int i = 1; i < TL_WEFT_YARNS; i++)
+        maps.weave.yarns->sums[TL_WARP_YARNS + 1 + i] = 0.2f * sinf(0.9f * (float)i);
     return maps;
 }
 
@@ -101,6 +108,7 @@ static void use_maps(tl_material *material, const struct maps *maps)
     material->occlusion_map = (struct tl_map){.image = &maps->data, .transform = plain};
     material->occlusion_strength = 0.6f;
     material->weave = &maps->weave;
+    material->specular = (vec3s){{0.3f, 0.3f, 0.3f}}; /* so that what changes it is beyond the tolerance */
     material->glossiness = 0.8f;
 }
 

@@ -26,7 +26,7 @@ enum { MAP_COLOUR, MAP_NORMAL, MAP_GLOSS, MAP_HOLES, MAP_COUNT };
 struct drawn_scene {
     struct test_scene scene, plain; /* with and without what an editor changed */
     tl_image maps[MAP_COUNT];
-    tl_weave weave;
+    tl_weave weave, streaked;
 };
 
 /* A dim blue sky, a warm wide lamp on one side, a sun on the other: nothing is the same when it is turned.
@@ -105,6 +105,7 @@ static void close_scene(struct drawn_scene *drawn)
 {
     test_scene_close(&drawn->scene);
     tl_weave_release(&drawn->weave);
+    tl_weave_release(&drawn->streaked);
     for (int i = 0; i < MAP_COUNT; i++)
         tl_image_release(&drawn->maps[i]);
 }
@@ -179,6 +180,19 @@ static void be_woven(struct drawn_scene *drawn)
         assert_true(tl_weave_create(&params, &drawn->weave));
     be_satin(drawn);
     cloth_of(drawn)->weave = &drawn->weave;
+}
+
+/* Yarns that differ along all of the cloth, broader than pixels and finer. */
+static void be_streaked(struct drawn_scene *drawn)
+{
+    struct tl_weave_params params = *(const struct tl_weave_params *)tl_weave_options.defaults;
+    params.warp_pitch_mm = 20;
+    params.weft_pitch_mm = 3;
+    params.streaks = 0.5f;
+    if (!drawn->streaked.yarns)
+        assert_true(tl_weave_create(&params, &drawn->streaked));
+    be_satin(drawn);
+    cloth_of(drawn)->weave = &drawn->streaked;
 }
 
 static void be_mapped(struct drawn_scene *drawn)
@@ -317,6 +331,7 @@ static const struct picture_case pictures[] = {
     {"torrance-sparrow", be_torrance_sparrow, 0.0051, 0.0099, 0.0401, COVER_TOLERANCE},
     {"fuzz", be_fuzzy, 0.0052, 0.0103, 0.0398, COVER_TOLERANCE},
     {"woven satin", be_woven, 0.0042, 0.0069, 0.0282, COVER_TOLERANCE},
+    {"streaks", be_streaked, 0.0042, 0.0069, 0.0282, COVER_TOLERANCE},
     {"maps", be_mapped, 0.0185, 0.0493, 0.2082, COVER_TOLERANCE},
     {"cut-outs", be_holed, 0.0082, 0.0106, 0.0898, COVER_TOLERANCE},
     {"maps, light turned", be_mapped_and_turned, 0.0179, 0.048, 0.1996, COVER_TOLERANCE},
