@@ -1,6 +1,6 @@
 /* Techniques of the experiments' table that have a golden name, drawn as the gallery draws them and compared
  * with the images in tests/app/lab/golden/: reflectance models, environment maps, fabric detail, shading
- * under a lamp, weaves, coats and open cloth. */
+ * under a lamp, weaves, knits, coats, fuzz and open cloth. */
 #include "tests/golden.h"
 
 #include "app/lab/experiments/experiments.h"
@@ -104,6 +104,11 @@ static void test_coat(void **state)
     check_family(*state, "coat");
 }
 
+static void test_fuzz(void **state)
+{
+    check_family(*state, "fuzz");
+}
+
 static void test_open_cloth(void **state)
 {
     check_family(*state, "open_cloth");
@@ -114,7 +119,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_brdf),       cmocka_unit_test(test_local), cmocka_unit_test(test_envmap),
         cmocka_unit_test(test_detail),     cmocka_unit_test(test_weave), cmocka_unit_test(test_coat),
-        cmocka_unit_test(test_open_cloth),
+        cmocka_unit_test(test_open_cloth), cmocka_unit_test(test_fuzz),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
