@@ -1,6 +1,7 @@
 #include "app/commands.h"
 
 #include "app/batch/commands.h"
+#include "app/fabric/commands.h"
 #include "app/lab/check/commands.h"
 #include "app/lab/flight/commands.h"
 #include "app/lab/gallery/commands.h"
@@ -72,9 +73,15 @@ static const struct tl_command commands[] = {
      "       toile env [SCENE] --capture -o OUT.exr --layout LAYOUT [--size N] [OPTIONS]",
      "Converts an environment map between layouts, keeping its light; or captures one from a scene.",
      TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT | TL_FLAGS_CAPTURE, tl_command_env},
-    {"fabric", "fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]",
-     "Bakes normal, offset, horizon and gloss maps from a height map, and prints their size and scale.",
-     TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC, tl_command_fabric},
+    {"fabric",
+     "fabric NAME|FILE|FOLDER [-o FOLDER|FILE.yaml] [--json]\n"
+     "       toile fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]",
+     "Lists what a fabric's file holds and what each field is used for, or writes the fabric in toile's own "
+     "form: a "
+     "name, .yaml, U3M (.u3m, .u3ma), measurements (.json), a folder or .zip of texture maps. Of a height "
+     "map it "
+     "bakes normal, offset, horizon and gloss maps, and prints their size and scale.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC | TL_FLAGS_JSON, tl_command_fabric},
     {"cache", "cache [--clear] [--json]", "Lists the drapes that are kept for reuse, or removes them.",
      TL_FLAGS_JSON | TL_FLAGS_CLEAR, tl_command_cache},
     {"info", "info FILE|fabrics|presets|garments [--json]",

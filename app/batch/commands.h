@@ -15,8 +15,6 @@ bool tl_command_cache(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error);
 /* Writes a frame as GLB or OBJ, or the garment's motion as PC2 or MDD. */
 bool tl_command_export(const struct tl_arguments *arguments, tl_error *error);
-/* Bakes the maps of a fabric from a height map. */
-bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error);
 /* Converts an environment map to another layout, or captures one from a scene. */
 bool tl_command_env(const struct tl_arguments *arguments, tl_error *error);
 /* Prints strains and areas of a garment's panels, its openings and girths; writes them as CSV. */

@@ -1,6 +1,6 @@
 #include "app/scene/appearance.h"
 
-#include "app/scene/height_picture.h"
+#include "app/pictures/height_picture.h"
 #include "assets/garment.h"
 #include "config/memory.h"
 #include "config/words.h"
@@ -93,22 +93,25 @@ static void set_construction(const struct tl_construction_params *params, tl_mat
 
 /* Finds or makes the weave of a fabric; NULL when it has none. Materials of one fabric share it. */
 static bool find_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
-                       const tl_weave **out, tl_error *error)
+                       const struct tl_fabric_pictures **out, tl_error *error)
 {
     *out = NULL;
     for (size_t i = 0; i < appearance->weave_count && !*out; i++)
         if (tl_options_equal(&tl_weave_options, &appearance->weaves[i].params, params))
-            *out = appearance->weaves[i].weave;
-    tl_weave made;
+            *out = appearance->weaves[i].made;
+    struct tl_fabric_pictures made = {0};
     if (*out)
         return true;
-    if (params->picture[0] && !tl_height_picture_weave(params, &made, error))
+    bool pictured = params->pictures[0] || params->picture[0];
+    if (params->pictures[0] && !tl_fabric_pictures_make(params, &made, error))
         return false;
-    if (!params->picture[0] && !tl_weave_create(params, &made))
+    if (!params->pictures[0] && params->picture[0] && !tl_height_picture_weave(params, &made.weave, error))
+        return false;
+    if (!pictured && !tl_weave_create(params, &made.weave))
         return true;
     appearance->weaves =
         tl_resize(appearance->weaves, appearance->weave_count + 1, sizeof *appearance->weaves);
-    tl_weave *kept = TL_NEW(tl_weave);
+    struct tl_fabric_pictures *kept = TL_NEW(struct tl_fabric_pictures);
     *kept = made;
     appearance->weaves[appearance->weave_count++] = (struct tl_woven){*params, kept};
     *out = kept;
@@ -132,15 +135,18 @@ static void drop_print(struct tl_appearance *appearance, tl_material *material)
     material->diffuse_map.image = appearance->images[appearance->image_count++] = plain;
 }
 
-/* A fabric replaces how the surface reflects; a print or dye that the file brings stays. */
-static void set_fabric(const struct tl_material_params *fabric, const tl_weave *weave, tl_material *material)
+/* A fabric replaces how the surface reflects, and a print, unless it is to be tinted or kept. */
+static void set_fabric(struct tl_appearance *appearance, const struct tl_material_params *fabric,
+                       const tl_weave *weave, tl_material *material)
 {
     if (fabric->use_file)
         return;
     vec3s file_diffuse = material->diffuse;
     set_params(fabric, material);
-    if (material->diffuse_map.image)
+    if (material->diffuse_map.image && fabric->on_print == TL_ON_PRINT_KEEP)
         material->diffuse = file_diffuse;
+    if (fabric->on_print == TL_ON_PRINT_REPLACE)
+        drop_print(appearance, material);
     material->gloss_map.image = NULL;
     material->specular_map.image = NULL;
     material->weave = weave;
@@ -158,6 +164,7 @@ struct making {
     struct tl_material_params params;
     struct tl_weave_params weave;
     bool is_file, is_changed, is_woven, is_dyed, is_plain;
+    const struct tl_fabric_pictures *pictures; /* once finished; NULL: no weave */
 };
 
 static struct making begin(const struct tl_settings *settings, const tl_material *file)
@@ -186,19 +193,22 @@ static void change(const struct tl_swatch *swatch, struct making *making)
         return;
     making->is_file = making->params.use_file;
     making->is_woven = !making->is_file;
+    /* In a colourway the key `print` decides, unless the fabric has a picture of its own. */
+    if (swatch->print && making->params.on_print == TL_ON_PRINT_REPLACE && !making->weave.pictures[0])
+        making->params.on_print = TL_ON_PRINT_KEEP;
     if (making->is_file)
         making->params = params_of(making->file);
 }
 
 static bool finish(struct tl_appearance *appearance, const struct tl_settings *settings,
-                   const struct making *making, tl_material *out, tl_error *error)
+                   struct making *making, tl_material *out, tl_error *error)
 {
     tl_material made = *making->file;
-    const tl_weave *weave = NULL;
-    if (making->is_woven && !find_weave(appearance, &making->weave, &weave, error))
+    if (making->is_woven && !find_weave(appearance, &making->weave, &making->pictures, error))
         return false;
+    const tl_weave *weave = making->pictures ? &making->pictures->weave : NULL;
     if (!making->is_file)
-        set_fabric(&making->params, weave, &made);
+        set_fabric(appearance, &making->params, weave, &made);
     else if (making->is_changed)
         set_params(&making->params, &made);
     if (making->is_woven)
@@ -218,6 +228,31 @@ static bool is_meant(const struct tl_swatch *swatch, const tl_material *material
     return strcmp(swatch->material, TL_SWATCH_ALL) == 0 || strcmp(swatch->material, material->name) == 0;
 }
 
+/* Cover and specular of a fabric's pictures, which a weave has not, are maps of the material. They lie to
+ * scale for one length of a UV unit, so parts of another one get a material of their own. */
+static void place_pictures(struct tl_dressing *dressing, const tl_model *model, size_t index,
+                           const struct tl_fabric_pictures *pictures)
+{
+    tl_material plain = dressing->materials[index];
+    if (!pictures->cover.texels && !pictures->specular.texels)
+        return;
+    for (size_t p = 0; p < model->mesh.part_count; p++) {
+        struct tl_mesh_part *part = &dressing->parts[p];
+        if (part->material != (int)index || !(part->uv_metres > 0))
+            continue;
+        const struct tl_uv_transform transform = tl_fabric_pictures_transform(plain.weave, part->uv_metres);
+        tl_material placed = plain;
+        if (pictures->specular.texels)
+            placed.specular_map = (struct tl_map){.image = &pictures->specular, .transform = transform};
+        if (pictures->cover.texels && !plain.diffuse_map.image) {
+            placed.diffuse_map = (struct tl_map){.image = &pictures->cover, .transform = transform};
+            placed.alpha_cutoff = 0.5f;
+        }
+        dressing->materials[dressing->material_count] = placed;
+        part->material = (int)dressing->material_count++;
+    }
+}
+
 static bool make_materials(const struct tl_settings *settings, const tl_model *model,
                            struct tl_appearance *appearance, tl_error *error)
 {
@@ -229,6 +264,8 @@ static bool make_materials(const struct tl_settings *settings, const tl_model *m
                 change(&colourways->swatches[k], &making);
         if (!finish(appearance, settings, &making, &appearance->garment.materials[i], error))
             return false;
+        if (making.pictures)
+            place_pictures(&appearance->garment, model, i, making.pictures);
     }
     return true;
 }
@@ -311,7 +348,8 @@ static void dress(const tl_model *model, const char *variant_name, struct tl_dre
 {
     const tl_mesh *mesh = &model->mesh;
     const struct tl_variant *variant = tl_model_find_variant(model, variant_name);
-    out->materials = TL_NEW_ARRAY(tl_material, model->material_count);
+    out->materials = TL_NEW_ARRAY(tl_material, model->material_count + mesh->part_count);
+    out->material_count = model->material_count;
     memcpy(out->materials, model->materials, model->material_count * sizeof *out->materials);
     out->parts = TL_NEW_ARRAY(struct tl_mesh_part, mesh->part_count);
     for (size_t p = 0; p < mesh->part_count; p++) {
@@ -348,8 +386,8 @@ bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garm
 void tl_appearance_release(struct tl_appearance *appearance)
 {
     for (size_t i = 0; i < appearance->weave_count; i++) {
-        tl_weave_release(appearance->weaves[i].weave);
-        free(appearance->weaves[i].weave);
+        tl_fabric_pictures_release(appearance->weaves[i].made);
+        free(appearance->weaves[i].made);
     }
     for (size_t i = 0; i < appearance->image_count; i++) {
         tl_image_release(appearance->images[i]);

@@ -1,18 +1,20 @@
 /* The appearance of garment and avatar: the materials of their files, what the settings' fabric makes of the
  * garment's, and what scene.colourway changes: the swatches of the scene (app/settings/colourway.h) and the
- * files' own variants. Never how anything moves. Reads weave.picture's file and no other.
+ * files' own variants. Never how anything moves. Reads the files of weave.picture and weave.pictures and
+ * no other.
  *
  * Threads: pure, but for reading that file; an appearance may be made on any thread while the models are not
  * written to. */
 #ifndef TOILE_APP_SCENE_APPEARANCE_H
 #define TOILE_APP_SCENE_APPEARANCE_H
 
+#include "app/pictures/fabric_pictures.h"
 #include "app/scene/moving.h"
 #include "app/settings/settings.h"
 
 struct tl_woven {
     struct tl_weave_params params;
-    tl_weave *weave;
+    struct tl_fabric_pictures *made; /* of yarns its weave alone */
 };
 
 struct tl_appearance {
@@ -27,7 +29,8 @@ struct tl_appearance {
 
 /* Makes the appearance of the models, either of which may be NULL.
  * Errors: TL_USAGE when neither the scene nor a model has the colourway, or the garment has no material of a
- * name that the colourway gives; those of tl_height_picture_weave for a weave's picture. `out` is then empty.
+ * name that the colourway gives; those of tl_height_picture_weave and tl_fabric_pictures_make for
+ * a weave's pictures. `out` is then empty.
  * Lifetime: the caller releases `out`; it refers to the models' maps, so it is released before they are. */
 bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
                         struct tl_appearance *out, tl_error *error);

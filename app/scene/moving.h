@@ -36,7 +36,8 @@ void tl_moving_update(struct tl_moving *moving);
 
 /* The appearance of a moving model: a material for each of the model's, and parts that choose among them. */
 struct tl_dressing {
-    tl_material *materials;
+    tl_material *materials; /* the model's, then at most one for each part */
+    size_t material_count;
     struct tl_mesh_part *parts;
 };
 

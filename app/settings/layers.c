@@ -1,5 +1,6 @@
 #include "app/settings/layers.h"
 
+#include "app/settings/imported.h"
 #include "cloth/energy/fabric.h"
 #include "config/memory.h"
 #include "config/words.h"
@@ -18,16 +19,32 @@ static bool fail_name(const struct tl_option_layer *layer, const char *name, tl_
     size_t count = tl_count_words(layer->names);
     char *list = tl_join_words(layer->names, count, ", ", ", ");
     const char *near = tl_nearest_word(name, layer->names, count);
-    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s, or a YAML file%s%s%s", name, layer->kind, list,
+    const char *others =
+        layer == &tl_option_layer_fabric ? "a file, or a folder/ with its slash" : "a YAML file";
+    tl_fail(error, TL_USAGE, "%s: no such %s: expected %s, or %s%s%s%s", name, layer->kind, list, others,
             near ? ": did you mean " : "", near ? near : "", near ? "?" : "");
     free(list);
     return false;
+}
+
+/* A fabric's file: options, or what another program wrote. */
+static bool apply_fabric_file(const char *path, const struct tl_binding *bindings, size_t count,
+                              const struct tl_record_section *section, tl_error *error)
+{
+    char *own = tl_imported_own_file(path);
+    bool applied = !own && tl_fabric_file_is(path)
+                       ? tl_imported_apply(path, bindings, count, error)
+                       : tl_options_read_yaml_file_with(bindings, count, section, own ? own : path, error);
+    free(own);
+    return applied;
 }
 
 bool tl_option_layer_apply(const struct tl_option_layer *layer, const char *name,
                            const struct tl_binding *bindings, size_t count,
                            const struct tl_record_section *section, tl_error *error)
 {
+    if (tl_option_is_file_name(name) && layer == &tl_option_layer_fabric)
+        return apply_fabric_file(name, bindings, count, section, error);
     if (tl_option_is_file_name(name))
         return tl_options_read_yaml_file_with(bindings, count, section, name, error);
     char *file = tl_format("%s.yaml", name);

@@ -73,8 +73,9 @@ static const struct tl_option scene_rows[] = {
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
-        "fabric, which sets the tables fabric, weave and material: built in, or a YAML "
-        "file; empty: that of the garment's kind (cotton_plain for shirts and patterns, denim "
+        "fabric, which sets the tables fabric, weave and material: built in, a YAML file, a U3M file or "
+        "archive, measurements (.json), or a folder or .zip of texture maps; empty: that of the garment's "
+        "kind (cotton_plain for shirts and patterns, denim "
         "for trousers, else satin), none on garment files"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric,
                            TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
@@ -367,6 +368,14 @@ static void warn_of_unused_options(const struct tl_settings *settings)
                 "and depth");
 }
 
+/* Logs the width that is assumed of pictures whose file states none. */
+static void log_assumed_width(const struct tl_weave_params *weave)
+{
+    if (weave->pictures[0] && !(weave->picture_mm > 0))
+        tl_info("%s: states no width: %d mm are assumed for a repeat; set weave.picture_mm", weave->pictures,
+                TL_PICTURE_ASSUMED_MM);
+}
+
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
@@ -392,6 +401,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (!read_colourways(&settings, error))
         return false;
     warn_of_unused_options(&settings);
+    log_assumed_width(&settings.weave);
     *out = settings;
     return true;
 }
@@ -409,6 +419,7 @@ bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", name, "fabric", NULL, error) ||
         !apply_fabric(all, name, error))
         return false;
+    log_assumed_width(&changed.weave);
     *settings = changed;
     return true;
 }

@@ -9,6 +9,7 @@
 
 static const char *const pattern_names[] = {"none", "plain",     "twill", "satin", "jersey",
                                             "rib",  "interlock", "purl",  "pile",  NULL};
+static const char *const mirror_names[] = {"none", "weft", "warp", "both", NULL};
 static const char *const section_names[] = {"round", "flat", NULL};
 
 #define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE)
@@ -64,10 +65,20 @@ static const struct tl_option rows[] = {
         "not repeat; 0: they are alike"),
     TL_OPTION_PATH(struct tl_weave_params, picture, AFFECTS,
                    "image of heights in place of yarns, a repeating .png or .exr; empty: none"),
-    TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, AFFECTS, 0.001, 10000, "mm",
-                    "width of the picture on the cloth"),
-    TL_OPTION_FLOAT(struct tl_weave_params, depth_mm, AFFECTS, 0, 10000, "mm",
-                    "height difference between the picture's lowest and highest value; larger: rougher"),
+    TL_OPTION_PATH(
+        struct tl_weave_params, pictures, AFFECTS,
+        "pictures of the surface in place of yarns: a folder or .zip of texture maps, a .u3m or .u3ma "
+        "file; empty: none"),
+    TL_OPTION_FLOAT(struct tl_weave_params, picture_mm, AFFECTS, 0, 10000, "mm",
+                    "width of picture or pictures on the cloth; 0: 100 mm, assumed"),
+    TL_OPTION_FLOAT(struct tl_weave_params, picture_length_mm, AFFECTS, 0, 10000, "mm",
+                    "length of pictures on the cloth, along the warp; 0: their texels are square"),
+    TL_OPTION_ENUM(
+        struct tl_weave_params, picture_mirror, AFFECTS, mirror_names,
+        "directions in which every other repeat of pictures is mirrored, for pictures that do not tile"),
+    TL_OPTION_FLOAT(
+        struct tl_weave_params, depth_mm, AFFECTS, 0, 10000, "mm",
+        "height difference between the lowest and the highest value of picture or pictures; larger: rougher"),
 };
 const struct tl_option_table tl_weave_options =
     TL_OPTION_TABLE("weave", "woven detail: normals, gloss and yarn colours at millimetre scale", rows,

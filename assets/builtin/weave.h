@@ -27,6 +27,14 @@ enum tl_weave_pattern {
  * side. The slopes of the ellipse have no bound at its edges, those of the parabola are spread evenly. */
 enum tl_yarn_section { TL_YARN_ROUND, TL_YARN_FLAT };
 
+/* Directions in which every other repeat is a mirror image: pictures that do not tile then do. Bits. */
+enum tl_picture_mirror {
+    TL_PICTURE_MIRROR_NONE,
+    TL_PICTURE_MIRROR_WEFT,
+    TL_PICTURE_MIRROR_WARP,
+    TL_PICTURE_MIRROR_BOTH
+};
+
 struct tl_weave_params {
     int pattern;         /* enum tl_weave_pattern; NONE: the material's own maps only */
     int section;         /* enum tl_yarn_section */
@@ -54,9 +62,14 @@ struct tl_weave_params {
     float cavity;   /* how much valleys darken: 0 with horizon maps, which show it themselves */
     /* A picture of heights instead of yarns (app/scene/height_picture.h reads it) */
     char picture[TL_STRING_SIZE]; /* "": none */
-    float picture_mm;             /* its width on the cloth: of a repeat */
-    float depth_mm;               /* from its lowest to its highest */
+    /* Pictures of the whole surface instead of yarns and `picture` (assets/fabric/fabric_maps.h) */
+    char pictures[TL_STRING_SIZE]; /* a folder, an archive or a U3M file; "": none */
+    float picture_mm;              /* width on the cloth of either: of a repeat; 0: TL_PICTURE_ASSUMED_MM */
+    float picture_length_mm;       /* of `pictures`, along the warp; 0: texels are square */
+    int picture_mirror;            /* enum tl_picture_mirror, of `pictures` */
+    float depth_mm;                /* from its lowest to its highest */
 };
+#define TL_PICTURE_ASSUMED_MM 100
 /* A light cotton sheeting. */
 #define TL_WEAVE_DEFAULTS                                                                                    \
     .pattern = TL_WEAVE_PLAIN, .warp_pitch_mm = 0.4f, .weft_pitch_mm = 0.4f, .crimp_mm = 0.1f,               \
@@ -64,6 +77,12 @@ struct tl_weave_params {
     .depth_mm = 0.5f, .wale_mm = 0.7f, .course_mm = 0.55f, .yarn_mm = 0.3f, .rib = 2, .nap_mm = 1.5f,        \
     .fibre_mm = 0.03f, .curl = 0.03f, .clump_mm = 2, .cavity = 1
 extern const struct tl_option_table tl_weave_options; /* "weave" */
+
+/* The width on the cloth of a repeat of pictures. */
+static inline float tl_weave_picture_mm(const struct tl_weave_params *params)
+{
+    return params->picture_mm > 0 ? params->picture_mm : TL_PICTURE_ASSUMED_MM;
+}
 
 /* Makes the maps of one repeat. False, without an error, for the pattern NONE. */
 bool tl_weave_create(const struct tl_weave_params *params, tl_weave *out);

@@ -1,5 +1,6 @@
 #include "assets/image/image_file.h"
 
+#include "assets/image/tiff_internal.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -74,7 +75,7 @@ static bool check_before_decoding(const char *name, const uint8_t *bytes, size_t
     bool png = size >= sizeof png_signature && memcmp(bytes, png_signature, sizeof png_signature) == 0;
     bool jpeg = size >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
     if (!png && !jpeg)
-        return tl_fail(error, TL_INPUT, "%s: is neither PNG nor JPEG: convert it to PNG", name);
+        return tl_fail(error, TL_INPUT, "%s: is neither PNG, JPEG nor TIFF: convert it to PNG", name);
     if (size > INT_MAX)
         return tl_fail(error, TL_INPUT, "%s: the image file is larger than 2 GiB: make it smaller", name);
     int width, height, channels;
@@ -96,6 +97,8 @@ static bool check_before_decoding(const char *name, const uint8_t *bytes, size_t
 bool tl_image_decode(const char *name, const void *data, size_t size, tl_image *out, tl_error *error)
 {
     *out = (tl_image){0};
+    if (tl_tiff_is(data, size))
+        return tl_tiff_decode(name, data, size, out, error);
     if (!check_before_decoding(name, data, size, error))
         return false;
     int width, height, channels;
@@ -120,9 +123,12 @@ bool tl_image_load(const char *path, tl_image *out, tl_error *error)
     return decoded;
 }
 
-static bool decode_values(const char *name, const void *data, size_t size, tl_image *out, tl_error *error)
+bool tl_image_decode_values(const char *name, const void *data, size_t size, tl_image *out, tl_error *error)
 {
     int width, height, channels;
+    *out = (tl_image){0};
+    if (tl_tiff_is(data, size))
+        return tl_tiff_decode_values(name, data, size, out, error);
     if (!check_before_decoding(name, data, size, error))
         return false;
     uint16_t *texels = stbi_load_16_from_memory(data, (int)size, &width, &height, &channels, 0);
@@ -143,7 +149,7 @@ bool tl_image_load_values(const char *path, tl_image *out, tl_error *error)
     size_t size;
     if (!tl_file_read(path, &data, &size, error))
         return false;
-    bool decoded = decode_values(path, data, size, out, error);
+    bool decoded = tl_image_decode_values(path, data, size, out, error);
     free(data);
     return decoded;
 }

@@ -5,6 +5,7 @@ static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe",
 static const char *const facets_names[] = {"gaussian", "beckmann", NULL};
 static const char *const masking_names[] = {"smith", "v_grooves", NULL};
 static const char *const ward_names[] = {"published", "bounded", NULL};
+static const char *const on_print_names[] = {"replace", "tint", "keep", NULL};
 static const char *const fresnel_names[] = {"schlick", "dielectric", "conductor", NULL};
 
 #define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_AT_ONCE)
@@ -60,6 +61,10 @@ static const struct tl_option material_rows[] = {
     TL_OPTION_COLOUR(material_params, fuzz_colour, AFFECTS, 0, 1, "colour of these fibres"),
     TL_OPTION_FLOAT(material_params, fuzz_roughness, AFFECTS, 0.4, 1, "",
                     "smaller: they show closer to the silhouette only"),
+    TL_OPTION_ENUM(
+        material_params, on_print, AFFECTS, on_print_names,
+        "what becomes of a printed picture of the garment's file under a fabric: replace: the fabric's "
+        "colour; tint: multiplied by it; keep: stays as it is"),
 };
 #define DEFAULTS                                                                                             \
     .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \

@@ -4,6 +4,8 @@
 
 #include "config/options.h"
 
+enum tl_on_print { TL_ON_PRINT_REPLACE, TL_ON_PRINT_TINT, TL_ON_PRINT_KEEP };
+
 struct tl_material_params { /* table "material": from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
     float diffuse[3];
@@ -18,6 +20,7 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     float openness;
     float back[3];                              /* diffuse colour of the back; 0: as the front */
     float fuzz, fuzz_colour[3], fuzz_roughness; /* struct tl_fuzz's colour is the first two multiplied */
+    int on_print; /* enum tl_on_print: a garment's printed picture under a fabric */
 };
 extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table

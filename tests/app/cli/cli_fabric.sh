@@ -52,3 +52,48 @@ message=$("$TOILE" render -o lost.exr --fabric maps/height.yaml --size 8x8 --qui
 "$TOILE" fabric maps/height.exr -o again --repeat-mm 4 --height-mm 1 2>&1 | grep -q '0.001 mm deep' ||
     fail "heights in metres are not read back"
 "$TOILE" info maps/normal.png >/dev/null 2>&1 || "$TOILE" fabric maps/normal.png -o again --clamp --quiet || fail "normal.png is not read"
+
+# ---- Fabrics of other programs ----
+
+# A folder of texture maps: two texels, red and blue; the drape and the look are of one argument.
+mkdir -p set && cp shape.png set/cloth_basecolor.png
+listed=$("$TOILE" fabric set) || fail "a folder is not listed"
+printf '%s' "$listed" | grep -q '^cloth_basecolor.png .*colour' || fail "its picture is not named: $listed"
+"$TOILE" fabric set --json | grep -q '"used":\s*true' || fail "no JSON of a folder"
+told=$("$TOILE" render -o set.png --garment sphere --avatar none --size 16x16 --set light.method=unshadowed \
+    $cheap_light --fabric set/ 2>&1) || fail "a folder is not worn: $told"
+printf '%s' "$told" | grep -q 'states no width: 100 mm are assumed' || fail "its width is not told: $told"
+"$TOILE" render -o set.png --garment sphere --avatar none --size 16x16 --set light.method=unshadowed \
+    $cheap_light --fabric set/ --set weave.picture_mm=40 2>&1 | grep -q assumed && fail "a given width is assumed"
+
+# toile's own form is read back to the same: the same options, the same image to the bit, and it writes itself again.
+"$TOILE" fabric set -o own --quiet || fail "a folder is not written"
+cmp -s set/cloth_basecolor.png own/colour.png || fail "its picture is not copied as it is"
+wear from_set.exr --fabric set/ --set weave.picture_mm=40
+wear from_own.exr --fabric own/ --set weave.picture_mm=40
+cmp -s from_set.exr from_own.exr || fail "toile's own form looks different"
+"$TOILE" fabric own -o own2.yaml --quiet || fail "toile's own form is not written"
+wear from_own2.exr --fabric own2.yaml --set weave.picture_mm=40
+cmp -s from_own.exr from_own2.exr || fail "the second copy looks different"
+for name in denim satin; do
+    "$TOILE" fabric $name -o "$name.yaml" --quiet || fail "$name is not written"
+    cmp -s <("$TOILE" fabric $name | tail -n +2) <("$TOILE" fabric "$name.yaml" | tail -n +2) || fail "$name is read back as another"
+done
+find . -name '*.tmp' | grep -q . && fail "a temporary file is left"
+
+# Measurements alone change how cloth falls, and leave the garment its look.
+strip='{"S2": {"width": 5, "samplesTree": [[8, 0, 8.1, 10, 8.2, 60]]}}'
+printf '{"raw_data": {"M": 200, "L": %s, "W": %s, "B": %s}}' "$strip" "$strip" "$strip" >strips.json
+"$TOILE" fabric strips.json | grep -q '^  areal_density: 0.2$' || fail "the weight is not used"
+"$TOILE" fabric strips.json | grep -q '^  use_file: true$' || fail "measurements change the look"
+
+# Bad input: one line, status 2.
+printf '{"schema": "1.1"' >cut.u3m
+printf 'no archive' >words.u3ma
+mkdir -p nothing
+refuse "cut U3M" 'cut\.u3m:1: .*JSON' fabric cut.u3m
+refuse "cut U3M as a fabric" 'cut\.u3m:1: .*JSON' render -o x.png --fabric cut.u3m
+refuse "words as an archive" 'words\.u3ma.*zip' fabric words.u3ma
+refuse "a folder of nothing" 'nothing.*no texture maps' render -o x.png --fabric nothing/
+refuse "a lost file" 'lost\.u3m.*no such file' fabric lost.u3m
+refuse "an unknown name" 'denin.*did you mean denim' fabric denin

@@ -1,7 +1,6 @@
-/* toile fabric: bakes maps from a height map: heights in metres, normals, offsets, moments, gloss, horizons,
- * cones. */
-#include "app/batch/commands.h"
-#include "app/scene/height_picture.h"
+#include "app/fabric/bake.h"
+
+#include "app/pictures/height_picture.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
 #include "config/file.h"
@@ -179,7 +178,7 @@ static float steepest(const struct baking *baking)
     return most;
 }
 
-bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error)
+bool tl_fabric_bake(const struct tl_arguments *arguments, tl_error *error)
 {
     tl_image picture;
     if (!check_arguments(arguments, error) ||

@@ -1,6 +1,6 @@
 /* Reads heights from a picture: as values, and as the repeat of a fabric in place of generated yarns. */
-#ifndef TOILE_APP_SCENE_HEIGHT_PICTURE_H
-#define TOILE_APP_SCENE_HEIGHT_PICTURE_H
+#ifndef TOILE_APP_PICTURES_HEIGHT_PICTURE_H
+#define TOILE_APP_PICTURES_HEIGHT_PICTURE_H
 
 #include "assets/builtin/weave.h"
 #include "config/error.h"

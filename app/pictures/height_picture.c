@@ -1,4 +1,4 @@
-#include "app/scene/height_picture.h"
+#include "app/pictures/height_picture.h"
 
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
@@ -55,7 +55,7 @@ bool tl_height_picture_weave(const struct tl_weave_params *params, tl_weave *out
         return tl_fail(error, TL_INPUT, "%s: %d x %d texels are too many for a weave: scale it to %d",
                        params->picture, width, height, SIDE_MAX);
     }
-    float width_m = 1e-3f * params->picture_mm;
+    float width_m = 1e-3f * tl_weave_picture_mm(params);
     *out = (tl_weave){.size_m = {width_m, width_m * (float)height / (float)width},
                       .height = heights_of(&picture, 1e-3f * params->depth_mm),
                       .gloss = tl_image_create(width, height, 1, TL_IMAGE_F32),
