@@ -1,5 +1,6 @@
 #include "assets/environment.h"
 
+#include "assets/adaptation.h"
 #include "assets/image/exr.h"
 #include "assets/image/radiance.h"
 #include "config/file.h"
@@ -141,6 +142,7 @@ bool tl_environment_load(const char *path, tl_environment *out, tl_error *error)
     }
     const char *slash = strrchr(path, '/');
     environment.name = tl_copy_string(slash ? slash + 1 : path);
+    environment.shown = tl_adaptation_to(&environment);
     *out = environment;
     return true;
 }

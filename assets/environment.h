@@ -8,7 +8,8 @@
 
 /* Loads an OpenEXR or Radiance picture, recognised by its content. An EXR is a cube map when its envmap
  * attribute says so or its sides are 1:6 or 6:1; everything else is lat-long. Negative values, NaN and
- * infinities are replaced as base/environment.h states, and counted.
+ * infinities are replaced as base/environment.h states, and counted. `shown` is what assets/adaptation.h
+ * makes of it.
  *
  * Errors: false, *out zeroed, with one message (TL_INPUT) for a file that is missing, cut short or damaged,
  * larger than TL_LIMIT_IMAGE_*, or marked as a cube map without six square faces.

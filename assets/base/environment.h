@@ -10,6 +10,8 @@
 
 #include "assets/base/image.h"
 
+#include <cglm/struct.h>
+
 enum tl_env_layout { TL_ENV_LATLONG, TL_ENV_CUBE };
 
 typedef struct tl_environment {
@@ -20,6 +22,8 @@ typedef struct tl_environment {
                                                     not show behind the figure; no texels: `image` */
     size_t negative_count, nan_count, inf_count; /* channel values cleaned on reading */
     float peak;                                  /* largest channel value */
+    vec3s shown;                                 /* factors of its light in pictures (assets/adaptation); 0:
+                                                    1, as for what is built in */
 } tl_environment;
 
 /* Frees what the environment owns and zeroes it; a zeroed environment is accepted.

@@ -217,8 +217,10 @@ struct tl_maps_params tl_input_capture(const struct tl_maps_params *maps)
 
 struct tl_image_params tl_input_show(const struct tl_image_params *image)
 {
-    return (struct tl_image_params){
-        .exposure_ev = image->exposure_ev, .background = image->background, .view = image->view};
+    return (struct tl_image_params){.exposure_ev = image->exposure_ev,
+                                    .adapt = image->adapt,
+                                    .background = image->background,
+                                    .view = image->view};
 }
 
 struct tl_image_params tl_input_view(const struct tl_image_params *image)

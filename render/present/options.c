@@ -20,6 +20,9 @@ static const struct tl_option image_rows[] = {
                   "", "samples per pixel side; larger: smoother edges and weave, time grows with the square"),
     TL_OPTION_FLOAT(image_params, exposure_ev, TL_AFFECTS_SHOW | TL_AFFECTS_AT_ONCE, -20, 20, "EV",
                     "brightness on the screen and in PNG files, in stops; EXR files are not affected"),
+    TL_OPTION_BOOL(image_params, adapt, TL_AFFECTS_SHOW | TL_AFFECTS_AT_ONCE,
+                   "shows light from environment files as bright as the studio's and nearly as white, as the "
+                   "eye adapts; EXR files are not affected"),
     TL_OPTION_ENUM(image_params, background, TL_AFFECTS_SHOW | TL_AFFECTS_AT_ONCE, background_names,
                    "background, on the screen and in PNG files"),
     TL_OPTION_BOOL(image_params, ground, TL_AFFECTS_GROUND | TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE,
@@ -38,7 +41,7 @@ static const struct tl_option image_rows[] = {
 };
 const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
     "image", "size, quality and content of the image", image_rows, image_params, .width = 960, .height = 540,
-    .supersample = 1, .exposure_ev = 0, .background = TL_BACKGROUND_BLURRED, .ground = true, .scale = 1,
+    .supersample = 1, .exposure_ev = 0, .adapt = true, .background = TL_BACKGROUND_BLURRED, .ground = true, .scale = 1,
     .view = TL_VIEW_LIGHT, .view_region = -1, .view_range = 0, .legend = true);
 
 static int scaled(int side, const struct tl_image_params *image)

@@ -29,6 +29,7 @@ struct tl_image_params { /* table "image" */
     int width, height;
     int supersample;   /* samples per pixel side, box filtered in linear light */
     float exposure_ev; /* for show only */
+    bool adapt;        /* to environments from files: brightness and white; for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
     int view;          /* enum tl_image_view */

@@ -133,13 +133,21 @@ static const tl_program *program_of(struct tl_present *present, tl_gpu *gpu, enu
     return program;
 }
 
+/* Factors of red, green and blue. */
+static vec3s exposure_of(const struct tl_show_request *request)
+{
+    vec3s adapted = request->environment->shown;
+    bool is_adapted = request->params->adapt && !glms_vec3_eqv(adapted, glms_vec3_zero());
+    return glms_vec3_scale(is_adapted ? adapted : glms_vec3_one(), exp2f(request->params->exposure_ev));
+}
+
 static void set_uniforms(const struct tl_show_request *request, enum tl_shown shown)
 {
     const struct tl_view *view = &request->view;
     const vec3s columns[3] = {view->right, view->up, view->forward};
     if (shown == TL_SHOWN_AS_IT_IS)
         return;
-    glUniform1f(EXPOSURE, exp2f(request->params->exposure_ev));
+    glUniform3fv(EXPOSURE, 1, exposure_of(request).raw);
     if (shown == TL_SHOWN_ON_GREY)
         return;
     glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));
@@ -194,7 +202,7 @@ static void show_on_cpu(struct tl_present *present, const struct tl_show_request
                                            .first_column = part->first_column,
                                            .end_column = part->end_column,
                                            .is_light = shown != TL_SHOWN_AS_IT_IS,
-                                           .exposure = exp2f(request->params->exposure_ev)};
+                                           .exposure = exposure_of(request)};
     if (shown != TL_SHOWN_AS_IT_IS && shown != TL_SHOWN_ON_GREY) {
         const struct tl_behind_request behind = {.forward = request->view.forward,
                                                  .right = request->view.right,

@@ -8,7 +8,7 @@
 
 const float PI = 3.14159265358979;
 
-layout(location = 0) uniform float exposure;
+layout(location = 0) uniform vec3 exposure; // factors of red, green and blue
 layout(location = 1) uniform vec2 environment_turn; // cosine and sine of the environment's yaw
 layout(location = 2) uniform mat3 view;             // columns: right and up to the image's edge, forward
 

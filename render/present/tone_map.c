@@ -30,13 +30,13 @@ struct row {
 };
 
 /* Returns whether the background is seen in any of them. */
-TL_INLINE bool load(const float *texels, float exposure, struct row *out)
+TL_INLINE bool load(const float *texels, vec3s exposure, struct row *out)
 {
     int32_t open = 0;
     for (size_t i = 0; i < COLUMNS; i++) {
-        out->red[i] = exposure * texels[4 * i];
-        out->green[i] = exposure * texels[4 * i + 1];
-        out->blue[i] = exposure * texels[4 * i + 2];
+        out->red[i] = exposure.r * texels[4 * i];
+        out->green[i] = exposure.g * texels[4 * i + 1];
+        out->blue[i] = exposure.b * texels[4 * i + 2];
         out->open[i] = 1.0f - tone_clamp(texels[4 * i + 3], 0.0f, 1.0f);
     }
     for (int i = 0; i < COLUMNS; i++)
@@ -129,14 +129,14 @@ TL_INLINE void show_row(const struct tl_tone_map_request *request, const struct 
                         const float *texels, int first, const float **behind, uint8_t *bytes)
 {
     struct row row;
-    bool is_open = load(texels, request->is_light ? request->exposure : 1.0f, &row);
+    bool is_open = load(texels, request->is_light ? request->exposure : glms_vec3_one(), &row);
     if (is_open && request->behind) {
         if (!*behind)
             *behind = tl_behind_tile(request->behind, tile->column, tile->row);
         const float *colours = *behind + first;
-        put_under(row.red, row.open, colours, request->exposure);
-        put_under(row.green, row.open, colours + TL_BEHIND_PIXELS, request->exposure);
-        put_under(row.blue, row.open, colours + (size_t)2 * TL_BEHIND_PIXELS, request->exposure);
+        put_under(row.red, row.open, colours, request->exposure.r);
+        put_under(row.green, row.open, colours + TL_BEHIND_PIXELS, request->exposure.g);
+        put_under(row.blue, row.open, colours + (size_t)2 * TL_BEHIND_PIXELS, request->exposure.b);
     } else if (is_open) {
         float plain = request->is_light ? SHOWN_GREY : SHOWN_DARK;
         put_plain_under(row.red, row.open, plain);

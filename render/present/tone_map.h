@@ -20,7 +20,7 @@ struct tl_tone_map_request {
     int width, height;
     int first_column, end_column; /* [first, end): at least these columns are written */
     bool is_light;                /* false: colours that stand for numbers, neither exposed nor mapped */
-    float exposure;               /* factor */
+    vec3s exposure;               /* factors of red, green and blue */
     struct tl_behind *behind;     /* seen where the image is open; NULL: grey */
 };
 /* Writes RGBA, alpha 255: [height][width][4]. */

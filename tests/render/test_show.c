@@ -106,6 +106,48 @@ static void test_backgrounds(void **state)
     test_scene_close(&scene);
 }
 
+static uint8_t *shown_bytes(tl_renderer *renderer, const struct test_scene *scene, tl_image *shown)
+{
+    tl_image drawn = test_scene_draw(scene, renderer);
+    tl_image_release(&drawn);
+    renderer->resources.valid &= ~TL_BIT(TL_MADE_SHOWN);
+    *shown = show(renderer);
+    return tl_image_bytes(shown);
+}
+
+/* An environment's factors are those of an exposure, channel by channel, on figure and backdrop alike; light
+ * that is twice as bright, with half the factors, is the same picture. */
+static void test_adaptation(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, tl_environment_studio(), 300, 200);
+    scene.frame.environment_revision += 100; /* no studio has a revision of its own */
+    tl_image plain, doubled, tinted;
+    const uint8_t *a = shown_bytes(device->renderer, &scene, &plain);
+    scene.environment.shown = (vec3s){{2, 2, 2}};
+    scene.settings.image.exposure_ev = -1;
+    const uint8_t *b = shown_bytes(device->renderer, &scene, &doubled);
+    assert_memory_equal(a, b, (size_t)3 * 300 * 200);
+    scene.settings.image.exposure_ev = 0;
+    scene.settings.image.adapt = false;
+    tl_image_release(&doubled);
+    b = shown_bytes(device->renderer, &scene, &doubled);
+    assert_memory_equal(a, b, (size_t)3 * 300 * 200);
+    scene.settings.image.adapt = true;
+    scene.environment.shown = (vec3s){{0.5f, 1, 0.25f}};
+    b = shown_bytes(device->renderer, &scene, &tinted);
+    size_t darker = 0, pixels = (size_t)300 * 200;
+    for (size_t i = 0; i < pixels; i++) /* the tone mapper moves a channel by little where none is white */
+        darker += b[3 * i] < a[3 * i] && b[3 * i + 2] < b[3 * i] && a[3 * i + 1] >= b[3 * i];
+    assert_true(darker > pixels * 95 / 100);
+    expect_same_backgrounds(device->renderer, &scene, "studio, tinted");
+    tl_image_release(&plain);
+    tl_image_release(&doubled);
+    tl_image_release(&tinted);
+    test_scene_close(&scene);
+}
+
 /* An environment with a sun, as many texels as real ones have. */
 static void test_large_environment(void **state)
 {
@@ -192,7 +234,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_backgrounds),    cmocka_unit_test(test_large_environment),
         cmocka_unit_test(test_no_lamp_behind), cmocka_unit_test(test_cube),
-        cmocka_unit_test(test_views),
+        cmocka_unit_test(test_views),          cmocka_unit_test(test_adaptation),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -166,8 +166,11 @@ static uint64_t inputs_that_follow(uint64_t bits, const struct tl_render_setting
 {
     const struct tl_lamp lamp = {
         .kind = TL_LAMP_DIRECTIONAL, .direction = {{0, 1, 0}}, .irradiance = {{1, 1, 1}}};
-    const tl_frame frame = {
-        .camera = {.target = {{0, 0, -1}}, .up = {{0, 1, 0}}}, .lamps = &lamp, .lamp_count = 1};
+    const tl_environment place = {0};
+    const tl_frame frame = {.camera = {.target = {{0, 0, -1}}, .up = {{0, 1, 0}}},
+                            .environment = &place,
+                            .lamps = &lamp,
+                            .lamp_count = 1};
     struct tl_render_settings other = *settings;
     uint64_t zero[TL_INPUT_COUNT] = {0}, a[TL_INPUT_COUNT], b[TL_INPUT_COUNT], follow = 0;
     struct tl_rest rest = {0};

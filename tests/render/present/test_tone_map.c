@@ -33,12 +33,11 @@ static void pbr_neutral(double colour[3])
 }
 
 /* What a texel should look like over `behind`. */
-static void expect(const float *texel, const double behind[3], bool is_light, double exposure,
-                   double shown[3])
+static void expect(const float *texel, const double behind[3], bool is_light, vec3s exposure, double shown[3])
 {
     double open = 1 - fmin(fmax((double)texel[3], 0), 1);
     for (int c = 0; c < 3; c++)
-        shown[c] = (is_light ? exposure : 1) * (double)texel[c] + open * behind[c];
+        shown[c] = (is_light ? (double)exposure.raw[c] : 1) * (double)texel[c] + open * behind[c];
     if (is_light)
         pbr_neutral(shown);
     for (int c = 0; c < 3; c++)
@@ -72,7 +71,7 @@ static void expect_bytes(const struct tl_tone_map_request *request, const double
     for (size_t i = 0; i < count; i++) {
         double shown[3];
         expect(request->texels + 4 * i, is_each ? behind + 3 * i : behind, request->is_light,
-               (double)request->exposure, shown);
+               request->exposure, shown);
         for (size_t c = 0; c < 3; c++)
             assert_near((double)bytes[4 * i + c], shown[c], 0.57); /* rounding, and a table's */
         assert_int_equal(bytes[4 * i + 3], 255);
@@ -96,7 +95,7 @@ static void test_formulas(void **state)
                                                         .height = height,
                                                         .end_column = width,
                                                         .is_light = is_light,
-                                                        .exposure = 0.7f};
+                                                        .exposure = {{0.7f, 1.1f, 0.4f}}};
             const double grey[] = {0.18, 0.18, 0.18}, dark[] = {0.03, 0.03, 0.03};
             tl_tone_map(&request, bytes);
             expect_bytes(&request, is_light ? grey : dark, false, bytes);
@@ -143,7 +142,7 @@ static void fill_smooth(tl_environment *environment)
 }
 
 /* What is behind each pixel of a view that is turned, by the look-up of one direction. */
-static void list_behind(const struct tl_behind_request *view, float exposure, double *behind)
+static void list_behind(const struct tl_behind_request *view, vec3s exposure, double *behind)
 {
     for (int y = 0; y < view->height; y++)
         for (int x = 0; x < view->width; x++) {
@@ -154,7 +153,7 @@ static void list_behind(const struct tl_behind_request *view, float exposure, do
             vec3s seen =
                 tl_environment_sample(view->environment, tl_turn_direction(world, -view->environment_yaw));
             for (int c = 0; c < 3; c++)
-                behind[3 * (y * view->width + x) + c] = (double)(exposure * seen.raw[c]);
+                behind[3 * (y * view->width + x) + c] = (double)(exposure.raw[c] * seen.raw[c]);
         }
 }
 
@@ -185,7 +184,7 @@ static void test_behind(void **state)
                                           .height = height,
                                           .end_column = width,
                                           .is_light = true,
-                                          .exposure = 1.3f,
+                                          .exposure = {{1.3f, 0.8f, 2}},
                                           .behind = &behind};
     for (int change = 0; change < 6; change++) {
         if (change == 2)
@@ -230,7 +229,7 @@ static void test_columns(void **state)
                                                 .first_column = first,
                                                 .end_column = end,
                                                 .is_light = true,
-                                                .exposure = 1};
+                                                .exposure = {{1, 1, 1}}};
     tl_tone_map(&request, bytes);
     for (int x = 0; x < width; x++) {
         bool is_inside = x >= first && x < end;

@@ -1,0 +1,24 @@
+/* How the eye adapts to a place: the brightness and the white in which light from it is shown. */
+#ifndef TOILE_ASSETS_ADAPTATION_H
+#define TOILE_ASSETS_ADAPTATION_H
+
+#include "assets/base/environment.h"
+
+#include <cglm/struct.h>
+
+/* Luminance (Rec. 709) of the light that the built-in studio sends on upright cards: cylindrical irradiance,
+ * over pi. Other places are shown as bright. */
+#define TL_ADAPTED_LUMINANCE 0.462f
+/* How much of a place's tint is taken away, in the logarithm: the eye adapts to most of it, and what is left
+ * tells of the place. */
+#define TL_ADAPTED_WHITE 0.75f
+/* Places that are darker or brighter than this factor are adapted to only so far. */
+#define TL_ADAPTED_MOST 4096.0f
+
+/* The factors of red, green and blue with which a picture shows light from an environment. They make the
+ * luminance of upright cards under it, whichever way they face (the mean of all: cylindrical irradiance, EN
+ * 12464-1), TL_ADAPTED_LUMINANCE, and take TL_ADAPTED_WHITE of its tint away (von Kries' gains in Rec. 709).
+ * So they do not change as the camera or the environment turns. 1 for one without light. Pure. */
+vec3s tl_adaptation_to(const tl_environment *environment);
+
+#endif
