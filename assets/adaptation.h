@@ -1,4 +1,5 @@
-/* How the eye adapts to a place: the brightness and the white in which light from it is shown. */
+/* What a picture needs to know of a place: the brightness and the white in which its light is shown, as the
+ * eye adapts to it; and its ground. */
 #ifndef TOILE_ASSETS_ADAPTATION_H
 #define TOILE_ASSETS_ADAPTATION_H
 
@@ -20,5 +21,13 @@
  * 12464-1), TL_ADAPTED_LUMINANCE, and take TL_ADAPTED_WHITE of its tint away (von Kries' gains in Rec. 709).
  * So they do not change as the camera or the environment turns. 1 for one without light. Pure. */
 vec3s tl_adaptation_to(const tl_environment *environment);
+
+/* The darkest and brightest luminance of a ground: on one that is darker no shadow is seen. */
+#define TL_GROUND_DARKEST   0.1f
+#define TL_GROUND_BRIGHTEST 0.8f
+
+/* The reflectance of the ground that an environment shows: the light that comes from below over the light
+ * that falls from above, both on level cards. Where nothing falls, 0. Pure. */
+vec3s tl_adaptation_ground(const tl_environment *environment);
 
 #endif

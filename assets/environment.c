@@ -143,6 +143,7 @@ bool tl_environment_load(const char *path, tl_environment *out, tl_error *error)
     const char *slash = strrchr(path, '/');
     environment.name = tl_copy_string(slash ? slash + 1 : path);
     environment.shown = tl_adaptation_to(&environment);
+    environment.ground = tl_adaptation_ground(&environment);
     *out = environment;
     return true;
 }

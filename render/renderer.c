@@ -87,7 +87,8 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     resources->surfaces = tl_surfaces_create(gpu);
     tl_surfaces_use_detail(resources->surfaces, &resources->detail);
     resources->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
-    tl_ground_make(&(struct tl_casters){.radius = TL_CASTERS_RADIUS_MIN}, &resources->ground);
+    tl_ground_make(&(struct tl_casters){.radius = TL_CASTERS_RADIUS_MIN}, TL_GROUND_GREY,
+                   &resources->ground);
     resources->points = tl_points_create();
     resources->trace = tl_trace_create(error);
     resources->maps = tl_shadow_maps_create(gpu, error);
@@ -398,7 +399,7 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
     resources->size = (struct tl_size_input){
         .width = image->width, .height = image->height, .supersample = image->supersample};
     tl_image_samples(image, &resources->size.columns, &resources->size.rows);
-    resources->has_ground = image->ground;
+    resources->ground_input = tl_input_ground(frame, image);
     resources->pem_size = light->pem_size;
     resources->filter = light->filter;
     resources->takes_suns = light->sun;

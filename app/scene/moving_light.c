@@ -62,6 +62,7 @@ bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_e
     if (!tl_environment_sequence_load(&light->sequence, due, &fresh, error))
         return false;
     fresh.shown = light->environment.shown; /* of the first frame: a picture does not flicker */
+    fresh.ground = light->environment.ground;
     tl_environment_release(&light->environment);
     light->environment = fresh;
     light->shown = due;

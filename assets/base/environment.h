@@ -22,6 +22,8 @@ typedef struct tl_environment {
                                                     not show behind the figure; no texels: `image` */
     size_t negative_count, nan_count, inf_count; /* channel values cleaned on reading */
     float peak;                                  /* largest channel value */
+    vec3s ground;                                /* reflectance of the place's own ground (assets/
+                                                    adaptation); 0: unknown */
     vec3s shown;                                 /* factors of its light in pictures (assets/adaptation); 0:
                                                     1, as for what is built in */
 } tl_environment;

@@ -149,6 +149,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_SHAPES] = shapes_signature(frame);
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
     signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
+    signatures[TL_INPUT_GROUND] = MIX(signatures[TL_INPUT_GROUND], frame->environment->ground);
     bool in_passes =
         tl_light_source(light) == TL_LIGHT_CHAIN; /* maps in an array: as many as PEMs in a pass */
     signatures[TL_INPUT_MAPS] = MIX(signatures[TL_INPUT_MAPS], in_passes);
@@ -213,6 +214,13 @@ struct tl_maps_params tl_input_capture(const struct tl_maps_params *maps)
 {
     return (struct tl_maps_params){
         .size = maps->size, .capture_at = {maps->capture_at[0], maps->capture_at[1], maps->capture_at[2]}};
+}
+
+struct tl_ground_input tl_input_ground(const tl_frame *frame, const struct tl_image_params *image)
+{
+    vec3s known = frame->environment->ground;
+    bool is_known = known.r > 0 || known.g > 0 || known.b > 0;
+    return (struct tl_ground_input){.is_drawn = image->ground, .colour = is_known ? known : TL_GROUND_GREY};
 }
 
 struct tl_image_params tl_input_show(const struct tl_image_params *image)

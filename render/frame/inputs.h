@@ -45,6 +45,11 @@ static inline bool tl_size_has_outlines(const struct tl_size_input *size)
     return size->columns < size->width || size->rows < size->height;
 }
 
+struct tl_ground_input {
+    bool is_drawn;
+    vec3s colour; /* reflectance */
+};
+
 struct tl_cut_input {
     int regions, cut; /* enum tl_cut */
 };
@@ -100,6 +105,7 @@ struct tl_detail_params tl_input_detail_maps(const struct tl_detail_params *deta
 struct tl_maps_params tl_input_layout(const struct tl_maps_params *maps);
 struct tl_maps_params tl_input_look_up(const struct tl_maps_params *maps);
 struct tl_maps_params tl_input_capture(const struct tl_maps_params *maps);
+struct tl_ground_input tl_input_ground(const tl_frame *frame, const struct tl_image_params *image);
 struct tl_image_params tl_input_show(const struct tl_image_params *image);
 struct tl_image_params tl_input_view(const struct tl_image_params *image);
 struct tl_lamps_input tl_input_lamps(const tl_frame *frame, const struct tl_shading_params *shading);

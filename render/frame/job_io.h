@@ -83,7 +83,7 @@
 #define TL_SURFACES_JOB(IO)                                                                                  \
     IO(READS, shapes)                                                                                        \
     IO(READS, motion)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(WRITES_HANDLE, surfaces)                                                                              \
     IO(WRITES, casters)                                                                                      \
     IO(WRITES, ground)
@@ -91,7 +91,7 @@
 #define TL_DETAIL_JOB(IO)                                                                                    \
     IO(READS, shapes)                                                                                        \
     IO(READS, detail_options)                                                                                \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(SEES, detail_steps)                                                                                   \
     IO(WRITES, detail)                                                                                       \
     IO(USES, gpu)
@@ -107,7 +107,7 @@
     IO(READS, round)                                                                                         \
     IO(SEES, suns)                                                                                           \
     IO(SEES, shapes)                                                                                         \
-    IO(SEES, has_ground)                                                                                     \
+    IO(SEES, ground_input)                                                                                   \
     IO(SEES, ray_options)                                                                                    \
     IO(SEES, moment)                                                                                         \
     IO(WRITES_HANDLE, maps)
@@ -124,7 +124,7 @@
     IO(SEES, round)                                                                                          \
     IO(SEES, suns)                                                                                           \
     IO(SEES, shapes)                                                                                         \
-    IO(SEES, has_ground)                                                                                     \
+    IO(SEES, ground_input)                                                                                   \
     IO(SEES, ray_options)                                                                                    \
     IO(SEES, moment)
 
@@ -134,7 +134,7 @@
     IO(AFTER, TL_MADE_DETAIL)                                                                                \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, detail_steps)                                                                                  \
     IO(READS, detail_options)                                                                                \
     IO(SEES, shapes)                                                                                         \
@@ -152,7 +152,7 @@
     IO(READS, ground)                                                                                        \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, shapes)                                                                                        \
     IO(WRITES, ids)                                                                                          \
     IO(WRITES, pixel_ids)                                                                                    \
@@ -161,7 +161,7 @@
 #define TL_SHADE_MATERIALS_JOB(IO)                                                                           \
     IO(READS, shapes)                                                                                        \
     IO(READS, detail_options)                                                                                \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, light_options)                                                                                 \
     IO(WRITES, shade_materials)
 
@@ -172,7 +172,7 @@
     IO(READS, gbuffer)                                                                                       \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, detail_steps)                                                                                  \
     IO(READS, shapes)                                                                                        \
     IO(WRITES, transparency)                                                                                 \
@@ -188,7 +188,7 @@
     IO(AFTER, TL_MADE_TRANSPARENCY)                                                                          \
     IO(READS_HANDLE, trace)                                                                                  \
     IO(READS, shapes)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, ground)                                                                                        \
     IO(WRITES, mirrors)
 
@@ -202,7 +202,7 @@
     IO(READS, suns)                                                                                          \
     IO(READS_HANDLE, trace)                                                                                  \
     IO(READS, shapes)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, ground)                                                                                        \
     IO(READS, yaw)                                                                                           \
     IO(READS, ray_options)                                                                                   \
@@ -236,7 +236,7 @@
     IO(READS, camera)                                                                                        \
     IO(READS, shapes)                                                                                        \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(WRITES, pixel_triangles)                                                                              \
     IO(WRITES, sun_pixels)
 
@@ -255,7 +255,7 @@
     IO(READS, size)                                                                                          \
     IO(READS, shapes)                                                                                        \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(AFTER, TL_INPUT_RATIO)                                                                                \
     IO(AFTER, TL_INPUT_VIEW)                                                                                 \
     IO(WRITES, present)
@@ -272,7 +272,7 @@
     IO(AFTER, TL_MADE_MAPS)                                                                                  \
     IO(READS, casters)                                                                                       \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, yaw)                                                                                           \
     IO(READS, camera)                                                                                        \
     IO(READS, round)                                                                                         \
@@ -294,7 +294,7 @@
     IO(READS, gbuffer)                                                                                       \
     IO(READS, shapes)                                                                                        \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, yaw)                                                                                           \
     IO(READS, light_options)                                                                                 \
     IO(READS, camera)                                                                                        \
@@ -334,7 +334,7 @@
     IO(SEES, detail_options)                                                                                 \
     IO(SEES, casters)                                                                                        \
     IO(SEES, ground)                                                                                         \
-    IO(SEES, has_ground)                                                                                     \
+    IO(SEES, ground_input)                                                                                   \
     IO(SEES, lighting)                                                                                       \
     IO(USES_HANDLE, surfaces)                                                                                \
     IO(WRITES, capture)                                                                                      \
@@ -346,7 +346,7 @@
     IO(READS, layout)                                                                                        \
     IO(READS, yaw)                                                                                           \
     IO(READS, shapes)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(SEES, envmap_size)                                                                                    \
     IO(SEES, detail_options)                                                                                 \
     IO(SEES, camera)                                                                                         \
@@ -380,7 +380,7 @@
     IO(READS_HANDLE, trace)                                                                                  \
     IO(READS, casters)                                                                                       \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, shapes)                                                                                        \
     IO(READS, lamps)                                                                                         \
     IO(READS, light_options)                                                                                 \
@@ -393,7 +393,7 @@
     IO(READS_HANDLE, surfaces)                                                                               \
     IO(READS, casters)                                                                                       \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(AFTER, TL_MADE_LAMP_MAPS)                                                                             \
     IO(AFTER, TL_MADE_LAMP_RAYS)                                                                             \
     IO(READS, camera)                                                                                        \
@@ -423,7 +423,7 @@
     IO(READS, shapes)                                                                                        \
     IO(READS, motion)                                                                                        \
     IO(READS, ground)                                                                                        \
-    IO(READS, has_ground)                                                                                    \
+    IO(READS, ground_input)                                                                                  \
     IO(READS, light_options)                                                                                 \
     IO(READS, lamps)                                                                                         \
     IO(READS, detail_steps)                                                                                  \

@@ -51,7 +51,7 @@ struct tl_surroundings {
     RESOURCE(motion, TL_INPUT_MOTION, struct tl_motion_input)                                                \
     RESOURCE(camera, TL_INPUT_CAMERA, struct tl_camera_input)                                                \
     RESOURCE(size, TL_INPUT_SIZE, struct tl_size_input)                                                      \
-    RESOURCE(has_ground, TL_INPUT_GROUND, bool)                                                              \
+    RESOURCE(ground_input, TL_INPUT_GROUND, struct tl_ground_input)                                          \
     RESOURCE(pem_size, TL_INPUT_PEM_SIZE, int) /* texels */                                                  \
     RESOURCE(filter, TL_INPUT_FILTER, int)     /* enum tl_chain_filter */                                    \
     RESOURCE(takes_suns, TL_INPUT_SUN, bool)                                                                 \
@@ -143,7 +143,7 @@ enum {
 /* The ground's disc; NULL: none is drawn. */
 static inline const struct tl_ground *tl_ground_drawn(const struct tl_resources *resources)
 {
-    return resources->has_ground ? &resources->ground : NULL;
+    return resources->ground_input.is_drawn ? &resources->ground : NULL;
 }
 
 #endif

@@ -46,7 +46,7 @@ bool tl_run_capture(const struct tl_capture_job *job, tl_error *error)
         .exponent_levels = &job->lighting->exponent_levels,
         .surfaces = job->surfaces,
         .ranges = &shapes->ranges,
-        .ground = *job->has_ground ? job->ground : NULL,
+        .ground = job->ground_input->is_drawn ? job->ground : NULL,
         .near_m = 1e-3f * casters->radius,
         .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
     return tl_capture_draw(job->capture, *job->gpu, &request, error);
@@ -66,7 +66,7 @@ bool tl_run_envmap(const struct tl_envmap_job *job, tl_error *error)
     tl_envmap_fill(job->envmap, *job->gpu, job->layout,
                    captured ? &job->capture->lobes : &job->surroundings->lobes, &into_world,
                    &job->camera->view);
-    tl_envmap_set_parts(job->envmap, *job->gpu, &shapes->ranges, *job->has_ground);
+    tl_envmap_set_parts(job->envmap, *job->gpu, &shapes->ranges, job->ground_input->is_drawn);
     return true;
 }
 
@@ -93,7 +93,7 @@ bool tl_run_reference(const struct tl_reference_job *job, tl_error *error)
                             .lamps = job->lamps->items,
                             .lamp_count = job->lamps->count};
     const struct tl_reference_request request = {.frame = &frame,
-                                                 .ground = *job->has_ground ? job->ground : NULL,
+                                                 .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                                  .params = job->reference_options,
                                                  .detail = job->detail_steps,
                                                  .lobe = job->light_options->lobe,

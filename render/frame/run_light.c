@@ -23,7 +23,7 @@ bool tl_run_light(const struct tl_light_job *job, tl_error *error)
                                              .suns = job->suns,
                                              .maps = job->maps,
                                              .casters = *job->casters,
-                                             .ground = *job->has_ground ? job->ground : NULL,
+                                             .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                              .environment_yaw = *job->yaw,
                                              .eye = job->camera->view.eye,
                                              .round = *job->round,
@@ -59,7 +59,7 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
                                         .suns = job->suns,
                                         .regions_revision = *job->regions_revision,
                                         .shapes_revision = job->shapes->revision,
-                                        .ground = *job->has_ground ? job->ground : NULL,
+                                        .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                         .environment_yaw = *job->yaw,
                                         .params = &job->ray_options->params,
                                         .moved = *job->scene_round == 0,
@@ -106,7 +106,7 @@ bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
                                                   .suns = job->suns,
                                                   .trace = job->trace,
                                                   .openness = job->shade_materials->openness,
-                                                  .ground = *job->has_ground ? job->ground : NULL,
+                                                  .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                                   .environment_yaw = *job->yaw};
     tl_sun_pixels_update(job->sun_pixels, &request);
     return true;
@@ -128,7 +128,7 @@ static void enlarge(const struct tl_shade_job *job, const float *shaded)
                                                  .light = shaded,
                                                  .ranges = &job->shapes->ranges,
                                                  .materials = job->shade_materials,
-                                                 .ground = *job->has_ground ? job->ground : NULL,
+                                                 .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                                  .view = &job->camera->view};
     tl_resample(&resample);
     if (tl_size_has_outlines(size))
@@ -147,7 +147,7 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
                                               .suns = job->suns,
                                               .sun_pixels = job->sun_pixels,
                                               .cover_m = tl_points_cover_m(job->trace),
-                                              .ground = *job->has_ground ? job->ground : NULL,
+                                              .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                               .view = &job->camera->view,
                                               .environment_yaw = *job->yaw};
     const struct tl_size_input *size = job->size;
@@ -167,17 +167,17 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
  * cloth, through cloth, in mirrors. */
 static void add_lamps(const struct tl_compose_job *job, const struct tl_compose_request *composed)
 {
-    const struct tl_lamp_samples_request request = {.lamp_count = job->lamps->count,
-                                                    .lamps = job->lamps->items,
-                                                    .shadowed =
-                                                        job->light_options->method != TL_METHOD_UNSHADOWED,
-                                                    .trace = job->trace,
-                                                    .samples = job->samples,
-                                                    .shares = composed->shares,
-                                                    .mirrors = composed->mirrors,
-                                                    .ranges = &job->shapes->ranges,
-                                                    .ground = *job->has_ground ? job->ground : NULL,
-                                                    .eye = job->camera->view.eye};
+    const struct tl_lamp_samples_request request = {
+        .lamp_count = job->lamps->count,
+        .lamps = job->lamps->items,
+        .shadowed = job->light_options->method != TL_METHOD_UNSHADOWED,
+        .trace = job->trace,
+        .samples = job->samples,
+        .shares = composed->shares,
+        .mirrors = composed->mirrors,
+        .ranges = &job->shapes->ranges,
+        .ground = job->ground_input->is_drawn ? job->ground : NULL,
+        .eye = job->camera->view.eye};
     bool emits = tl_materials_have(job->shapes->surfaces, job->shapes->surface_count, tl_material_emits);
     if ((request.lamp_count > 0 || emits) && job->samples->count > job->samples->primary_count)
         tl_lamp_samples_add(&request, job->light->texels);
@@ -250,7 +250,7 @@ bool tl_run_lamp_rays(const struct tl_lamp_rays_job *job, tl_error *error)
         if (shadows->kinds[i] != TL_LAMP_SHADOW_RAYS)
             continue;
         tl_lamp_rays(&job->lamps->items[i], job->trace, samples, &job->shapes->ranges,
-                     *job->has_ground ? job->ground : NULL, visible);
+                     job->ground_input->is_drawn ? job->ground : NULL, visible);
         tl_lamp_shadows_set(shadows, *job->gpu, samples->width, samples->height, i, count, visible);
     }
     free(visible);
@@ -267,7 +267,7 @@ bool tl_run_lamps(const struct tl_lamps_job *job, tl_error *error)
                                              .view = &job->camera->view,
                                              .surfaces = job->surfaces,
                                              .surface_count = job->shapes->drawn_count,
-                                             .ground = *job->has_ground ? job->ground : NULL,
+                                             .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                              .casters = *job->casters,
                                              .lamp_count = job->lamps->count,
                                              .lamps = job->lamps->items,

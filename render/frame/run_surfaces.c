@@ -6,7 +6,8 @@ bool tl_run_surfaces(const struct tl_surfaces_job *job, tl_error *error)
 {
     if (!tl_casters_measure(job->motion->surfaces, job->motion->surface_count, job->casters, error))
         return false;
-    tl_ground_make(job->casters, job->ground); /* the last of what is drawn, when it is drawn */
+    tl_ground_make(job->casters, job->ground_input->colour,
+                   job->ground); /* the last of what is drawn, when it is drawn */
     return tl_surfaces_update(job->surfaces, job->shapes->drawn, job->shapes->drawn_count, error);
 }
 
@@ -24,7 +25,7 @@ bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
         .environment_yaw = *(job)->yaw, .caster_surfaces = (job)->shapes->surfaces,                          \
         .caster_count = (job)->shapes->surface_count, .casters = *(job)->casters,                            \
         .surfaces = (job)->surfaces, .surface_count = (job)->shapes->drawn_count,                            \
-        .ground_index = *(job)->has_ground ? (int)(job)->shapes->drawn_count - 1 : -1,                       \
+        .ground_index = (job)->ground_input->is_drawn ? (int)(job)->shapes->drawn_count - 1 : -1,            \
         .map_size = (job)->shadow_options->map_size,                                                         \
         .maps_per_array = (job)->shadow_options->in_passes ? *(job)->pems_per_pass : TL_REGIONS_MAX,         \
         .blur_m = (job)->shadow_options->blur_m, .regions_revision = *(job)->regions_revision,               \
@@ -56,8 +57,8 @@ bool tl_run_blur(const struct tl_blur_job *job, tl_error *error)
     {                                                                                                        \
         .view = &(job)->camera->view, .width = (job)->size->columns, .height = (job)->size->rows,            \
         .surfaces = (job)->surfaces, .drawn = (job)->shapes->drawn,                                          \
-        .surface_count = (job)->shapes->drawn_count, .ground = *(job)->has_ground ? (job)->ground : NULL,    \
-        .detail = (job)->detail_steps,                                                                       \
+        .surface_count = (job)->shapes->drawn_count,                                                         \
+        .ground = (job)->ground_input->is_drawn ? (job)->ground : NULL, .detail = (job)->detail_steps,       \
         .frames =                                                                                            \
             tl_materials_have((job)->shapes->surfaces, (job)->shapes->surface_count, tl_material_is_faceted) \
     }
@@ -77,7 +78,7 @@ bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
                                          .surfaces = job->surfaces,
                                          .drawn = job->shapes->drawn,
                                          .surface_count = job->shapes->drawn_count,
-                                         .ground = *job->has_ground ? job->ground : NULL,
+                                         .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                          .only_triangle = true};
     if (!tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error))
         return false;
@@ -117,7 +118,7 @@ bool tl_run_trace(const struct tl_trace_job *job, tl_error *error)
 bool tl_run_mirrors(const struct tl_mirrors_job *job, tl_error *error)
 {
     (void)error;
-    tl_mirrors_trace(job->mirrors, job->trace, &job->shapes->ranges, *job->has_ground ? job->ground : NULL,
-                     job->samples);
+    tl_mirrors_trace(job->mirrors, job->trace, &job->shapes->ranges,
+                     job->ground_input->is_drawn ? job->ground : NULL, job->samples);
     return true;
 }

@@ -85,13 +85,13 @@ static uint64_t revision_of(const struct tl_ground *ground)
     return mixed;
 }
 
-void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out)
+void tl_ground_make(const struct tl_casters *casters, vec3s colour, struct tl_ground *out)
 {
     float height = fmaxf(casters->centre.y + casters->radius, casters->radius);
     out->radius = RADIUS_PER_FIGURE * height;
     out->centre = (vec3s){{casters->centre.x, 0, casters->centre.z}};
     out->material = tl_material_default("ground");
-    out->material.diffuse = (vec3s){{0.4f, 0.4f, 0.4f}};
+    out->material.diffuse = colour;
     out->material.specular = (vec3s){{0, 0, 0}};
     out->part = (struct tl_mesh_part){.index_count = TL_GROUND_INDICES};
     place_vertices(out);

@@ -1,4 +1,4 @@
-/* The ground: a matt grey disc at y = 0 under whatever stands there, so that a figure casts a shadow on
+/* The ground: a matt disc at y = 0 under whatever stands there, so that a figure casts a shadow on
  * something. It fades towards its rim and so melts into the background; light from below is stopped by as
  * much as the disc covers where the ray meets it (ground.glsl). Pure. */
 #ifndef TOILE_RENDER_SURFACES_GROUND_H
@@ -37,8 +37,11 @@ struct tl_ground {
     uint32_t indices[TL_GROUND_INDICES];
 };
 
-/* Fills `out` in place; it must not be moved while its surface is used. */
-void tl_ground_make(const struct tl_casters *casters, struct tl_ground *out);
+/* The reflectance of a ground that is no real place's. */
+#define TL_GROUND_GREY ((vec3s){{0.4f, 0.4f, 0.4f}})
+
+/* Fills `out` in place; it must not be moved while its surface is used. `colour` is its reflectance. */
+void tl_ground_make(const struct tl_casters *casters, vec3s colour, struct tl_ground *out);
 
 /* As in ground.glsl: the opacity of the disc at a point of its plane; and its transmittance for light from
  * `direction` at `point`. NULL: there is no ground. */

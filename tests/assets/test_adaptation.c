@@ -2,6 +2,7 @@
  * are shown like. */
 #include "assets/adaptation.h"
 #include "assets/builtin/studio.h"
+#include "config/memory.h"
 #include "tests/testing.h"
 
 #include <math.h>
@@ -103,11 +104,43 @@ static void test_studio(void **state)
     tl_environment_release(&studio);
 }
 
+/* A lat-long and a cube, white above and of a colour below the horizon: that is the ground's reflectance,
+ * within what a ground may have. The same upside down is as bright a ground as may be. */
+static void test_ground(void **state)
+{
+    (void)state;
+    const float colours[][3] = {{0.2f, 0.3f, 0.1f}, {0.01f, 0.01f, 0.01f}, {3, 3, 3}, {0, 0, 0}};
+    const float expected[][3] = {{0.2f, 0.3f, 0.1f},
+                                 {TL_GROUND_DARKEST, TL_GROUND_DARKEST, TL_GROUND_DARKEST},
+                                 {TL_GROUND_BRIGHTEST, TL_GROUND_BRIGHTEST, TL_GROUND_BRIGHTEST},
+                                 {TL_GROUND_DARKEST, TL_GROUND_DARKEST, TL_GROUND_DARKEST}};
+    for (size_t i = 0; i < TL_COUNT(colours); i++)
+        for (int layout = 0; layout < 2; layout++) {
+            const int side = 32, width = layout ? side : 64, rows = layout ? 6 * side : 32;
+            tl_environment place = latlong_of(width, rows);
+            place.layout = layout ? TL_ENV_CUBE : TL_ENV_LATLONG;
+            for (int y = 0; y < rows; y++) {
+                int face = y / side;
+                bool is_below = layout ? face == 3 || (face != 2 && y % side >= side / 2) : y >= rows / 2;
+                for (int x = 0; x < width; x++)
+                    for (int c = 0; c < 3; c++)
+                        tl_image_floats(&place.image)[3 * (y * width + x) + c] = is_below ? colours[i][c] : 1;
+            }
+            vec3s ground = tl_adaptation_ground(&place);
+            for (int c = 0; c < 3; c++)
+                assert_near((double)ground.raw[c], (double)expected[i][c], 1e-3);
+            tl_environment_release(&place);
+        }
+    tl_environment dark = tl_environment_constant(0, 0, 0);
+    assert_true(tl_adaptation_ground(&dark).g == 0);
+    tl_environment_release(&dark);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_uniform), cmocka_unit_test(test_tint),   cmocka_unit_test(test_lamp),
-        cmocka_unit_test(test_cube),    cmocka_unit_test(test_studio),
+        cmocka_unit_test(test_cube),    cmocka_unit_test(test_studio), cmocka_unit_test(test_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

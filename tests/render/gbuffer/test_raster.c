@@ -355,7 +355,7 @@ static void open_figure(struct figure *figure)
         figure->drawn[i] = &figure->surfaces[i];
     }
     assert_ok(tl_casters_measure(figure->surfaces, 2, &casters, &error), error);
-    tl_ground_make(&casters, &figure->ground);
+    tl_ground_make(&casters, TL_GROUND_GREY, &figure->ground);
     figure->drawn[2] = &figure->ground.surface;
 }
 

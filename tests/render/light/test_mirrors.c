@@ -161,7 +161,7 @@ static void ground_is_met_where_it_lies(void **state)
 {
     (void)state;
     struct tl_ground *ground = TL_NEW(struct tl_ground);
-    tl_ground_make(&(struct tl_casters){.centre = {{0.2f, 1, -0.1f}}, .radius = 1}, ground);
+    tl_ground_make(&(struct tl_casters){.centre = {{0.2f, 1, -0.1f}}, .radius = 1}, TL_GROUND_GREY, ground);
     for (int i = 0; i < 500; i++) {
         bool on_border = i % 2; /* of two segments */
         float angle = on_border ? 2 * (float)M_PI * (float)i / TL_GROUND_SEGMENTS : 0.37f * (float)i;

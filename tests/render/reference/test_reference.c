@@ -58,7 +58,7 @@ static tl_image draw(struct test_scene *scene, struct tl_reference_report *repor
     if (has_ground) {
         struct tl_casters casters;
         assert_ok(tl_casters_measure(scene->surfaces, scene->shape_count, &casters, &error), error);
-        tl_ground_make(&casters, &ground);
+        tl_ground_make(&casters, TL_GROUND_GREY, &ground);
     }
     const struct tl_reference_request request =
         tl_frame_reference_request(&scene->frame, &scene->settings, has_ground ? &ground : NULL);

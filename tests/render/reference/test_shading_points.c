@@ -216,7 +216,7 @@ static void compare_all(struct test_device *device, const struct maps *maps, con
     struct tl_casters casters;
     assert_ok(tl_casters_measure(surfaces, 3, &casters, &error), error);
     struct tl_ground *ground = TL_NEW(struct tl_ground);
-    tl_ground_make(&casters, ground);
+    tl_ground_make(&casters, TL_GROUND_GREY, ground);
     struct tl_reference_scene scene;
     const struct tl_reference_request request = tl_frame_reference_request(&frame, &settings, ground);
     assert_ok(tl_reference_scene_make(&request, &scene, &error), error);

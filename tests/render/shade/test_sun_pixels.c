@@ -64,7 +64,7 @@ static void finish_sunny(struct sunny *scene)
     }
     struct tl_casters casters;
     assert_ok(tl_casters_measure(scene->surfaces, scene->shape_count, &casters, &error), error);
-    tl_ground_make(&casters, &scene->ground);
+    tl_ground_make(&casters, TL_GROUND_GREY, &scene->ground);
     scene->listed[scene->shape_count] = &scene->ground.surface;
     scene->trace = tl_trace_create(&error);
     assert_ok(scene->trace && tl_trace_update(scene->trace, scene->surfaces, scene->shape_count, &error),

@@ -8,7 +8,7 @@ static struct tl_ground ground;
 static int make_ground(void **state)
 {
     (void)state;
-    tl_ground_make(&(struct tl_casters){{{0.2f, 0.9f, -0.1f}}, 0.9f}, &ground);
+    tl_ground_make(&(struct tl_casters){{{0.2f, 0.9f, -0.1f}}, 0.9f}, TL_GROUND_GREY, &ground);
     return 0;
 }
 

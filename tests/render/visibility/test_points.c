@@ -128,7 +128,7 @@ static void stage_open(struct stage *stage, int region_count)
     stage->shapes[0] = stage->sheet.surface;
     stage->shapes[1] = stage->sphere.surface;
     assert_ok(tl_casters_measure(stage->shapes, 2, &stage->casters, &error), error);
-    tl_ground_make(&stage->casters, &stage->ground);
+    tl_ground_make(&stage->casters, TL_GROUND_GREY, &stage->ground);
     stage->all[0] = &stage->shapes[0];
     stage->all[1] = &stage->shapes[1];
     stage->all[2] = &stage->ground.surface;
