@@ -87,8 +87,7 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     resources->surfaces = tl_surfaces_create(gpu);
     tl_surfaces_use_detail(resources->surfaces, &resources->detail);
     resources->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
-    tl_ground_make(&(struct tl_casters){.radius = TL_CASTERS_RADIUS_MIN}, TL_GROUND_GREY,
-                   &resources->ground);
+    tl_ground_make(&(struct tl_casters){.radius = TL_CASTERS_RADIUS_MIN}, TL_GROUND_GREY, &resources->ground);
     resources->points = tl_points_create();
     resources->trace = tl_trace_create(error);
     resources->maps = tl_shadow_maps_create(gpu, error);
