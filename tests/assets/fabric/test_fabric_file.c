@@ -14,7 +14,7 @@
 #include <unistd.h>
 #include <zip.h>
 
-#define SCRATCH "test_fabric.scratch"
+#define SCRATCH TOILE_SCRATCH_DIR "/fabric_file"
 
 static void write_text(const char *name, const char *text)
 {
