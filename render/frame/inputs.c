@@ -220,7 +220,10 @@ struct tl_ground_input tl_input_ground(const tl_frame *frame, const struct tl_im
 {
     vec3s known = frame->environment->ground;
     bool is_known = known.r > 0 || known.g > 0 || known.b > 0;
-    return (struct tl_ground_input){.is_drawn = image->ground, .colour = is_known ? known : TL_GROUND_GREY};
+    vec3s colour = is_known ? known : TL_GROUND_GREY;
+    if (image->ground_grey > 0)
+        colour = glms_vec3_fill(image->ground_grey);
+    return (struct tl_ground_input){.is_drawn = image->ground, .colour = colour};
 }
 
 struct tl_image_params tl_input_show(const struct tl_image_params *image)

@@ -26,7 +26,9 @@ static const struct tl_option image_rows[] = {
     TL_OPTION_ENUM(image_params, background, TL_AFFECTS_SHOW | TL_AFFECTS_AT_ONCE, background_names,
                    "background, on the screen and in PNG files"),
     TL_OPTION_BOOL(image_params, ground, TL_AFFECTS_GROUND | TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE,
-                   "a matt disc at y = 0 that receives shadows, as dark as the environment's own ground"),
+                   "a matt disc at y = 0 that receives shadows"),
+    TL_OPTION_FLOAT(image_params, ground_grey, TL_AFFECTS_GROUND, 0, 1, "",
+                    "reflectance of that disc; 0: of the ground that the environment file shows"),
     TL_OPTION_ENUM(
         image_params, view, TL_AFFECTS_VIEW, tl_image_view_names,
         "content of the image: light, a quantity that it is computed from, or the strain of the cloth"),
@@ -42,7 +44,7 @@ static const struct tl_option image_rows[] = {
 const struct tl_option_table tl_image_options = TL_OPTION_TABLE(
     "image", "size, quality and content of the image", image_rows, image_params, .width = 960, .height = 540,
     .supersample = 1, .exposure_ev = 0, .adapt = true, .background = TL_BACKGROUND_BLURRED, .ground = true,
-    .scale = 1, .view = TL_VIEW_LIGHT, .view_region = -1, .view_range = 0, .legend = true);
+    .ground_grey = 0, .scale = 1, .view = TL_VIEW_LIGHT, .view_region = -1, .view_range = 0, .legend = true);
 
 static int scaled(int side, const struct tl_image_params *image)
 {

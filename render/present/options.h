@@ -32,6 +32,7 @@ struct tl_image_params { /* table "image" */
     bool adapt;        /* to environments from files: brightness and white; for show only */
     int background;    /* enum tl_background; for show only */
     bool ground;       /* a ground disc at y = 0 */
+    float ground_grey; /* its reflectance; 0: the environment's own */
     int view;          /* enum tl_image_view */
     int view_region;   /* visibility view: of this region; -1: of all, by their power */
     float view_range;  /* strain views: percent at the legend's ends; 0: automatic */

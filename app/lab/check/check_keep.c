@@ -10,6 +10,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/scene/view.h"
+#include "render/surfaces/ground.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,6 +61,8 @@ static struct tl_settings still_settings(const struct tl_settings *settings, con
     strcpy(still.scene.motion, garment ? "garment.pc2" : "none");
     strcpy(still.scene.avatar, avatar ? "avatar.glb" : "none");
     strcpy(still.scene.environment, "environment.exr");
+    if (glms_vec3_eqv(frame->environment->ground, glms_vec3_zero()) && !(still.image.ground_grey > 0))
+        still.image.ground_grey = TL_GROUND_GREY.r; /* the file of a built-in environment shows another one */
     strcpy(still.scene.clip, "none");
     still.scene.units = still.scene.avatar_units = TL_UNITS_M;
     set_camera(&frame->camera, &still.camera);
