@@ -86,17 +86,32 @@ static struct tl_contact_params contact_params(const tl_cloth *cloth, const stru
                                       .h = substep->h};
 }
 
-/* Between middle surfaces of two plies, as a share of the distance to the avatar. */
-#define PLY_SHARE 0.5
+/* While panels are sewn, plies keep this share of the distance to the avatar at least: panels of a pattern
+ * that pass each other more closely stay caught in each other. */
+#define SEWING_PLY_SHARE 0.5
 
-static struct tl_apart_params apart_params(const tl_cloth *cloth, double friction, double h)
+static double ply_distance(const tl_cloth *cloth)
+{
+    double ply = tl_cloth_fabric_ply(&cloth->fabric);
+    return tl_seams_are_closing(&cloth->seams) ? fmax(ply, SEWING_PLY_SHARE * cloth->fabric.thickness_m)
+                                               : ply;
+}
+
+/* Cloth lies on the body where it is nearer than this many times the distance that contact keeps: vertices of
+ * coarse cloth stand higher than the points between them, which touch. */
+#define CARRIER_DISTANCES 3
+
+static struct tl_apart_params apart_params(const tl_cloth *cloth, double friction, double h, double phase)
 {
     return (struct tl_apart_params){.topology = &cloth->topology,
                                     .rest = (const vec2s(*)[3])cloth->rest,
                                     .made_at = cloth->made_at,
-                                    .thickness_m = PLY_SHARE * cloth->fabric.thickness_m,
+                                    .thickness_m = ply_distance(cloth),
                                     .friction = friction,
-                                    .h = h};
+                                    .h = h,
+                                    .body = &cloth->contacts,
+                                    .phase = phase,
+                                    .carrier_m = CARRIER_DISTANCES * cloth->fabric.thickness_m};
 }
 
 /* Whether the garment came crossed and has not come apart yet: its layers, which know what is inside and what
@@ -110,15 +125,17 @@ static bool is_tangled(const tl_cloth *cloth)
  * back. */
 static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
 {
-    const struct tl_apart_params apart = apart_params(cloth, contact->friction, contact->h);
+    const struct tl_apart_params apart = apart_params(cloth, contact->friction, contact->h, contact->phase);
     if (cloth->params.self_contact) {
         tl_apart_solve(&cloth->apart, &apart, &cloth->particles);
         if (is_tangled(cloth))
             tl_layers_solve(&cloth->layers, contact, &cloth->particles);
     }
     tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
-    if (cloth->params.self_contact)
+    if (cloth->params.self_contact) {
+        tl_apart_carry(&cloth->apart, &apart, &cloth->particles);
         tl_apart_truncate(&cloth->apart, &apart, NULL, &cloth->particles);
+    }
 }
 
 /* How near. Farther, so much passes that it cannot be untangled. */
@@ -146,7 +163,7 @@ static void prepare_apart(tl_cloth *cloth)
         let_pass(cloth, &cloth->seams.links[i], classes);
     for (uint32_t i = 0; i < cloth->particles.count; i++)
         classes[i] = tl_sets_find(classes, i);
-    const struct tl_apart_params params = apart_params(cloth, 0, 1);
+    const struct tl_apart_params params = apart_params(cloth, 0, 1, 0);
     tl_apart_prepare(&cloth->apart, &params, classes, cloth->particles.x);
     free(classes);
 }
@@ -156,7 +173,7 @@ static void look_around(tl_cloth *cloth, const struct tl_substep *substep)
 {
     if (!cloth->params.self_contact || !tl_apart_is_due(&cloth->apart, substep->h))
         return;
-    const struct tl_apart_params params = apart_params(cloth, 0, substep->h);
+    const struct tl_apart_params params = apart_params(cloth, 0, substep->h, substep->phase_before);
     tl_apart_renew(&cloth->apart, &params, &cloth->particles, substep->continues_previous);
 }
 
@@ -361,6 +378,14 @@ static void release_caught(tl_cloth *cloth, const tl_collider *collider)
                           &cloth->particles, cloth->contacts.slipped);
 }
 
+/* Cloth that a moving avatar has caught cannot stay both outside of it and on its side of other cloth: it
+ * stays outside, and is untangled later. No vertex enters an avatar at rest, so that there nothing is left to
+ * pass. */
+static const bool *allowed_to_pass(const tl_cloth *cloth, const tl_collider *collider)
+{
+    return collider && tl_collider_travel(collider) > 0 ? cloth->contacts.caught : NULL;
+}
+
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance)
 {
     int steps = tl_cloth_steps_per_frame(&cloth->params);
@@ -372,7 +397,7 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct
                                                   .phase_before = (double)step / steps,
                                                   .phase = (step + 1.0) / steps,
                                                   .h = tl_cloth_step_seconds(cloth)};
-        const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth));
+        const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact.phase);
         tl_contacts_update(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                            (double)step / steps);
         if (is_tangled(cloth))
@@ -381,7 +406,7 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct
         release_caught(cloth, collider);
         tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
         if (cloth->params.self_contact)
-            tl_apart_truncate(&cloth->apart, &apart, cloth->contacts.caught, &cloth->particles);
+            tl_apart_truncate(&cloth->apart, &apart, allowed_to_pass(cloth, collider), &cloth->particles);
         tl_particles_damp(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
                           cloth->topology.edge_count, damping);
     }

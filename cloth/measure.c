@@ -111,13 +111,19 @@ struct tl_energies tl_cloth_energies(const tl_cloth *cloth)
     return energies;
 }
 
+/* Contact's own tree is fitted to other positions whenever it is used. */
+static size_t count_crossings(const tl_cloth *cloth)
+{
+    struct tl_near_tree tree = cloth->apart.near.tree;
+    return tl_crossings_count(cloth->apart.made ? &tree : NULL, &cloth->topology, cloth->particles.x);
+}
+
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider)
 {
     struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
                                      .edge_count = cloth->topology.edge_count,
                                      .triangle_count = cloth->topology.triangle_count,
-                                     .crossing_count =
-                                         tl_crossings_count(&cloth->topology, cloth->particles.x),
+                                     .crossing_count = count_crossings(cloth),
                                      .layer_count = cloth->layers.layer_count,
                                      .open_seams = cloth->seams.pair_count,
                                      .time_s = cloth->time_s,

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Radius of a ball: at rest; times what the vertex moves within WINDOW_SUBSTEPS; at most this share of the
- * mesh's own size there, so that triangles around a vertex need no planes. */
+/* Radius of a ball: at rest; times what the vertex moves within WINDOW_SUBSTEPS, or one substep more than the
+ * last window was of use for; at most this share of the mesh's own size there, so that triangles around a
+ * vertex need no planes. */
 #define RADIUS_M        0.0005
 #define RADIUS_LEAD     1.3
 #define WINDOW_SUBSTEPS 4
@@ -44,10 +45,11 @@
 static void choose_radii(struct tl_apart *apart, const vec3d *x, double h)
 {
     size_t count = apart->near.topology->vertex_count;
+    int lead = apart->substeps + 1 < WINDOW_SUBSTEPS ? apart->substeps + 1 : WINDOW_SUBSTEPS;
 #pragma omp parallel for if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
         double speed = vec3d_norm(vec3d_sub(apart->speed[i], tl_affine_at(&apart->velocity, x[i])));
-        double wanted = RADIUS_M + RADIUS_LEAD * speed * WINDOW_SUBSTEPS * h;
+        double wanted = RADIUS_M + RADIUS_LEAD * speed * lead * h;
         apart->radius[i] = tl_min(wanted, RADIUS_SHARE * apart->size[i]);
     }
 }
@@ -228,6 +230,7 @@ static void look_at(const struct tl_apart *apart, const struct tl_apart_params *
     for (int i = 0; i < second; i++)
         contact.weights[i] = -contact.weights[i];
     contact.normal = normal;
+    contact.edges = pair->edges;
     contact.kept = kept_between(apart, params, pair);
     if (distance < reach + contact.kept)
         add_contact(&found->contacts, &contact);
@@ -286,8 +289,144 @@ static void gather_contacts(struct tl_apart *apart, const struct found *parts, s
             add_contact(&apart->contacts, &parts[part].contacts.contacts[k]);
 }
 
+/* ---- What carries what ---- */
+
+vec3d tl_apart_between(const struct tl_apart_contact *contact, const vec3d *x)
+{
+    vec3d sum = {0};
+    for (int i = 0; i < 4; i++)
+        sum = vec3d_muladd(sum, x[contact->v[i]], contact->weights[i]);
+    return sum;
+}
+
+struct tl_range tl_apart_feature(const struct tl_apart_contact *contact, bool first)
+{
+    size_t second = contact->edges ? 2 : 1;
+    return first ? (struct tl_range){0, second} : (struct tl_range){second, 4};
+}
+
+/* The upper feature of a contact lies on the lower one if the contact's normal has at least this cosine with
+ * the direction away from the body, */
+#define CARRYING_COSINE 0.5
+/* and the gap is less than this many times the kept distance. Vertices of a smaller weight do not count. */
+#define CARRYING_GAPS  2
+#define LEAST_CARRYING 0.1
+
+/* Where vertices are that lie on the body, directly or by way of other cloth. */
+struct carriers {
+    bool *known; /* [vertex] */
+    struct tl_contact_height *at;
+};
+
+static bool is_close(const struct tl_apart_contact *contact, const vec3d *x)
+{
+    return vec3d_dot(tl_apart_between(contact, x), contact->normal) < CARRYING_GAPS * contact->kept;
+}
+
+/* Whether one feature of a contact lies on the other; `lower` is then where the other one is. */
+static bool lies_on(const struct carriers *carriers, const struct tl_apart_contact *contact,
+                    bool first_is_upper, struct tl_contact_height *lower)
+{
+    const struct tl_range range = tl_apart_feature(contact, !first_is_upper);
+    *lower = (struct tl_contact_height){0};
+    for (size_t i = range.from; i < range.to; i++) {
+        double weight = fabs(contact->weights[i]);
+        const struct tl_contact_height *at = &carriers->at[contact->v[i]];
+        if (weight < LEAST_CARRYING)
+            continue;
+        if (!carriers->known[contact->v[i]])
+            return false;
+        lower->up = vec3d_muladd(lower->up, at->up, weight);
+        lower->height_m += weight * at->height_m;
+    }
+    lower->up = vec3d_unit_or(lower->up, (vec3d){0});
+    return vec3d_dot(lower->up, contact->normal) * (first_is_upper ? -1 : 1) >= CARRYING_COSINE;
+}
+
+/* Vertices of the upper feature that are not known to lie on anything are one ply above the lower one. */
+static void raise_upper(const struct tl_apart_contact *contact, bool first_is_upper,
+                        const struct tl_contact_height *lower, struct carriers *carriers)
+{
+    const struct tl_range range = tl_apart_feature(contact, first_is_upper);
+    for (size_t i = range.from; i < range.to; i++) {
+        uint32_t v = contact->v[i];
+        if (carriers->known[v] || fabs(contact->weights[i]) < LEAST_CARRYING)
+            continue;
+        carriers->known[v] = true;
+        carriers->at[v] = (struct tl_contact_height){vec3d_scale(contact->normal, first_is_upper ? -1 : 1),
+                                                     lower->height_m + contact->kept};
+    }
+}
+
+static int compare_carried(const void *a, const void *b)
+{
+    const struct tl_apart_carried *left = a, *right = b;
+    if (left->height_m != right->height_m)
+        return left->height_m < right->height_m ? -1 : 1;
+    return (left->contact > right->contact) - (left->contact < right->contact);
+}
+
+/* Appends the contacts among `undecided` [count] in which a feature lies on a known one, until there are no
+ * more: each pass goes one ply farther at least. */
+static void find_carried(struct tl_apart *apart, uint32_t *undecided, size_t count, struct carriers *carriers)
+{
+    for (size_t before = SIZE_MAX; count < before;) {
+        before = count;
+        count = 0;
+        for (size_t k = 0; k < before; k++) {
+            const struct tl_apart_contact *contact = &apart->contacts.contacts[undecided[k]];
+            struct tl_contact_height lower;
+            bool first = lies_on(carriers, contact, true, &lower);
+            if (!first && !lies_on(carriers, contact, false, &lower)) {
+                undecided[count++] = undecided[k];
+                continue;
+            }
+            raise_upper(contact, first, &lower, carriers);
+            apart->carried[apart->carried_count++] = (struct tl_apart_carried){
+                .height_m = lower.height_m, .contact = undecided[k], .first = first};
+        }
+    }
+}
+
+/* Orders the contacts that carry from the body outwards. */
+static void order_carried(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x)
+{
+    size_t count = apart->near.topology->vertex_count, contact_count = apart->contacts.count, close = 0;
+    apart->carried_count = 0;
+    if (!params->body || contact_count == 0)
+        return;
+    struct carriers carriers = {TL_NEW_ARRAY(bool, count), TL_NEW_ARRAY(struct tl_contact_height, count)};
+    for (size_t i = 0; i < count; i++)
+        carriers.known[i] = tl_contacts_height(params->body, i, x[i], params->phase, &carriers.at[i]) &&
+                            carriers.at[i].height_m < params->carrier_m;
+    uint32_t *undecided = TL_NEW_ARRAY(uint32_t, contact_count);
+    for (size_t k = 0; k < contact_count; k++)
+        if (is_close(&apart->contacts.contacts[k], x))
+            undecided[close++] = (uint32_t)k;
+    if (close > apart->carried_capacity) {
+        apart->carried_capacity = 2 * close;
+        apart->carried = tl_resize(apart->carried, apart->carried_capacity, sizeof *apart->carried);
+    }
+    find_carried(apart, undecided, close, &carriers);
+    if (apart->carried_count > 0)
+        qsort(apart->carried, apart->carried_count, sizeof *apart->carried, compare_carried);
+    free(undecided);
+    free(carriers.known);
+    free(carriers.at);
+}
+
+/* Planes on the body's surface, for vertices that could enter it. */
+static void add_body(const struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
+                     struct found *found)
+{
+    struct tl_contact_height at;
+    for (size_t i = 0; i < apart->near.topology->vertex_count && params->body; i++)
+        if (tl_contacts_height(params->body, i, x[i], params->phase, &at))
+            add_plane(found, (uint32_t)i, vec3d_scale(at.up, -1), at.height_m, apart->radius[i]);
+}
+
 static void find_planes(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
-                        double stretch)
+                        double stretch, bool still)
 {
     size_t count = apart->near.topology->vertex_count;
     size_t part_count = count >= TL_NEAR_PARALLEL_VERTICES ? (size_t)omp_get_max_threads() : 1;
@@ -300,8 +439,11 @@ static void find_planes(struct tl_apart *apart, const struct tl_apart_params *pa
         struct tl_range range = tl_thread_range(apart->near.pair_count, 1);
         look_at_range(apart, params, x, reach, range, &parts[omp_get_thread_num()]);
     }
+    if (still)
+        add_body(apart, params, x, &parts[part_count - 1]);
     gather_planes(apart, parts, part_count);
     gather_contacts(apart, parts, part_count);
+    order_carried(apart, params, x);
     for (size_t part = 0; part < part_count; part++) {
         apart->clean = apart->clean && !parts[part].touching;
         free(parts[part].contacts.contacts);
@@ -334,7 +476,7 @@ static void choose_common_motion(struct tl_apart *apart, const vec3d *x, double 
 /* Makes the window at positions `x` for the speeds that are known; its balls hold `to`, if that is not NULL.
  */
 static void make_window(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
-                        const vec3d *to)
+                        const vec3d *to, bool still)
 {
     struct tl_near *near = &apart->near;
     size_t count = near->topology->vertex_count;
@@ -344,6 +486,8 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
         apart->was_clean = apart->was_clean || apart->clean;
     }
     choose_common_motion(apart, x, params->h);
+    if (still)
+        apart->velocity = (struct tl_affine){0};
     choose_radii(apart, x, params->h);
     tl_apart_set_time(apart, to ? params->h : 0);
     if (to)
@@ -356,7 +500,7 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
     memcpy(apart->base, x, count * sizeof *x);
     for (size_t i = 0; i < count; i++)
         apart->radius[i] = tl_min(apart->radius[i], (near->reach[i] - apart->off[i]) / stretch);
-    find_planes(apart, params, x, stretch);
+    find_planes(apart, params, x, stretch, still);
     apart->current = true;
     apart->rim = apart->stopped = false;
     apart->substeps = to ? 1 : 0;
@@ -371,15 +515,15 @@ void tl_apart_renew(struct tl_apart *apart, const struct tl_apart_params *params
     for (size_t i = 0; i < count; i++)
         apart->speed[i] = velocity_from_positions ? vec3d_scale(vec3d_sub(x[i], before[i]), 1 / params->h)
                                                   : particles->v[i];
-    make_window(apart, params, x, NULL);
+    make_window(apart, params, x, NULL, false);
 }
 
 void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params,
-                    const struct tl_particles *particles)
+                    const struct tl_particles *particles, bool still)
 {
     size_t count = apart->near.topology->vertex_count;
     const vec3d *x = particles->x, *before = particles->previous;
     for (size_t i = 0; i < count; i++)
         apart->speed[i] = vec3d_scale(vec3d_sub(x[i], before[i]), 1 / params->h);
-    make_window(apart, params, before, x);
+    make_window(apart, params, before, x, still);
 }

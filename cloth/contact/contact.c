@@ -306,6 +306,19 @@ static void solve_sample(const struct surroundings *surroundings, const struct t
         tl_contact_sample_push(sample, vec3d_scale(push, 1 / inverse), particles->w, particles->x);
 }
 
+bool tl_contacts_height(const struct tl_contacts *contacts, size_t particle, vec3d x, double phase,
+                        struct tl_contact_height *out)
+{
+    const struct tl_contact_cache *cache = &contacts->caches[particle];
+    const struct surroundings surroundings = surroundings_of(contacts->collider);
+    *out = (struct tl_contact_height){.height_m = HUGE_VAL};
+    if (surroundings.collider && cache->near)
+        *out = (struct tl_contact_height){cache->normal, distance_to(cache, x, phase)};
+    if (surroundings.ground && x.y < tl_min(out->height_m, REACH_M))
+        *out = (struct tl_contact_height){{0, 1, 0}, x.y};
+    return out->height_m < HUGE_VAL;
+}
+
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles)
 {

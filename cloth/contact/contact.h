@@ -85,6 +85,15 @@ struct tl_contact_plane {
 size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
                           size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
 
+/* Where a particle is above the nearer of avatar and ground, as far as the caches know: returns false if
+ * neither is known to be near. */
+struct tl_contact_height {
+    vec3d up; /* outward, unit */
+    double height_m;
+};
+bool tl_contacts_height(const struct tl_contacts *contacts, size_t particle, vec3d x, double phase,
+                        struct tl_contact_height *out);
+
 /* Moves particles and probes out of the collider and applies friction to their displacement. Call it after
  * the other constraints of the substep: they could push particles back inside. */
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,

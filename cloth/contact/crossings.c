@@ -73,22 +73,25 @@ void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topo
     free(found);
 }
 
-/* `pairs` is replaced. */
-static void find_as_drawn(const struct tl_topology *topology, const vec3d *x, struct tl_near_pairs *pairs)
+/* `pairs` is replaced. `known` NULL: builds a tree. */
+static void find_as_drawn(struct tl_near_tree *known, const struct tl_topology *topology, const vec3d *x,
+                          struct tl_near_pairs *pairs)
 {
     vec3d *drawn = TL_NEW_ARRAY(vec3d, topology->vertex_count);
     for (size_t i = 0; i < topology->vertex_count; i++)
         drawn[i] = vec3d_from(vec3d_to_float(x[i]));
-    struct tl_near_tree tree = tl_near_tree_create(topology, drawn);
-    tl_crossings_find(&tree, topology, drawn, pairs);
-    tl_near_tree_release(&tree);
+    struct tl_near_tree own = {0};
+    if (!known)
+        own = tl_near_tree_create(topology, drawn);
+    tl_crossings_find(known ? known : &own, topology, drawn, pairs);
+    tl_near_tree_release(&own);
     free(drawn);
 }
 
-size_t tl_crossings_count(const struct tl_topology *topology, const vec3d *x)
+size_t tl_crossings_count(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x)
 {
     struct tl_near_pairs pairs = {0};
-    find_as_drawn(topology, x, &pairs);
+    find_as_drawn(tree, topology, x, &pairs);
     size_t count = pairs.count;
     tl_near_pairs_release(&pairs);
     return count;
@@ -105,7 +108,7 @@ size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *c
     for (size_t i = 0; i < mesh->vertex_count; i++)
         x[weld[i]] = vec3d_from(positions[i]);
     if (topology.triangle_count > 0)
-        find_as_drawn(&topology, x, &pairs);
+        find_as_drawn(NULL, &topology, x, &pairs);
     if (crossed)
         memset(crossed, 0, mesh->index_count / 3 * sizeof *crossed);
     for (size_t i = 0; crossed && i < pairs.count; i++)

@@ -23,9 +23,9 @@ bool tl_triangles_cross(const uint32_t a[3], const uint32_t b[3], const vec3d *x
 void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x,
                        struct tl_near_pairs *out);
 
-/* The number of crossing pairs of positions as they are drawn, that is, rounded to single precision. Builds
- * its own tree. */
-size_t tl_crossings_count(const struct tl_topology *topology, const vec3d *x);
+/* The number of crossing pairs of positions as they are drawn, that is, rounded to single precision. `tree`
+ * is as for tl_crossings_find; NULL: one is built, which takes longer than the search. */
+size_t tl_crossings_count(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x);
 
 /* The same for a mesh whose vertices are at `positions` [vertex_count]; those at the same place are one.
  * Where `crossed` is not NULL, sets crossed[t] for each triangle [index_count / 3] that crosses another one,

@@ -33,6 +33,7 @@ void tl_apart_release(struct tl_apart *apart)
     free(apart->plane_first);
     free(apart->planes);
     free(apart->contacts.contacts);
+    free(apart->carried);
     *apart = (struct tl_apart){0};
 }
 
@@ -91,29 +92,22 @@ bool tl_apart_is_due(const struct tl_apart *apart, double h)
 
 /* ---- Contacts ---- */
 
-static vec3d between(const struct tl_apart_contact *contact, const vec3d *x)
-{
-    vec3d sum = {0};
-    for (int i = 0; i < 4; i++)
-        sum = vec3d_muladd(sum, x[contact->v[i]], contact->weights[i]);
-    return sum;
-}
-
 /* Removes the depth of this substep, and of the depth before it what PUSH_SPEED allows. Friction reduces the
  * slip of this substep by at most `friction` times the depth of this substep, as for the avatar (contact.h).
- */
+ * Only the `movable` ones of the four vertices move. */
 static void solve_contact(const struct tl_apart *apart, const struct tl_apart_contact *contact,
-                          const struct tl_apart_params *params, struct tl_particles *particles)
+                          struct tl_range movable, const struct tl_apart_params *params,
+                          struct tl_particles *particles)
 {
-    vec3d now = between(contact, particles->x);
+    vec3d now = tl_apart_between(contact, particles->x);
     double depth = contact->kept - vec3d_dot(now, contact->normal);
     if (!(depth > 0))
         return;
-    vec3d before = between(contact, particles->previous);
+    vec3d before = tl_apart_between(contact, particles->previous);
     double depth_before = tl_max(contact->kept - vec3d_dot(before, contact->normal), 0);
     double speed = tl_min(PUSH_SPEED, PUSH_SIZES * apart->size[contact->v[0]]);
     double push = depth - tl_max(depth_before - speed * params->h, 0), inverse = 0;
-    for (int i = 0; i < 4; i++)
+    for (size_t i = movable.from; i < movable.to; i++)
         inverse += particles->w[contact->v[i]] * contact->weights[i] * contact->weights[i];
     if (!(push > 0) || !(inverse > 0))
         return;
@@ -123,7 +117,7 @@ static void solve_contact(const struct tl_apart *apart, const struct tl_apart_co
     vec3d move = vec3d_scale(contact->normal, push);
     move = vec3d_muladd(move, slip, length > held ? -held / length : -1);
     move = vec3d_scale(move, 1 / inverse);
-    for (int i = 0; i < 4; i++) {
+    for (size_t i = movable.from; i < movable.to; i++) {
         uint32_t v = contact->v[i];
         particles->x[v] = vec3d_muladd(particles->x[v], move, particles->w[v] * contact->weights[i]);
     }
@@ -137,7 +131,17 @@ void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params
     if (!apart->clean)
         tl_untangle_push(&apart->untangle, params->h, particles);
     for (size_t i = 0; i < apart->contacts.count; i++)
-        solve_contact(apart, &apart->contacts.contacts[i], params, particles);
+        solve_contact(apart, &apart->contacts.contacts[i], (struct tl_range){0, 4}, params, particles);
+}
+
+void tl_apart_carry(struct tl_apart *apart, const struct tl_apart_params *params,
+                    struct tl_particles *particles)
+{
+    for (size_t i = 0; i < apart->carried_count; i++) {
+        const struct tl_apart_carried *carried = &apart->carried[i];
+        const struct tl_apart_contact *contact = &apart->contacts.contacts[carried->contact];
+        solve_contact(apart, contact, tl_apart_feature(contact, carried->first), params, particles);
+    }
 }
 
 /* ---- Truncation ---- */
@@ -179,10 +183,19 @@ struct truncation {
     bool rim, stopped;
     bool over; /* a vertex that wants to leave its ball, or far past a plane, was left where it is */
     bool let_go;
+    bool sunk; /* a vertex was moved into the body */
 };
 
+static bool sinks(const struct tl_apart_params *params, size_t i, vec3d from, vec3d to)
+{
+    struct tl_contact_height above, at;
+    return params->body && tl_contacts_height(params->body, i, to, params->phase, &at) && at.height_m < 0 &&
+           tl_contacts_height(params->body, i, from, params->phase, &above) && at.height_m < above.height_m;
+}
+
 /* `last`: a vertex that wants to leave its ball, or far past a plane, is moved back too. */
-static void truncate_one(const struct tl_apart *apart, size_t i, bool last, vec3d *x, struct truncation *seen)
+static void truncate_one(const struct tl_apart *apart, const struct tl_apart_params *params, size_t i,
+                         bool last, vec3d *x, struct truncation *seen)
 {
     double radius = apart->radius[i];
     vec3d d = vec3d_sub(tl_affine_undo(&apart->back, *x), apart->base[i]);
@@ -196,25 +209,30 @@ static void truncate_one(const struct tl_apart *apart, size_t i, bool last, vec3
     vec3d kept = bounded(d, radius, apart->planes + from, to - from, &seen->stopped);
     bool cut = vec3d_distance(kept, d) > CUT_M;
     seen->over |= cut && !last;
-    if (!(cut && !last) && (kept.x != d.x || kept.y != d.y || kept.z != d.z))
-        *x = tl_affine_apply(&apart->moved, vec3d_add(apart->base[i], kept));
+    if ((cut && !last) || (kept.x == d.x && kept.y == d.y && kept.z == d.z))
+        return;
+    vec3d result = tl_affine_apply(&apart->moved, vec3d_add(apart->base[i], kept));
+    seen->sunk |= sinks(params, i, *x, result);
+    *x = result;
 }
 
-static struct truncation truncate_all(const struct tl_apart *apart, const bool *free, bool last, vec3d *x)
+static struct truncation truncate_all(const struct tl_apart *apart, const struct tl_apart_params *params,
+                                      const bool *free, bool last, vec3d *x)
 {
     size_t count = apart->near.topology->vertex_count;
-    bool rim = false, stopped = false, over = false, let_go = false;
-#pragma omp parallel for reduction(|| : rim, stopped, over, let_go) if (count >= TL_PARALLEL_VERTICES)
+    bool rim = false, stopped = false, over = false, let_go = false, sunk = false;
+#pragma omp parallel for reduction(|| : rim, stopped, over, let_go, sunk) if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
         struct truncation seen = {.let_go = free && free[i]};
         if (!seen.let_go)
-            truncate_one(apart, i, last, &x[i], &seen);
+            truncate_one(apart, params, i, last, &x[i], &seen);
         rim = rim || seen.rim;
         stopped = stopped || seen.stopped;
         over = over || seen.over;
         let_go = let_go || seen.let_go;
+        sunk = sunk || seen.sunk;
     }
-    return (struct truncation){rim, stopped, over, let_go};
+    return (struct truncation){rim, stopped, over, let_go, sunk};
 }
 
 void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
@@ -222,10 +240,14 @@ void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *par
 {
     if (!apart->current)
         return;
-    struct truncation seen = truncate_all(apart, free, false, particles->x);
+    struct truncation seen = truncate_all(apart, params, free, false, particles->x);
     if (seen.over) {
-        tl_apart_widen(apart, params, particles);
-        seen = truncate_all(apart, free, true, particles->x);
+        tl_apart_widen(apart, params, particles, false);
+        seen = truncate_all(apart, params, free, true, particles->x);
+    }
+    if (seen.sunk) {
+        tl_apart_widen(apart, params, particles, true);
+        seen = truncate_all(apart, params, free, true, particles->x);
     }
     apart->clean = apart->clean && !seen.let_go;
     apart->current = apart->current && !seen.let_go;

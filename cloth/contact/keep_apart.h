@@ -14,18 +14,27 @@
  * Truncation is the guarantee and knows neither thickness nor friction; contacts do: a pair that is nearer
  * than `kept` is pushed apart, by mass, with Coulomb friction.
  *
+ * Cloth is carried by cloth that lies on the body (avatar or ground): one sweep over contacts moves a stack
+ * of n sheets by one nth of what its weight needs, so the stack would be pressed together, and creep down a
+ * slope. A second sweep goes from the body outwards and moves the upper feature of each contact only, as if
+ * the lower one were fixed ("shock propagation" in Guendelman, Bridson and Fedkiw, "Nonconvex rigid bodies
+ * with stacking", 2003).
+ *
  * Cloth that comes crossed is untangled (untangle.h) before all this holds.
  *
- * Each substep calls tl_apart_renew if tl_apart_is_due, tl_apart_solve, and after all other constraints
- * tl_apart_truncate. Metres, seconds. Errors: none. Lifetime: a plain struct that owns its arrays; it starts
- * as {0}. The topology must outlive it. Threads: one call at a time. */
+ * Each substep calls tl_apart_renew if tl_apart_is_due, tl_apart_solve, after contact with the body
+ * tl_apart_carry, and after all other constraints tl_apart_truncate. Metres, seconds. Errors: none. Lifetime:
+ * a plain struct that owns its arrays; it starts as {0}. The topology must outlive it. Threads: one call at a
+ * time. */
 #ifndef TOILE_CLOTH_CONTACT_KEEP_APART_H
 #define TOILE_CLOTH_CONTACT_KEEP_APART_H
 
 #include "cloth/contact/affine.h"
+#include "cloth/contact/contact.h"
 #include "cloth/contact/near.h"
 #include "cloth/contact/untangle.h"
 #include "cloth/mesh/particles.h"
+#include "cloth/mesh/threads.h"
 
 /* A vertex's displacement d from its base satisfies d.normal <= room. */
 struct tl_apart_plane {
@@ -39,11 +48,25 @@ struct tl_apart_contact {
     double weights[4];
     vec3d normal; /* from the first feature to the second */
     double kept;  /* m */
+    bool edges;   /* as in struct tl_near_pair */
 };
 
 struct tl_apart_contacts {
     size_t count, capacity;
     struct tl_apart_contact *contacts;
+};
+
+/* The vector from the first feature's point to the second one's, of a contact at positions x. */
+vec3d tl_apart_between(const struct tl_apart_contact *contact, const vec3d *x);
+
+/* Which of v[4] are the first feature's, or the second one's. */
+struct tl_range tl_apart_feature(const struct tl_apart_contact *contact, bool first);
+
+/* A contact in which one feature lies on the other, as seen from the body. */
+struct tl_apart_carried {
+    double height_m; /* of the lower feature */
+    uint32_t contact;
+    bool first; /* the first feature is the upper one */
 };
 
 /* What the caller gives each time; borrowed for the call. */
@@ -53,7 +76,10 @@ struct tl_apart_params {
     const vec3d *made_at;   /* [vertex] m: pairs that were made nearer than thickness_m keep that distance */
     double thickness_m;     /* between middle surfaces of two plies */
     double friction;
-    double h; /* the substep */
+    double h;                       /* the substep */
+    const struct tl_contacts *body; /* NULL: nothing carries the cloth */
+    double phase;                   /* of the body's motion */
+    double carrier_m;               /* what is nearer to the body than this lies on it */
 };
 
 struct tl_apart {
@@ -76,6 +102,8 @@ struct tl_apart {
     size_t plane_capacity;
     struct tl_apart_plane *planes;
     struct tl_apart_contacts contacts;
+    size_t carried_count, carried_capacity;
+    struct tl_apart_carried *carried; /* [carried_count] from the body outwards */
     bool clean;     /* no pair crosses or touches: planes then keep it so, and nothing is searched */
     bool was_clean; /* at some time since tl_apart_forget */
     struct tl_untangle untangle;
@@ -106,10 +134,14 @@ void tl_apart_renew(struct tl_apart *apart, const struct tl_apart_params *params
 void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params,
                     struct tl_particles *particles);
 
+/* Carries what lies on cloth that lies on the body, after contact with the body has moved that. */
+void tl_apart_carry(struct tl_apart *apart, const struct tl_apart_params *params,
+                    struct tl_particles *particles);
+
 /* Makes a window in the middle of a substep, at the positions before it, whose balls hold the present ones.
- */
+ * If it is `still`, it knows no common motion, and no vertex enters the body that was outside before. */
 void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params,
-                    const struct tl_particles *particles);
+                    const struct tl_particles *particles, bool still);
 
 /* Sets the window's time, and its common motion's place at that time. */
 void tl_apart_set_time(struct tl_apart *apart, double time_s);

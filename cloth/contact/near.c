@@ -354,19 +354,30 @@ static void try_pair(const struct tl_near *near, struct tl_near_pair pair, struc
         end_batch(near, out, batch);
 }
 
-/* Whether a plane across the line between the centres separates two triangles by more than their reach. */
-static bool are_apart(const struct tl_near *near, uint32_t first, uint32_t second, const vec3d *x)
+/* Whether a plane across `along` separates two triangles, the first below, by more than `most` metres. */
+static bool plane_parts(const uint32_t a[3], const uint32_t b[3], vec3d along, double most, const vec3d *x)
 {
-    const uint32_t *a = near->topology->triangles[first], *b = near->topology->triangles[second];
-    vec3d along = vec3d_sub(vec3d_add(vec3d_add(x[b[0]], x[b[1]]), x[b[2]]),
-                            vec3d_add(vec3d_add(x[a[0]], x[a[1]]), x[a[2]]));
     double below = vec3d_dot(along, x[a[0]]), above = vec3d_dot(along, x[b[0]]);
     for (int i = 1; i < 3; i++) {
         below = tl_max(below, vec3d_dot(along, x[a[i]]));
         above = tl_min(above, vec3d_dot(along, x[b[i]]));
     }
-    double gap = above - below, most = near->margin + near->ranges[first] + near->ranges[second];
+    double gap = above - below;
     return gap > 0 && gap * gap > most * most * vec3d_dot(along, along);
+}
+
+/* Whether two triangles are farther apart than their reach: along the line between their centres, or, as
+ * layers are, along the first one's normal. */
+static bool are_apart(const struct tl_near *near, uint32_t first, uint32_t second, const vec3d *x)
+{
+    const uint32_t *a = near->topology->triangles[first], *b = near->topology->triangles[second];
+    vec3d along = vec3d_sub(vec3d_add(vec3d_add(x[b[0]], x[b[1]]), x[b[2]]),
+                            vec3d_add(vec3d_add(x[a[0]], x[a[1]]), x[a[2]]));
+    double most = near->margin + near->ranges[first] + near->ranges[second];
+    if (plane_parts(a, b, along, most, x))
+        return true;
+    vec3d normal = vec3d_cross(vec3d_sub(x[a[1]], x[a[0]]), vec3d_sub(x[a[2]], x[a[0]]));
+    return plane_parts(a, b, vec3d_scale(normal, vec3d_dot(normal, along) < 0 ? -1 : 1), most, x);
 }
 
 static void list_features(const struct tl_near *near, uint32_t first, uint32_t second, const vec3d *x,

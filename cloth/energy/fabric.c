@@ -1,5 +1,7 @@
 #include "cloth/energy/fabric.h"
 
+#include <math.h>
+
 /* A light cotton, between the measured ranges of KES tests: G about 30-150 N/m, B about 5e-6 to 2e-5 N m. */
 #define TL_CLOTH_FABRIC_DEFAULTS                                                                             \
     .areal_density = 0.15, .stretch_weft = 1000, .stretch_warp = 1500, .shear = 100, .bend_weft = 6e-6,      \
@@ -32,3 +34,13 @@ static const struct tl_option fabric_rows[] = {
 const struct tl_option_table tl_cloth_fabric_options =
     TL_OPTION_TABLE("fabric", "mechanical properties of the cloth", fabric_rows, struct tl_cloth_fabric,
                     TL_CLOTH_FABRIC_DEFAULTS);
+
+#define CLOTH_DENSITY 500.0 /* kg/m^3 */
+#define THINNEST_M    1e-4
+#define THICKEST_M    3e-3 /* of what is only weighed */
+
+double tl_cloth_fabric_ply(const struct tl_cloth_fabric *fabric)
+{
+    double ply = fabric->ply_m > 0 ? fabric->ply_m : fmin(fabric->areal_density / CLOTH_DENSITY, THICKEST_M);
+    return fmax(ply, THINNEST_M);
+}

@@ -7,18 +7,14 @@
  * fabrics, and real cloth has several stable drapes, so only the mean over seeds is checked against them. The
  * number of folds is printed, not checked. With names of fabrics as arguments the program prints their drape.
  */
+#include "assets/builtin/cusick.h"
 #include "assets/builtin/specimen.h"
 #include "cloth/measure.h"
 #include "config/log.h"
 #include "tests/cloth/fabrics.h"
 #include "tests/cloth/solvers.h"
 
-#define RADIUS 0.15
-#define PLATE  0.09
-
-/* ---- The specimen ---- */
-
-/* Its warp is turned by `turn` against the triangles. */
+/* The specimen; its warp is turned by `turn` against the triangles. */
 static tl_garment make_specimen(double edge_m, double turn)
 {
     tl_garment garment;
@@ -30,76 +26,6 @@ static tl_garment make_specimen(double edge_m, double turn)
     }
     return garment;
 }
-
-/* ---- The shadow ---- */
-
-#define PIXELS 640
-static const double pixel_m = 2 * 1.05 * RADIUS / PIXELS;
-
-static double edge_side(const double a[2], const double b[2], double x, double y)
-{
-    return (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
-}
-
-static void shade_triangle(const double corners[3][2], bool *shaded)
-{
-    double low[2], high[2];
-    for (int k = 0; k < 2; k++) {
-        low[k] = fmin(fmin(corners[0][k], corners[1][k]), corners[2][k]);
-        high[k] = fmax(fmax(corners[0][k], corners[1][k]), corners[2][k]);
-    }
-    for (int row = (int)fmax(floor(low[1]), 0); row <= (int)fmin(high[1], PIXELS - 1); row++)
-        for (int column = (int)fmax(floor(low[0]), 0); column <= (int)fmin(high[0], PIXELS - 1); column++) {
-            double x = column + 0.5, y = row + 0.5;
-            double a = edge_side(corners[0], corners[1], x, y), b = edge_side(corners[1], corners[2], x, y);
-            double c = edge_side(corners[2], corners[0], x, y);
-            if ((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))
-                shaded[row * PIXELS + column] = true;
-        }
-}
-
-static double shadow_area(const tl_cloth *cloth)
-{
-    bool *shaded = TL_NEW_ARRAY(bool, (size_t)PIXELS *PIXELS);
-    for (size_t t = 0; t < cloth->topology.triangle_count; t++) {
-        double corners[3][2];
-        for (int k = 0; k < 3; k++) {
-            vec3d x = cloth->particles.x[cloth->topology.triangles[t][k]];
-            corners[k][0] = x.x / pixel_m + PIXELS / 2.0;
-            corners[k][1] = x.z / pixel_m + PIXELS / 2.0;
-        }
-        shade_triangle(corners, shaded);
-    }
-    double count = 0;
-    for (size_t i = 0; i < (size_t)PIXELS * PIXELS; i++)
-        count += shaded[i];
-    free(shaded);
-    return count * pixel_m * pixel_m;
-}
-
-/* The number of folds: the largest Fourier component of the rim's height around the disc. */
-static int count_folds(const tl_cloth *cloth)
-{
-    double strongest = 0;
-    int folds = 0;
-    for (int wave = 2; wave <= 16; wave++) {
-        double c = 0, s = 0;
-        for (size_t i = 0; i < cloth->topology.render_count; i++) {
-            vec2s flat = cloth->garment->pattern[i];
-            if (hypot((double)flat.x, (double)flat.y) < RADIUS * 0.999)
-                continue;
-            double turn = wave * atan2((double)flat.y, (double)flat.x);
-            double y = cloth->particles.x[cloth->topology.weld[i]].y;
-            c += y * cos(turn);
-            s += y * sin(turn);
-        }
-        folds = hypot(c, s) > strongest ? wave : folds;
-        strongest = fmax(strongest, hypot(c, s));
-    }
-    return folds;
-}
-
-/* ---- The test ---- */
 
 struct drape {
     double coefficient; /* % */
@@ -122,9 +48,16 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     cloth_run(cloth, NULL, 3);
     while (tl_cloth_max_speed(cloth) > 0.0002 && cloth->time_s < 20)
         cloth_run(cloth, NULL, 1 / params.frame_rate);
-    const double plate = M_PI * PLATE * PLATE, whole = M_PI * RADIUS * RADIUS;
-    struct drape drape = {100 * (shadow_area(cloth) - plate) / (whole - plate), count_folds(cloth),
+    vec3s *positions = TL_NEW_ARRAY(vec3s, cloth->topology.render_count);
+    for (size_t i = 0; i < cloth->topology.render_count; i++) {
+        vec3d x = cloth->particles.x[cloth->topology.weld[i]];
+        positions[i] = (vec3s){{(float)x.x, (float)x.y, (float)x.z}};
+    }
+    tl_image shadow = tl_cusick_shadow(&garment, positions);
+    struct drape drape = {100 * tl_cusick_coefficient(&shadow), tl_cusick_folds(&garment, positions),
                           tl_cloth_max_speed(cloth)};
+    tl_image_release(&shadow);
+    free(positions);
     printf("    seed %d: DC %.1f %%, %d folds, %.4f m/s left after %.1f s\n", seed, drape.coefficient,
            drape.folds, drape.speed, cloth->time_s);
     tl_cloth_destroy(&cloth);

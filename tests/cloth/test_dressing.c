@@ -192,7 +192,8 @@ static void check_drafted(const char *name, const char *body)
     else
         d.avatar = tl_avatar_figure();
     tl_collider *skin = tl_collider_create(&d.avatar.model.mesh, false, &error);
-    const struct tl_wearer wearer = {body ? body : "figure", &d.avatar.model.mesh, {distance_to, skin}};
+    const struct tl_wearer wearer = {
+        body ? body : "figure", &d.avatar.model.mesh, {distance_to, skin}, false};
     assert_ok(tl_garment_cut_for(name, params_defaults().edge_m, &wearer, &d.garment, &error), error);
     tl_collider_destroy(&skin);
     dress(&d);

@@ -31,10 +31,19 @@ static struct tl_topology join(const uint32_t *indices, size_t index_count, size
 
 static void check_count(const char *name, const struct tl_topology *topology, const vec3d *x, size_t at_least)
 {
-    size_t expected = oracle_crossings(topology, x), found = tl_crossings_count(topology, x);
+    size_t expected = oracle_crossings(topology, x), found = tl_crossings_count(NULL, topology, x);
     printf("%s: %zu crossing pairs of %zu triangles\n", name, expected, topology->triangle_count);
     assert_true(expected >= at_least);
     assert_int_equal(found, expected);
+    /* with a tree of a time at which the triangles lay in a row, where none crossed */
+    vec3d *before = TL_NEW_ARRAY(vec3d, topology->vertex_count);
+    for (size_t i = 0; i < topology->vertex_count; i++)
+        before[i] = (vec3d){10.0 * (double)i, x[i].y, x[i].z};
+    struct tl_near_tree tree = tl_near_tree_create(topology, before);
+    tl_near_tree_refit(&tree, topology, before, NULL, NULL);
+    assert_int_equal(tl_crossings_count(&tree, topology, x), expected);
+    tl_near_tree_release(&tree);
+    free(before);
 }
 
 /* Triangles of all sizes without common corners, away from the origin. */
@@ -102,7 +111,7 @@ static void test_relations(void **state)
     struct tl_topology topology = join(indices, 6, 6);
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         const vec3d x[6] = {{0}, {1, 0, 0}, {0, 1, 0}, cases[i].p, cases[i].q, cases[i].r};
-        assert_int_equal(tl_crossings_count(&topology, x), cases[i].crossings);
+        assert_int_equal(tl_crossings_count(NULL, &topology, x), cases[i].crossings);
         assert_int_equal(oracle_crossings(&topology, x), cases[i].crossings);
     }
     tl_topology_release(&topology);

@@ -84,7 +84,7 @@ static void dress_walker(struct dressed *d, float edge_m)
     tl_error error = {0};
     assert_ok(tl_avatar_load(test_data("avatars/CesiumMan.glb"), &d->avatar, &error), error);
     assert_ok(tl_garment_cut("skirt", edge_m, &d->garment, &error), error);
-    (void)tl_garment_fit(&d->garment, "CesiumMan", &d->avatar.model.mesh,
+    (void)tl_garment_fit(&d->garment, "CesiumMan", &d->avatar.model.mesh, true,
                          &error); /* the garment may warn about its waist */
     dress(d);
 }
