@@ -49,6 +49,7 @@ add_library(toile_light STATIC
   local/lamp_samples.c
   metrics/compare.c
   metrics/flip.c
+  metrics/lab.c
   pem/chain.c
   pem/lobe.c
   pem/lobe_error.c

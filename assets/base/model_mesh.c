@@ -3,13 +3,27 @@
 
 #include <stdlib.h>
 
+static double area_of(const tl_mesh *mesh)
+{
+    double twice = 0;
+    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        vec3s a = mesh->positions[mesh->indices[i]];
+        vec3s u = glms_vec3_sub(mesh->positions[mesh->indices[i + 1]], a);
+        vec3s v = glms_vec3_sub(mesh->positions[mesh->indices[i + 2]], a);
+        twice += (double)glms_vec3_norm(glms_vec3_cross(u, v));
+    }
+    return 0.5 * twice;
+}
+
 bool model_take_units(const char *path, enum tl_units wanted, bool is_metric, tl_model *model,
                       tl_error *error)
 {
     /* Farther away a float cannot resolve a millimetre. A scale that overflows is caught here too. */
     const float farthest_m = 1e5f;
     tl_mesh *mesh = &model->mesh;
-    model->units = tl_units_read(tl_box_of(mesh->positions, mesh->vertex_count), wanted, is_metric);
+    const struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
+    model->units = tl_units_read(box, wanted, is_metric);
+    tl_units_weigh(&model->units, box, area_of(mesh));
     float metres = (float)tl_units_metres(model->units.units);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         mesh->positions[i] = glms_vec3_scale(mesh->positions[i], metres);

@@ -28,6 +28,26 @@ vec3s tl_placing_point(const struct tl_placing *placing, vec3s point)
     return tl_placing_moves(placing) ? placed(placing, sinf(angle), cosf(angle), point) : point;
 }
 
+vec3s tl_placing_origin(const struct tl_placing *placing, vec3s placed)
+{
+    const struct tl_placing back = {.scale = 1, .turn_deg = -placing->turn_deg};
+    vec3s at = tl_placing_point(&back, glms_vec3_sub(placed, placing->move_m));
+    at = glms_vec3_divs(at, placing->scale);
+    return placing->z_up ? (vec3s){{at.x, -at.z, at.y}} : at;
+}
+
+struct tl_placing tl_placing_about(const struct tl_placing *placing, vec3s point, float turn_deg,
+                                   float factor)
+{
+    struct tl_placing changed = *placing;
+    vec3s origin = tl_placing_origin(placing, point);
+    changed.turn_deg += turn_deg;
+    changed.scale *= factor;
+    vec3s moved = tl_placing_point(&changed, origin);
+    changed.move_m = glms_vec3_add(changed.move_m, glms_vec3_sub(point, moved));
+    return changed;
+}
+
 void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh)
 {
     float angle = glm_rad(placing->turn_deg), sine = sinf(angle), cosine = cosf(angle);

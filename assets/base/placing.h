@@ -23,6 +23,14 @@ bool tl_placing_moves(const struct tl_placing *placing);
 /* A point of the file, placed. Threads: pure. */
 vec3s tl_placing_point(const struct tl_placing *placing, vec3s point);
 
+/* The file's point that is placed there: undoes tl_placing_point. Threads: pure. */
+vec3s tl_placing_origin(const struct tl_placing *placing, vec3s placed);
+
+/* The placing turned by so many degrees more, and sized by a factor, about a placed point, which stays where
+ * it is. Threads: pure. */
+struct tl_placing tl_placing_about(const struct tl_placing *placing, vec3s point, float turn_deg,
+                                   float factor);
+
 /* Places positions, normals and tangents. Threads: one per mesh. */
 void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh);
 

@@ -7,8 +7,8 @@
 
 const char *const tl_units_names[] = {"auto", "m", "dm", "cm", "mm", "in", NULL};
 
-static const char *const plurals[] = {"metres",      "metres",      "decimetres",
-                                      "centimetres", "millimetres", "inches"};
+const char *const tl_units_plurals[] = {"metres",      "metres",      "decimetres",
+                                        "centimetres", "millimetres", "inches"};
 
 #define SHORTEST_M 0.25f
 #define LONGEST_M  2.5f
@@ -46,10 +46,65 @@ static bool looks_z_up(struct tl_box box)
     return shallow && (size.z > 1.1f * size.x || box.lower.z > -0.05f * size.z);
 }
 
+static bool hangs_on_a_body(double top, enum tl_units units)
+{
+    double top_m = top * tl_units_metres(units);
+    return top_m >= 0.7 && top_m <= 2;
+}
+
+/* How far the area is from a square metre, as the logarithm of their ratio. */
+static double area_error(double area, enum tl_units units)
+{
+    return fabs(log(area * tl_units_metres(units) * tl_units_metres(units)));
+}
+
+void tl_units_weigh(struct tl_units_reading *reading, struct tl_box box, double area)
+{
+    const double above = 0.25; /* of its length: above the ground, rather than cut off by it */
+    if (!reading->guessed || reading->other == TL_UNITS_AUTO)
+        return;
+    double low = (double)(reading->z_up ? box.lower.z : box.lower.y);
+    double top = (double)(reading->z_up ? box.upper.z : box.upper.y);
+    bool is_other = false;
+    bool hangs = hangs_on_a_body(top, reading->units), other_hangs = hangs_on_a_body(top, reading->other);
+    if (low > above * (double)reading->longest && hangs != other_hangs)
+        is_other = other_hangs;
+    else if (area > 0 && reading->units != TL_UNITS_CM && reading->other != TL_UNITS_CM)
+        is_other = area_error(area, reading->other) < area_error(area, reading->units);
+    if (is_other) {
+        enum tl_units units = reading->units;
+        reading->units = reading->other;
+        reading->other = units;
+    }
+}
+
+/* The share of the first box that is within the second; the sides of flat ones count as a millimetre. */
+static float share_within(struct tl_box box, struct tl_box other)
+{
+    const float flat_m = 0.001f;
+    float share = 1;
+    for (int k = 0; k < 3; k++) {
+        float size = fmaxf(box.upper.raw[k] - box.lower.raw[k], flat_m);
+        float common =
+            fminf(box.upper.raw[k], other.upper.raw[k]) - fmaxf(box.lower.raw[k], other.lower.raw[k]);
+        share *= fminf(fmaxf(common, 0) / size, 1);
+    }
+    return share;
+}
+
+bool tl_units_lies_z_up(struct tl_box garment, struct tl_box body)
+{
+    const float most = 0.5f;
+    const struct tl_box turned = {{{garment.lower.x, garment.lower.z, -garment.upper.y}},
+                                  {{garment.upper.x, garment.upper.z, -garment.lower.y}}};
+    return share_within(garment, body) == 0 && share_within(turned, body) > most;
+}
+
 struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric)
 {
     vec3s size = glms_vec3_sub(box.upper, box.lower);
-    struct tl_units_reading reading = {.units = wanted, .longest = glms_vec3_max(size), .fits = true};
+    struct tl_units_reading reading = {
+        .units = wanted, .longest = glms_vec3_max(size), .fits = true, .metric = is_metric};
     reading.z_up = !is_metric && looks_z_up(box);
     if (wanted != TL_UNITS_AUTO)
         return reading;
@@ -67,11 +122,11 @@ char *tl_units_describe(const char *name, const struct tl_units_reading *reading
         return NULL;
     double length = (double)reading->longest;
     const char *why = reading->absurd ? "absurd as metres: " : reading->fits ? "" : "no unit fits: ";
-    char *other =
-        reading->other ? tl_format(", though %s are possible", plurals[reading->other]) : tl_copy_string("");
-    char *line =
-        tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s overrides this", name, length,
-                  why, plurals[reading->units], length * tl_units_metres(reading->units), other, option);
+    char *other = reading->other ? tl_format(", though %s are possible", tl_units_plurals[reading->other])
+                                 : tl_copy_string("");
+    char *line = tl_format("%s: %.4g units at its longest: %staken as %s (%.3g m)%s; %s overrides this", name,
+                           length, why, tl_units_plurals[reading->units],
+                           length * tl_units_metres(reading->units), other, option);
     free(other);
     return line;
 }

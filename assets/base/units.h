@@ -22,7 +22,8 @@
 #include <stdbool.h>
 
 enum tl_units { TL_UNITS_AUTO, TL_UNITS_M, TL_UNITS_DM, TL_UNITS_CM, TL_UNITS_MM, TL_UNITS_IN };
-extern const char *const tl_units_names[]; /* "auto", "m", ...; NULL-terminated */
+extern const char *const tl_units_names[];   /* "auto", "m", ...; NULL-terminated */
+extern const char *const tl_units_plurals[]; /* "metres", ..., by enum tl_units */
 
 double tl_units_metres(enum tl_units units); /* of one unit; AUTO: 1 */
 
@@ -33,12 +34,23 @@ struct tl_units_reading {
     bool guessed;        /* from the size; else set by the file's format or an option */
     bool absurd;         /* guessed, because the format's metres give an impossible size */
     bool fits;           /* the size is that of a garment or a body */
+    bool metric;         /* its format is in metres with Y up */
     bool z_up;           /* stands along Z, and its format does not say that Y is up */
 };
 
 /* Decides the units of a file whose positions have this box. `wanted` other than AUTO decides; then
  * `is_metric` means metres, unless absurd; then the size. */
 struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric);
+
+/* Decides again between two possible units by what a pose does not alter, so that a garment has one size in
+ * all of its poses. One that hangs above its origin hangs on a standing body: its top is 0.7 to 2 m high.
+ * Else, between inches and decimetres, its cloth, `area` in square units, is nearer to a square metre; inches
+ * that could be centimetres stay those. */
+void tl_units_weigh(struct tl_units_reading *reading, struct tl_box box, double area);
+
+/* Whether a garment lies where its body is only with Z up: half of its box is then within the body's, and
+ * nothing of it with Y up. Metres; `body` stands with Y up. */
+bool tl_units_lies_z_up(struct tl_box garment, struct tl_box body);
 
 /* One line to report, such as "skirt.obj: 812 units at its longest: taken as millimetres ...; --units
  * overrides this" with `option` for --units: new string, NULL when nothing was guessed. */

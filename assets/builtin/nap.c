@@ -6,13 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PILE_MM     20.0
-#define PILE_TEXELS 1024
+/* A piece of pile is as large as its fibres can be drawn, three texels wide: the larger it is, the less its
+ * repeats show. */
+#define PILE_TEXELS      1024
+#define TEXELS_PER_FIBRE 3.0
+#define PILE_MIN_MM      32.0
+#define PILE_MAX_MM      48.0
+#define PATCH_CLUMPS     1    /* size of the patches that lean one way, in clumps */
+#define RISE             0.35 /* of a fibre that leans, over its length */
 
 /* A fibre: a curve that wanders over the surface and leaves it by up to `lift` in its middle. */
 struct fibre {
-    double x, y, heading;              /* m, rad */
-    double length, radius, lift, curl; /* m; curl: rad per m */
+    double x, y, heading;                    /* m, rad */
+    double length, radius, lift, rise, curl; /* m; rise: of its end over its root; curl: rad per m */
     float shade, tint[3];
     uint32_t seed;
 };
@@ -37,7 +43,7 @@ static void lay_fibre(const struct fibre *fibre, const float *base, struct tl_ti
         z = k == 0 ? ground : z + 0.06 * (ground - z); /* it bridges what is narrower than itself */
         const struct tl_strand strand = {.x = x,
                                          .y = y,
-                                         .z = z + fibre->lift * sin(M_PI * t),
+                                         .z = z + fibre->lift * sin(M_PI * t) + fibre->rise * t,
                                          .radius = fibre->radius,
                                          .along_x = cos(heading),
                                          .along_y = sin(heading),
@@ -52,6 +58,39 @@ static void lay_fibre(const struct fibre *fibre, const float *base, struct tl_ti
     }
 }
 
+/* Three octaves of smooth noise that repeats with the tile, about [-1, 1]. */
+static double noise_at(uint32_t seed, double u, double v, int cells)
+{
+    double sum = 0;
+    for (int octave = 0; octave < 3; octave++) {
+        const int n = cells << octave;
+        const double x = u * n, y = v * n, row = floor(y), t = y - row, smooth = t * t * (3 - 2 * t);
+        double low = tl_tile_noise(seed + (uint32_t)octave * 256 + (uint32_t)((int)row % n), x, n);
+        double high = tl_tile_noise(seed + (uint32_t)octave * 256 + (uint32_t)(((int)row + 1) % n), x, n);
+        sum += (low + (high - low) * smooth) / (1 << octave);
+    }
+    return sum / 1.75;
+}
+
+/* The cells of `size_mm` in a tile, as many as repeat with it. */
+static int cells_of(const struct tl_tile *tile, double size_mm)
+{
+    int cells = (int)lround(1e3 * tile->size_m[0] / size_mm);
+    return cells < 2 ? 2 : cells > 31 ? 31 : cells;
+}
+
+/* Where a fibre of a pile points to: anywhere, or as its patch was stroked. */
+static double heading_of(const struct tl_weave_params *params, const struct tl_tile *tile, double x, double y,
+                         double own)
+{
+    const double lean = (double)params->lean;
+    if (!(lean > 0))
+        return 2 * M_PI * own;
+    const int cells = cells_of(tile, PATCH_CLUMPS * (double)params->clump_mm);
+    const double u = x / tile->size_m[0], v = y / tile->size_m[1];
+    return 1.5 * M_PI * noise_at(5900u, u, v, cells) + (1 - lean) * M_PI * (2 * own - 1);
+}
+
 void tl_nap_lay(const struct tl_weave_params *params, const float tint[3], struct tl_tile *tile)
 {
     const double length = 1e-3 * (double)params->nap_mm, radius = 0.5e-3 * (double)params->fibre_mm;
@@ -63,13 +102,16 @@ void tl_nap_lay(const struct tl_weave_params *params, const float tint[3], struc
     for (int i = 0; i < count; i++) {
         const uint32_t seed = 77000u + (uint32_t)i;
         const double own = tl_tile_random(seed, 3, 0);
+        const double x = tile->size_m[0] * tl_tile_random(seed, 0, 0);
+        const double y = tile->size_m[1] * tl_tile_random(seed, 1, 0);
         const struct fibre fibre = {
-            .x = tile->size_m[0] * tl_tile_random(seed, 0, 0),
-            .y = tile->size_m[1] * tl_tile_random(seed, 1, 0),
-            .heading = 2 * M_PI * tl_tile_random(seed, 2, 0),
+            .x = x,
+            .y = y,
+            .heading = heading_of(params, tile, x, y, tl_tile_random(seed, 2, 0)),
             .length = length * (0.5 + own),
             .radius = radius * (0.8 + 0.4 * tl_tile_random(seed, 4, 0)),
             .lift = length * 0.06 * tl_tile_random(seed, 5, 0),
+            .rise = length * RISE * (double)params->lean,
             .curl = (double)params->curl * (2 * tl_tile_random(seed, 6, 0) - 1) / radius,
             .shade = (float)(1 + (0.12 + (double)params->melange) * (2 * tl_tile_random(seed, 7, 0) - 1)),
             .tint = {tint[0], tint[1], tint[2]},
@@ -79,31 +121,17 @@ void tl_nap_lay(const struct tl_weave_params *params, const float tint[3], struc
     free(base);
 }
 
-/* Three octaves of smooth noise that repeats with the tile. */
-static double clumps_at(double u, double v, int cells)
-{
-    double sum = 0;
-    for (int octave = 0; octave < 3; octave++) {
-        const int n = cells << octave;
-        const double x = u * n, y = v * n, row = floor(y), t = y - row, smooth = t * t * (3 - 2 * t);
-        double low = tl_tile_noise(900u + (uint32_t)octave * 256 + (uint32_t)((int)row % n), x, n);
-        double high = tl_tile_noise(900u + (uint32_t)octave * 256 + (uint32_t)(((int)row + 1) % n), x, n);
-        sum += (low + (high - low) * smooth) / (1 << octave);
-    }
-    return sum / 1.75;
-}
-
 struct tl_tile tl_pile_make(const struct tl_weave_params *params)
 {
-    const double side = 1e-3 * PILE_MM;
-    int cells = (int)lround(PILE_MM / (double)params->clump_mm);
-    cells = cells < 2 ? 2 : cells > 31 ? 31 : cells;
+    const double drawn_mm = PILE_TEXELS * (double)params->fibre_mm / TEXELS_PER_FIBRE;
+    const double side = 1e-3 * fmin(fmax(drawn_mm, PILE_MIN_MM), PILE_MAX_MM);
     struct tl_tile tile = tl_tile_make(PILE_TEXELS, PILE_TEXELS, side, side, 0);
+    const int cells = cells_of(&tile, (double)params->clump_mm);
     for (int row = 0; row < tile.height; row++)
         for (int column = 0; column < tile.width; column++)
             tile.heights[(size_t)row * PILE_TEXELS + (size_t)column] =
                 (float)(0.5e-3 * (double)params->crimp_mm *
-                        clumps_at((column + 0.5) / PILE_TEXELS, (row + 0.5) / PILE_TEXELS, cells));
+                        noise_at(900u, (column + 0.5) / PILE_TEXELS, (row + 0.5) / PILE_TEXELS, cells));
     tl_tile_even_heights(&tile);
     return tile;
 }

@@ -1,5 +1,6 @@
 #include "assets/builtin/specimen.h"
 
+#include "assets/builtin/cusick.h"
 #include "assets/builtin/panel.h"
 #include "config/memory.h"
 
@@ -10,9 +11,6 @@ const char *const tl_specimen_names[] = {"sheet", "disc", "sphere", "torus", NUL
 
 #define SHEET_SIDE_M    0.5
 #define SHEET_HEIGHT_M  0.44f
-#define DISC_RADIUS_M   0.15
-#define PLATE_RADIUS_M  0.09
-#define DISC_HEIGHT_M   0.40f
 #define BALL_RADIUS_M   0.12f
 #define BALL_HEIGHT_M   0.30f
 #define SPHERE_RADIUS_M 0.15f
@@ -156,24 +154,24 @@ static tl_garment cut_sheet(float edge_m)
 /* A cubic curve approximates a quarter circle to 0.03 %. */
 static tl_garment cut_disc(float edge_m)
 {
-    const double handle = 4 * (M_SQRT2 - 1) / 3 * DISC_RADIUS_M;
+    const double handle = 4 * (M_SQRT2 - 1) / 3 * TL_CUSICK_DISC_M;
     struct tl_curve outline[4];
     for (int i = 0; i < 4; i++) {
         double c = round(cos(M_PI / 2 * i)), s = round(sin(M_PI / 2 * i));
-        const struct tl_point from = {DISC_RADIUS_M * c, DISC_RADIUS_M * s};
-        const struct tl_point to = {-DISC_RADIUS_M * s, DISC_RADIUS_M * c};
+        const struct tl_point from = {TL_CUSICK_DISC_M * c, TL_CUSICK_DISC_M * s};
+        const struct tl_point to = {-TL_CUSICK_DISC_M * s, TL_CUSICK_DISC_M * c};
         outline[i] =
             (struct tl_curve){.control = {from,
                                           {from.x - handle * s, from.y + handle * c},
                                           {to.x + handle * c, to.y + handle * s},
                                           to},
-                              .segments = (int)fmax(M_PI / 2 * DISC_RADIUS_M / (double)edge_m + 0.5, 1)};
+                              .segments = (int)fmax(M_PI / 2 * TL_CUSICK_DISC_M / (double)edge_m + 0.5, 1)};
     }
-    tl_garment disc = cut_level("disc", outline, edge_m, DISC_HEIGHT_M);
+    tl_garment disc = cut_level("disc", outline, edge_m, (float)TL_CUSICK_HEIGHT_M);
     size_t count = disc.model.mesh.vertex_count;
     disc.pins = TL_NEW_ARRAY(uint32_t, count);
     for (uint32_t i = 0; i < count; i++)
-        if (hypot((double)disc.pattern[i].x, (double)disc.pattern[i].y) <= PLATE_RADIUS_M)
+        if (hypot((double)disc.pattern[i].x, (double)disc.pattern[i].y) <= TL_CUSICK_PLATE_M)
             disc.pins[disc.pin_count++] = i;
     return disc;
 }

@@ -54,6 +54,9 @@ static const struct tl_option rows[] = {
                     "turn of these fibres in a length of half their diameter; larger: curlier"),
     TL_OPTION_FLOAT(struct tl_weave_params, clump_mm, AFFECTS, 0.7, 10, "mm",
                     "pile: size of its clumps, whose height is crimp_mm"),
+    TL_OPTION_FLOAT(
+        struct tl_weave_params, lean, AFFECTS, 0, 1, "",
+        "pile: how much its fibres lean one way in patches, as a hand leaves them; 0: they do not"),
     TL_OPTION_FLOAT(struct tl_weave_params, melange, AFFECTS, 0, 0.8, "",
                     "how much fibres differ in colour; larger: more heathered"),
     TL_OPTION_FLOAT(
@@ -320,7 +323,7 @@ static void sum_deviations(uint32_t seed, int count, double amount, float *sums)
 /* What lies on top counts: the warp in twill and satin, both in plain weaves, and loops across and along. */
 static struct tl_yarns *make_streaks(const struct tl_weave_params *params)
 {
-    static const double shares[] = {[TL_WEAVE_PLAIN] = 0.5, [TL_WEAVE_TWILL] = 0.75, [TL_WEAVE_SATIN] = 0.8};
+    static const double shares[] = {[TL_WEAVE_PLAIN] = 0.5, [TL_WEAVE_TWILL] = 0.9, [TL_WEAVE_SATIN] = 0.8};
     const bool is_woven = params->pattern < TL_WEAVE_JERSEY;
     const double warp = is_woven ? shares[params->pattern] : 0.3;
     struct tl_yarns *yarns = TL_NEW(struct tl_yarns);

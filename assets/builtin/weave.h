@@ -58,6 +58,7 @@ struct tl_weave_params {
     float fibre_mm; /* their diameter */
     float curl;     /* turns of a fibre in diameters: rad */
     float clump_mm; /* PILE: size of its clumps, whose height is the crimp */
+    float lean;     /* ... how much its fibres lean one way in patches; 0: anywhere, 1: all of a patch */
     float melange;  /* how much fibres differ in colour */
     float cavity;   /* how much valleys darken: 0 with horizon maps, which show it themselves */
     /* A picture of heights instead of yarns (app/scene/height_picture.h reads it) */

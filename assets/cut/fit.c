@@ -81,13 +81,26 @@ char *tl_describe_size(const char *name, const tl_mesh *garment, const char *bod
     return NULL;
 }
 
-bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, tl_error *error)
+char *tl_describe_waist(const char *name, const char *body_name, const tl_mesh *body)
+{
+    const float form_m = (float)tl_form_girth(TL_FORM_WAIST), same = 0.03f;
+    struct tl_waist waist;
+    if (!tl_mesh_waist(body, &waist) || fabsf(waist.girth.length_m / form_m - 1) < same)
+        return NULL;
+    return tl_format("%s: cut for a waist of %.2f m around, that of %s is %.2f m: it is worn as it was cut; "
+                     "scene.refit=true makes it %.2f times as large",
+                     name, (double)form_m, body_name, (double)waist.girth.length_m,
+                     (double)(waist.girth.length_m / form_m));
+}
+
+bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, bool scaled,
+                    tl_error *error)
 {
     struct tl_waist waist;
     if (!tl_mesh_waist(body, &waist))
         return tl_fail(error, TL_INPUT,
                        "%s: no waist was found to fit a built-in garment to: name a garment file", body_name);
-    float scale = waist.girth.length_m / (float)tl_form_girth(TL_FORM_WAIST);
+    float scale = scaled ? waist.girth.length_m / (float)tl_form_girth(TL_FORM_WAIST) : 1;
     tl_mesh *mesh = &garment->model.mesh;
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         vec3s *p = &mesh->positions[i];

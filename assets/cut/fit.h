@@ -28,9 +28,15 @@ bool tl_mesh_waist(const tl_mesh *mesh, struct tl_waist *out);
  * has no sections to be measured. The caller frees it. */
 char *tl_describe_size(const char *name, const tl_mesh *garment, const char *body_name, const tl_mesh *body);
 
-/* Scales a garment cut for the built-in form about its waist, pattern included, by the ratio of the waist
- * girths, and moves it to the body's waist. The body stands on y = 0 in its rest pose, is upright and has
- * human proportions: the waist is the narrowest section between 0.56 and 0.66 of its height. */
-bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, tl_error *error);
+/* Says that a garment cut for the built-in form is worn by a body with another waist. NULL: the waists differ
+ * by less than 3 %, or the body has none. The caller frees it. */
+char *tl_describe_waist(const char *name, const char *body_name, const tl_mesh *body);
+
+/* Moves a garment cut for the built-in form from the form's waist to the body's. `scaled`: scales it about
+ * the waist, pattern included, by the ratio of the waist girths; else it keeps its size. The body stands on y
+ * = 0 in its rest pose, is upright and has human proportions: the waist is the narrowest section between 0.56
+ * and 0.66 of its height. */
+bool tl_garment_fit(tl_garment *garment, const char *body_name, const tl_mesh *body, bool scaled,
+                    tl_error *error);
 
 #endif

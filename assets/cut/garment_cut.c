@@ -22,15 +22,17 @@
 /* Garments for the form are scaled to other bodies, the others are drafted for each body. */
 static const struct cut_kind {
     const char *name;
-    struct tl_cut_plan (*for_form)(void);
-    struct tl_cut_plan (*for_body)(const struct tl_body *);
+    struct tl_cut_plan (*for_form)(const struct tl_cut_params *);
+    struct tl_cut_plan (*for_body)(const struct tl_body *, const struct tl_cut_params *);
+    struct tl_cut_range (*form_longer)(void);
+    struct tl_cut_range (*body_longer)(const struct tl_body *);
     bool has_sleeves;
 } kinds[] = {
-    {"dress", .for_form = tl_cut_plan_dress},
-    {"skirt", .for_form = tl_cut_plan_skirt},
-    {"layers", .for_form = tl_cut_plan_layers},
-    {"trousers", .for_body = tl_cut_plan_trousers},
-    {"shirt", .for_body = tl_cut_plan_shirt, .has_sleeves = true},
+    {"dress", .for_form = tl_cut_plan_dress, .form_longer = tl_cut_longer_dress},
+    {"skirt", .for_form = tl_cut_plan_skirt, .form_longer = tl_cut_longer_skirt},
+    {"layers", .for_form = tl_cut_plan_layers, .form_longer = tl_cut_longer_dress},
+    {"trousers", .for_body = tl_cut_plan_trousers, .body_longer = tl_cut_longer_trousers},
+    {"shirt", .for_body = tl_cut_plan_shirt, .body_longer = tl_cut_longer_shirt, .has_sleeves = true},
 };
 const char *const tl_garment_names[] = {"dress", "skirt", "layers", "trousers", "shirt", NULL};
 
@@ -308,20 +310,30 @@ static double form_distance(const void *context, const double point[3])
     return tl_form_distance(point);
 }
 
-static struct tl_cut_plan make_plan(const struct cut_kind *kind, const struct tl_body *body)
+/* What a garment is cut to. */
+struct cut_order {
+    const struct cut_kind *kind;
+    const struct tl_body *body; /* NULL: the form */
+    const struct tl_cut_params *sizes;
+};
+
+static struct tl_cut_plan make_plan(const struct cut_order *order)
 {
-    struct tl_cut_plan plan = body ? kind->for_body(body) : kind->for_form();
+    const struct tl_body *body = order->body;
+    struct tl_cut_plan plan =
+        body ? order->kind->for_body(body, order->sizes) : order->kind->for_form(order->sizes);
     plan.distance = body ? body->distance : (struct tl_body_distance){form_distance, NULL};
     return plan;
 }
 
-static void cut(const struct cut_kind *kind, const struct tl_body *body, float edge_m, tl_garment *out)
+static void cut(const struct cut_order *order, float edge_m, tl_garment *out)
 {
+    const struct cut_kind *kind = order->kind;
     const float coarse_edge_m = edge_m < EDGE_FIRST_M ? 2 * edge_m : 0;
     tl_garment coarse = {0};
     if (coarse_edge_m > 0)
-        cut(kind, body, coarse_edge_m, &coarse);
-    struct tl_cut_plan plan = make_plan(kind, body);
+        cut(order, coarse_edge_m, &coarse);
+    struct tl_cut_plan plan = make_plan(order);
     struct cutting cutting = {.plan = &plan, .reach_m = kind->for_body ? REACH_DRAFTED_M : REACH_M};
     choose_segments(&plan, (double)edge_m);
     cut_pieces(&cutting, (double)edge_m);
@@ -363,16 +375,43 @@ static const struct cut_kind *choose(const char *name, float edge_m, tl_error *e
     return &kinds[chosen];
 }
 
-static bool cut_for(const struct cut_kind *kind, float edge_m, const struct tl_wearer *wearer,
-                    tl_garment *out, tl_error *error)
+/* What was asked is refused, not trimmed: a size is a measure that somebody relies on. */
+static bool check_length(const char *option, double asked, struct tl_cut_range range,
+                         const struct cut_kind *kind, tl_error *error)
+{
+    const double rounding = 1e-6;
+    if (asked >= range.least - rounding && asked <= range.most + rounding)
+        return true;
+    bool is_short = asked < range.least;
+    /* The limit to the millimetre, inwards: what is printed is accepted. */
+    double limit = is_short ? ceil(range.least * 1e3) / 1e3 : floor(range.most * 1e3) / 1e3;
+    return tl_fail(error, TL_USAGE, "%s: %g m: the %s for this body can have no %s than %g m", option, asked,
+                   kind->name, is_short ? "less" : "more", limit + 0.0);
+}
+
+static bool check_sizes(const struct cut_order *order, tl_error *error)
+{
+    const struct cut_kind *kind = order->kind;
+    struct tl_cut_range longer = order->body ? kind->body_longer(order->body) : kind->form_longer();
+    if (!check_length("cut.longer_m", (double)order->sizes->longer_m, longer, kind, error))
+        return false;
+    return !kind->has_sleeves || check_length("cut.sleeve_m", (double)order->sizes->sleeve_m,
+                                              tl_cut_longer_sleeves(order->body), kind, error);
+}
+
+static bool cut_for(const struct cut_kind *kind, float edge_m, const struct tl_cut_params *sizes,
+                    const struct tl_wearer *wearer, tl_garment *out, tl_error *error)
 {
     struct tl_body body;
+    const struct cut_order order = {kind, &body, sizes};
     if (!tl_body_measure(wearer->name, wearer->mesh, wearer->distance, &body, error))
         return false;
     if (kind->has_sleeves && !(body.underarm_y > 0))
         return tl_fail(error, TL_INPUT,
                        "%s: has no arms that hang beside the trunk, so no shirt is cut for it", wearer->name);
-    cut(kind, &body, edge_m, out);
+    if (!check_sizes(&order, error))
+        return false;
+    cut(&order, edge_m, out);
     return true;
 }
 
@@ -390,33 +429,44 @@ bool tl_garment_is_for_figure(const char *name)
     return false;
 }
 
-bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error)
+static bool cut_for_figure(const struct cut_kind *kind, float edge_m, const struct tl_cut_params *sizes,
+                           tl_garment *out, tl_error *error)
 {
-    const struct cut_kind *kind = choose(name, edge_m, error);
-    if (!kind)
-        return false;
-    if (kind->for_form) {
-        cut(kind, NULL, edge_m, out);
-        return true;
-    }
     tl_avatar figure = tl_avatar_figure();
-    const struct tl_wearer wearer = {"figure", &figure.model.mesh, {figure_distance, NULL}};
-    bool good = cut_for(kind, edge_m, &wearer, out, error);
+    const struct tl_wearer wearer = {"figure", &figure.model.mesh, {figure_distance, NULL}, false};
+    bool good = cut_for(kind, edge_m, sizes, &wearer, out, error);
     tl_avatar_release(&figure);
     return good;
 }
 
-bool tl_garment_cut_for(const char *name, float edge_m, const struct tl_wearer *wearer, tl_garment *out,
-                        tl_error *error)
+bool tl_garment_cut_sized(const char *name, float edge_m, const struct tl_cut_params *sizes,
+                          const struct tl_wearer *wearer, tl_garment *out, tl_error *error)
 {
     const struct cut_kind *kind = choose(name, edge_m, error);
     if (!kind)
         return false;
     if (kind->for_body)
-        return cut_for(kind, edge_m, wearer, out, error);
-    cut(kind, NULL, edge_m, out);
-    if (tl_garment_fit(out, wearer->name, wearer->mesh, error))
+        return wearer ? cut_for(kind, edge_m, sizes, wearer, out, error)
+                      : cut_for_figure(kind, edge_m, sizes, out, error);
+    const struct cut_order order = {kind, NULL, sizes};
+    if (!check_sizes(&order, error))
+        return false;
+    cut(&order, edge_m, out);
+    if (!wearer || tl_garment_fit(out, wearer->name, wearer->mesh, wearer->refits, error))
         return true;
     tl_garment_release(out);
     return false;
+}
+
+static const struct tl_cut_params as_drafted;
+
+bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error)
+{
+    return tl_garment_cut_sized(name, edge_m, &as_drafted, NULL, out, error);
+}
+
+bool tl_garment_cut_for(const char *name, float edge_m, const struct tl_wearer *wearer, tl_garment *out,
+                        tl_error *error)
+{
+    return tl_garment_cut_sized(name, edge_m, &as_drafted, wearer, out, error);
 }

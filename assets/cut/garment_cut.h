@@ -4,6 +4,7 @@
 
 #include "assets/base/garment.h"
 #include "assets/cut/body.h"
+#include "assets/cut/options.h"
 #include "config/error.h"
 
 /* Built-in garments, cut as flat panels: around the built-in dress form (assets/builtin/form.h) "dress",
@@ -15,15 +16,22 @@ bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *e
 /* Whether the garment needs arms or legs: it is cut for the figure instead of the form. */
 bool tl_garment_is_for_figure(const char *name);
 
-/* The same for another body, in its rest pose: drafted from its measures, or cut for the form and scaled
- * (assets/cut/fit.h). Fails too when the body lacks what the garment hangs on. */
+/* The same for another body, in its rest pose: drafted from its measures, or cut for the form and moved
+ * to its waist (assets/cut/fit.h). Fails too when the body lacks what the garment hangs on. */
 struct tl_wearer {
     const char *name; /* for messages */
     const tl_mesh *mesh;
     struct tl_body_distance distance;
+    bool refits; /* what is cut for the form is also scaled to it */
 };
 bool tl_garment_cut_for(const char *name, float edge_m, const struct tl_wearer *wearer, tl_garment *out,
                         tl_error *error);
+
+/* Either, with sizes of its own; `wearer` NULL: the form or the figure. What is scaled to a body is
+ * scaled with its sizes. Errors: also TL_USAGE for a length that the garment cannot have on this
+ * body; the message states the limit. */
+bool tl_garment_cut_sized(const char *name, float edge_m, const struct tl_cut_params *sizes,
+                          const struct tl_wearer *wearer, tl_garment *out, tl_error *error);
 
 #define TL_GARMENT_OVERLAY "overlay"
 extern const char *const tl_garment_names[]; /* NULL-terminated */

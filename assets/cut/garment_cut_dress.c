@@ -222,22 +222,29 @@ static void sew_halves(struct tl_cut_plan *plan, size_t piece_a, size_t curve_a,
                tl_cut_mirror(&plan->pieces[piece_b], curve_b));
 }
 
-struct tl_cut_plan tl_cut_plan_dress(void)
+struct tl_cut_range tl_cut_longer_dress(void)
 {
-    struct bodice_pattern front = {0.25 * WAIST_LENGTH, 0.235, 0.130, 0.140, 0};
-    struct bodice_pattern back = {0.25 * WAIST_LENGTH, 0.235, 0.080, 0.145, 0};
+    return (struct tl_cut_range){TL_CUT_SHORTEST_SKIRT_M - SKIRT_LENGTH, INFINITY};
+}
+
+struct tl_cut_plan tl_cut_plan_dress(const struct tl_cut_params *sizes)
+{
+    const double ease = (double)sizes->ease_m, waist_length = WAIST_LENGTH + ease;
+    const double length = SKIRT_LENGTH + (double)sizes->longer_m;
+    struct bodice_pattern front = {0.25 * waist_length, 0.235 + 0.25 * ease, 0.130, 0.140, 0};
+    struct bodice_pattern back = {0.25 * waist_length, 0.235 + 0.25 * ease, 0.080, 0.145, 0};
     struct dress_placement *placement = TL_NEW(struct dress_placement);
     const double underarm_y = WAIST_Y + UNDERARM - 0.006; /* the sides slant */
     for (int i = 0; i < BODICE_RINGS; i++) {
         double t = (double)i / (BODICE_RINGS - 1);
         double bust = 2 * (front.underarm_half + back.underarm_half);
-        tl_ring_around_form(WAIST_Y + (underarm_y - WAIST_Y) * t, WAIST_LENGTH + (bust - WAIST_LENGTH) * t,
+        tl_ring_around_form(WAIST_Y + (underarm_y - WAIST_Y) * t, waist_length + (bust - waist_length) * t,
                             &placement->rings[i]);
     }
-    tl_flare_from_ring(&placement->rings[0], SKIRT_LENGTH, SKIRT_ANGLE, SKIRT_SLOPE, SKIRT_FOLDS,
+    tl_flare_from_ring(&placement->rings[0], length, SKIRT_ANGLE, SKIRT_SLOPE, SKIRT_FOLDS,
                        &placement->flare);
-    placement->skirt_front = (struct tl_cut_flared){&placement->flare, WAIST_LENGTH, SKIRT_ANGLE, 0};
-    placement->skirt_back = (struct tl_cut_flared){&placement->flare, WAIST_LENGTH, SKIRT_ANGLE, 0.5};
+    placement->skirt_front = (struct tl_cut_flared){&placement->flare, waist_length, SKIRT_ANGLE, 0};
+    placement->skirt_back = (struct tl_cut_flared){&placement->flare, waist_length, SKIRT_ANGLE, 0.5};
     placement->front = (struct bodice_shape){.facing = 1, .darted = true, .rings = placement->rings};
     placement->back = (struct bodice_shape){.facing = -1, .rings = placement->rings};
     trace_profile(underarm_y, 1, &placement->front.profile);
@@ -285,10 +292,10 @@ static struct tl_cut_piece curtain_piece(void)
 }
 
 /* The dress, and a gathered curtain in front of its left side that does not touch it. */
-struct tl_cut_plan tl_cut_plan_layers(void)
+struct tl_cut_plan tl_cut_plan_layers(const struct tl_cut_params *sizes)
 {
     enum { CURTAIN = 4, TOP = 2 };
-    struct tl_cut_plan plan = tl_cut_plan_dress();
+    struct tl_cut_plan plan = tl_cut_plan_dress(sizes);
     plan.name = "layers";
     plan.piece_count = CURTAIN + 1;
     plan.pieces[CURTAIN] = curtain_piece();

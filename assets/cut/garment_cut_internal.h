@@ -59,13 +59,29 @@ struct tl_cut_flared {
 };
 struct tl_cut_piece tl_cut_flared_piece(const struct tl_cut_flared *flared);
 
-struct tl_cut_plan tl_cut_plan_dress(void);
-struct tl_cut_plan tl_cut_plan_skirt(void);
-struct tl_cut_plan tl_cut_plan_layers(void);
+/* How much longer than drafted a garment can be, metres; most of them are bounded on one side only. */
+struct tl_cut_range {
+    double least, most;
+};
 
-/* Drafted for a body; `body` must live as long as the plan. */
-struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body);
-struct tl_cut_plan tl_cut_plan_shirt(const struct tl_body *body); /* which has arms */
+struct tl_cut_plan tl_cut_plan_dress(const struct tl_cut_params *sizes);
+struct tl_cut_plan tl_cut_plan_skirt(const struct tl_cut_params *sizes);
+struct tl_cut_plan tl_cut_plan_layers(const struct tl_cut_params *sizes);
+
+/* Skirts are no shorter. */
+#define TL_CUT_SHORTEST_SKIRT_M 0.1
+struct tl_cut_range tl_cut_longer_dress(void);
+struct tl_cut_range tl_cut_longer_skirt(void);
+
+/* Trousers end above the feet and below the fork, shirts below the waist; sleeves leave room for a cuff. */
+struct tl_cut_range tl_cut_longer_trousers(const struct tl_body *body);
+struct tl_cut_range tl_cut_longer_shirt(const struct tl_body *body);
+struct tl_cut_range tl_cut_longer_sleeves(const struct tl_body *body);
+
+/* Drafted for a body; `body` must live as long as the plan, and the sizes lie within the ranges above. */
+struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body, const struct tl_cut_params *sizes);
+/* The body has arms. */
+struct tl_cut_plan tl_cut_plan_shirt(const struct tl_body *body, const struct tl_cut_params *sizes);
 
 /* The mirror image in x = 0, run through backwards: counter-clockwise again. */
 struct tl_curve tl_cut_mirrored_curve(const struct tl_curve *curve);

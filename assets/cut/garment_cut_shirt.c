@@ -14,6 +14,8 @@
 #define HIP_EASE      0.100
 #define UNDERARM_DROP 0.020 /* the armhole's bottom below the body's armpit */
 #define HEM_ABOVE     0.030 /* above the crotch */
+#define HEM_BELOW     0.020 /* the waist, at least */
+#define SLEEVE_LEAST  0.050 /* without its cuff */
 #define WAIST_SHAPE   0.010 /* how far the side seam moves in at the waist */
 #define SHOULDER_EASE 0.014 /* cloth over the shoulder */
 #define NECK_WIDER    0.016 /* the neckline's half width over the neck's */
@@ -59,6 +61,7 @@ struct shirt {
     double shoulder_x, neck_x;               /* the shoulder seam's ends */
     double tip_y[2], neck_top_y[2];          /* their y in the pattern, of front and back */
     struct tl_curve front[FRONT_CURVES], back[BACK_CURVES], sleeve[SLEEVE_CURVES];
+    double arm_end; /* of the sleeves with their cuffs, along the arm */
     double cap_height, sleeve_length, cuff,
         stand; /* cuff: around; stand: its length from the back to the front */
     struct tl_ring rings[LEVELS];
@@ -215,13 +218,14 @@ static double cap_width(double length, double height)
     return high;
 }
 
-static void cut_sleeve(struct shirt *s, double arm_girth)
+/* `girth`: around its widest place. */
+static void cut_sleeve(struct shirt *s, double girth)
 {
     double front = tl_curve_length(&s->front[ARMHOLE]), back = tl_curve_length(&s->back[ARMHOLE]);
     double low = 0.02, high = 0.95 * fmin(front, back);
     for (int step = 0; step < 50; step++) { /* the higher, the narrower */
         s->cap_height = 0.5 * (low + high);
-        if (cap_width(front, s->cap_height) + cap_width(back, s->cap_height) > arm_girth + SLEEVE_EASE)
+        if (cap_width(front, s->cap_height) + cap_width(back, s->cap_height) > girth)
             low = s->cap_height;
         else
             high = s->cap_height;
@@ -328,7 +332,7 @@ static void place_sleeve(const void *context, struct tl_point p, double position
 static void place_cuff(const void *context, struct tl_point p, double position[3])
 {
     const struct half_placement *place = context;
-    double down = place->shirt->body->arm.length - p.y;
+    double down = place->shirt->arm_end - p.y;
     place_on_arm(place->shirt, place->mirrored ? -p.x : p.x, down, position);
     position[0] *= place->mirrored ? -1 : 1;
 }
@@ -424,33 +428,52 @@ static void make_rings(struct shirt *s, double hem_half)
     const struct tl_body *body = s->body;
     for (int i = 0; i < LEVELS; i++) {
         double t = (double)i / (LEVELS - 1);
-        (void)tl_body_trunk_ring(body, mix(s->hem_y, s->underarm_y, t), 4 * mix(hem_half, s->half, t),
-                                 &s->rings[i]);
+        (void)tl_body_trunk_ring(body, fmax(mix(s->hem_y, s->underarm_y, t), body->crotch_y + 0.004),
+                                 4 * mix(hem_half, s->half, t), &s->rings[i]);
     }
     double top = s->sleeve[UNDER_BACK].control[3].x - s->sleeve[UNDER_FRONT].control[0].x;
     for (size_t k = 0; k < TL_ARM_STEPS; k++) {
-        double down = (double)k / (TL_ARM_STEPS - 1) * body->arm.length / (body->arm.length - CUFF_HEIGHT);
+        double down = (double)k / (TL_ARM_STEPS - 1) * body->arm.length / (s->arm_end - CUFF_HEIGHT);
         (void)tl_body_arm_girth(body->mesh, &body->arm, k, mix(top, s->cuff, fmin(down, 1)), &s->arm[k]);
     }
 }
 
-static void draft(const struct tl_body *body, struct shirt *s)
+/* The step of the arm where a sleeve of this length ends. */
+static size_t arm_step(const struct tl_body *body, double length)
 {
+    double place = fmin(fmax(length / body->arm.length, 0), 1) * (TL_ARM_STEPS - 1);
+    return (size_t)lround(place);
+}
+
+struct tl_cut_range tl_cut_longer_shirt(const struct tl_body *body)
+{
+    return (struct tl_cut_range){body->crotch_y + HEM_ABOVE - (body->waist_y - HEM_BELOW), INFINITY};
+}
+
+struct tl_cut_range tl_cut_longer_sleeves(const struct tl_body *body)
+{
+    return (struct tl_cut_range){CUFF_HEIGHT + SLEEVE_START + SLEEVE_LEAST - body->arm.length, INFINITY};
+}
+
+static void draft(const struct tl_body *body, const struct tl_cut_params *sizes, struct shirt *s)
+{
+    const double ease = (double)sizes->ease_m;
     s->body = body;
     s->underarm_y = body->underarm_y - UNDERARM_DROP;
-    s->hem_y = body->crotch_y + HEM_ABOVE;
+    s->hem_y = body->crotch_y + HEM_ABOVE - (double)sizes->longer_m;
     s->ridge_z = 0.5 * (body->neck_z + (double)body->arm.middle[0].z);
-    s->half = 0.25 * (body->bust + BUST_EASE);
-    double hem_half = fmax(s->half - 0.005, 0.25 * (body->hip + HIP_EASE));
+    s->half = 0.25 * (body->bust + BUST_EASE + ease);
+    double hem_half = fmax(s->half - 0.005, 0.25 * (body->hip + HIP_EASE + ease));
     find_shoulder(s);
     measure_shoulders(s);
     cut_half(s, false, hem_half, s->front);
     cut_half(s, true, hem_half, s->back);
     double upper = tl_body_arm_girth(body->mesh, &body->arm, TL_ARM_STEPS / 6, 0, NULL);
-    double wrist = tl_body_arm_girth(body->mesh, &body->arm, TL_ARM_STEPS - 1, 0, NULL);
-    s->cuff = wrist + CUFF_EASE;
-    s->sleeve_length = body->arm.length - CUFF_HEIGHT - SLEEVE_START;
-    cut_sleeve(s, upper);
+    s->arm_end = body->arm.length + (double)sizes->sleeve_m;
+    double wrist = tl_body_arm_girth(body->mesh, &body->arm, arm_step(body, s->arm_end), 0, NULL);
+    s->cuff = wrist + CUFF_EASE + 0.5 * ease;
+    s->sleeve_length = s->arm_end - CUFF_HEIGHT - SLEEVE_START;
+    cut_sleeve(s, upper + SLEEVE_EASE + 0.5 * ease);
     s->stand = tl_curve_length(&s->back[NECK]) + tl_curve_length(&s->front[NECK]) + PLACKET_HALF;
     make_rings(s, hem_half);
 }
@@ -583,10 +606,10 @@ static void set_piece(struct tl_cut_plan *plan, size_t index, struct tl_cut_piec
     plan->pieces[index] = piece;
 }
 
-struct tl_cut_plan tl_cut_plan_shirt(const struct tl_body *body)
+struct tl_cut_plan tl_cut_plan_shirt(const struct tl_body *body, const struct tl_cut_params *sizes)
 {
     struct shirt *s = TL_NEW(struct shirt);
-    draft(body, s);
+    draft(body, sizes, s);
     s->places[0] = (struct half_placement){s, false, false};
     s->places[1] = (struct half_placement){s, false, true};
     s->places[2] = (struct half_placement){s, true, false};

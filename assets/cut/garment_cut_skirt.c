@@ -51,13 +51,19 @@ struct skirt_placement {
     struct tl_cut_flared front, back;
 };
 
-struct tl_cut_plan tl_cut_plan_skirt(void)
+struct tl_cut_range tl_cut_longer_skirt(void)
+{
+    return (struct tl_cut_range){TL_CUT_SHORTEST_SKIRT_M - SKIRT_LENGTH, INFINITY};
+}
+
+struct tl_cut_plan tl_cut_plan_skirt(const struct tl_cut_params *sizes)
 {
     struct skirt_placement *placement = TL_NEW(struct skirt_placement);
-    double waist = tl_form_girth(SKIRT_Y) + SKIRT_EASE;
+    double waist = tl_form_girth(SKIRT_Y) + SKIRT_EASE + (double)sizes->ease_m;
+    double length = SKIRT_LENGTH + (double)sizes->longer_m;
     struct tl_ring ring;
     tl_ring_around_form(SKIRT_Y, waist, &ring);
-    tl_flare_from_ring(&ring, SKIRT_LENGTH, 2 * M_PI, SKIRT_SLOPE, SKIRT_FOLDS, &placement->flare);
+    tl_flare_from_ring(&ring, length, 2 * M_PI, SKIRT_SLOPE, SKIRT_FOLDS, &placement->flare);
     placement->front = (struct tl_cut_flared){&placement->flare, waist, 2 * M_PI, 0};
     placement->back = (struct tl_cut_flared){&placement->flare, waist, 2 * M_PI, 0.5};
 

@@ -10,29 +10,31 @@
  * pattern books do (W. Aldrich, "Metric Pattern Cutting", the trouser block): quarters of the hip's girth
  * with a fork for the crotch that is longer behind, a dart in each quarter, the back's middle seam slanted
  * and higher. y is the height on the body; x is 0 in the middle seam below the hip. */
-#define BELOW_WAIST 0.020 /* the waistband's upper edge */
-#define BAND_HEIGHT 0.038
-#define BAND_EASE   0.018 /* metres around, at the waistband's lower edge */
-#define HIP_EASE    0.076
-#define CROTCH_EASE 0.012 /* the fork hangs below the body's */
-#define SEAT_EASE   0.030 /* of the seam under the crotch, front to back */
-#define KNEE_EASE   0.110 /* over the calf */
-#define HEM_EASE    0.060
-#define HEM_PART    0.040 /* of the body's height: above the floor */
-#define HIP_ABOVE   0.060 /* at least so far above the crotch */
-#define FORKS_LEAST 0.13  /* of the hip's girth: the width of front's and back's forks together */
-#define FORKS_MOST  0.26
-#define FRONT_FORK  0.38  /* of the forks' width */
-#define BACK_MORE   0.010 /* the back is wider, to each side */
-#define FRONT_SLANT 0.008 /* of the middle seam, hip to waist */
-#define BACK_SLANT  0.022
-#define BACK_RISE   0.020 /* of the back's middle above its side */
-#define FRONT_CURVE 0.060 /* height of the crotch's curve */
-#define BACK_CURVE  0.100
-#define DART_MOST   0.028
-#define DART_LEAST  0.008
-#define FRONT_DART  0.085 /* length */
-#define BACK_DART   0.120
+#define BELOW_WAIST  0.020 /* the waistband's upper edge */
+#define BAND_HEIGHT  0.038
+#define BAND_EASE    0.018 /* metres around, at the waistband's lower edge */
+#define HIP_EASE     0.076
+#define CROTCH_EASE  0.012 /* the fork hangs below the body's */
+#define SEAT_EASE    0.030 /* of the seam under the crotch, front to back */
+#define KNEE_EASE    0.110 /* over the calf */
+#define HEM_EASE     0.060
+#define HEM_PART     0.040 /* of the body's height: above the floor */
+#define FOOT_EASE    0.015 /* of the hem around the lowest place of the leg that it reaches */
+#define SHORTEST_LEG 0.15  /* of shorts, below the fork */
+#define HIP_ABOVE    0.060 /* at least so far above the crotch */
+#define FORKS_LEAST  0.13  /* of the hip's girth: the width of front's and back's forks together */
+#define FORKS_MOST   0.26
+#define FRONT_FORK   0.38  /* of the forks' width */
+#define BACK_MORE    0.010 /* the back is wider, to each side */
+#define FRONT_SLANT  0.008 /* of the middle seam, hip to waist */
+#define BACK_SLANT   0.022
+#define BACK_RISE    0.020 /* of the back's middle above its side */
+#define FRONT_CURVE  0.060 /* height of the crotch's curve */
+#define BACK_CURVE   0.100
+#define DART_MOST    0.028
+#define DART_LEAST   0.008
+#define FRONT_DART   0.085 /* length */
+#define BACK_DART    0.120
 
 enum { LEVELS = 96 };
 enum {
@@ -305,11 +307,12 @@ static void make_rings(const struct tl_body *body, struct trousers *t)
 }
 
 /* Front and back as wide as the body is, before the forks are known. */
-static void draft_widths(const struct tl_body *body, const struct trousers *t, struct leg_draft draft[2])
+static void draft_widths(const struct tl_body *body, const struct trousers *t, double ease,
+                         struct leg_draft draft[2])
 {
-    double quarter = (body->hip + HIP_EASE) / 4;
-    double band = (tl_body_trunk_girth(body, t->band_y) + BAND_EASE) / 4;
-    double knee = (fmax(body->knee, body->calf) + KNEE_EASE) / 2;
+    double quarter = (body->hip + HIP_EASE + ease) / 4;
+    double band = (tl_body_trunk_girth(body, t->band_y) + BAND_EASE + ease) / 4;
+    double knee = (fmax(body->knee, body->calf) + KNEE_EASE + 0.5 * ease) / 2;
     double hem = knee - 0.5 * (KNEE_EASE - HEM_EASE);
     for (int i = 0; i < 2; i++) {
         double more = i ? BACK_MORE : -BACK_MORE;
@@ -348,17 +351,37 @@ static double cut_legs(struct trousers *t, struct leg_draft draft[2], double for
            tl_curve_length(&t->back.curves[MIDDLE]) + tl_curve_length(&t->back.curves[CROTCH]);
 }
 
-static void draft(const struct tl_body *body, struct trousers *t)
+/* The girth that both hems are drafted to, in draft_widths. */
+static double hem_girth(const struct tl_body *body)
+{
+    return fmax(body->knee, body->calf) + HEM_EASE;
+}
+
+struct tl_cut_range tl_cut_longer_trousers(const struct tl_body *body)
+{
+    const double drafted_y = HEM_PART * body->height, step = 0.005;
+    double lowest_y = drafted_y;
+    for (double y = drafted_y; y > 0; y -= step) { /* feet are wider than the hem */
+        double girth = tl_body_leg_girth(body, y);
+        if (!(girth > 0 && girth + FOOT_EASE < hem_girth(body)))
+            break;
+        lowest_y = y;
+    }
+    return (struct tl_cut_range){drafted_y - (body->crotch_y - CROTCH_EASE - SHORTEST_LEG),
+                                 drafted_y - lowest_y};
+}
+
+static void draft(const struct tl_body *body, const struct tl_cut_params *sizes, struct trousers *t)
 {
     t->band_y = body->waist_y - BELOW_WAIST - BAND_HEIGHT;
     t->hip_y = fmax(body->hip_y, body->crotch_y + HIP_ABOVE);
     t->fork_y = body->crotch_y - CROTCH_EASE;
-    t->knee_y = 0.58 * body->crotch_y;
-    t->hem_y = HEM_PART * body->height;
+    t->hem_y = HEM_PART * body->height - (double)sizes->longer_m;
+    t->knee_y = fmax(0.58 * body->crotch_y, t->hem_y + 0.4 * SHORTEST_LEG); /* of shorts: below the middle */
     for (int i = 0; i < LEVELS; i++)
         t->levels.y[i] = t->hem_y + (t->band_y - t->hem_y) * i / (LEVELS - 1);
     struct leg_draft draft[2];
-    draft_widths(body, t, draft);
+    draft_widths(body, t, (double)sizes->ease_m, draft);
     double seat = tl_body_crotch_length(body, t->band_y) + SEAT_EASE;
     double low = FORKS_LEAST * body->hip, high = FORKS_MOST * body->hip;
     for (int step = 0; step < 30; step++) {
@@ -441,10 +464,10 @@ static void sew_band(struct tl_cut_plan *plan)
     }
 }
 
-struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body)
+struct tl_cut_plan tl_cut_plan_trousers(const struct tl_body *body, const struct tl_cut_params *sizes)
 {
     struct trousers *t = TL_NEW(struct trousers);
-    draft(body, t);
+    draft(body, sizes, t);
     struct tl_cut_plan plan = {
         .name = "trousers", .piece_count = PIECES, .placement = t, .keeps_sides = true};
     for (size_t i = 0; i < BAND_FRONT; i++) {

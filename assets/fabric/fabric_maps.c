@@ -12,37 +12,17 @@
 
 /* ---- Decoding ---- */
 
-static bool read_bytes(const tl_fabric_file *file, const struct tl_fabric_picture *picture, char **data,
-                       size_t *size, tl_error *error)
-{
-    return tl_store_read(&file->store, picture->file, TL_LIMIT_PICTURE_BYTES, data, size, error);
-}
-
-/* A picture as floats: 3 channels, and 4 when it has alpha; bytes from 0 to 1, not yet linear. */
-static bool decode(const tl_fabric_file *file, const struct tl_fabric_picture *picture, tl_image *out,
+/* The texels as the file has them, bytes that are not yet linear; heights as floats, in full precision. */
+static bool decode(const tl_fabric_file *file, const char *name, bool is_height, tl_image *out,
                    tl_error *error)
 {
-    char *data, *place;
+    char *data;
     size_t size;
-    if (!read_bytes(file, picture, &data, &size, error))
+    if (!tl_store_read(&file->store, name, TL_LIMIT_PICTURE_BYTES, &data, &size, error))
         return false;
-    place = tl_store_place(&file->store, picture->file);
-    bool decoded = tl_image_decode(place, data, size, out, error);
-    free(place);
-    free(data);
-    return decoded;
-}
-
-/* Heights have the full precision of their file. */
-static bool decode_heights(const tl_fabric_file *file, const struct tl_fabric_picture *picture, tl_image *out,
-                           tl_error *error)
-{
-    char *data, *place;
-    size_t size;
-    if (!read_bytes(file, picture, &data, &size, error))
-        return false;
-    place = tl_store_place(&file->store, picture->file);
-    bool decoded = tl_image_decode_values(place, data, size, out, error);
+    char *place = tl_store_place(&file->store, name);
+    bool decoded = is_height ? tl_image_decode_values(place, data, size, out, error)
+                             : tl_image_decode(place, data, size, out, error);
     free(place);
     free(data);
     return decoded;
@@ -212,12 +192,10 @@ struct loading {
 static bool decode_all(struct loading *loading, tl_error *error)
 {
     for (int use = 0; use < TL_PICTURE_USES; use++) {
-        const struct tl_fabric_picture *picture = &loading->file->pictures[use];
-        bool (*read)(const tl_fabric_file *, const struct tl_fabric_picture *, tl_image *, tl_error *) =
-            use == TL_PICTURE_HEIGHT ? decode_heights : decode;
-        if (!picture->file)
+        const char *name = loading->file->pictures[use].file;
+        if (!name)
             continue;
-        if (!read(loading->file, picture, &loading->raw[use], error))
+        if (!decode(loading->file, name, use == TL_PICTURE_HEIGHT, &loading->raw[use], error))
             return false;
         loading->width = loading->raw[use].width > loading->width ? loading->raw[use].width : loading->width;
         loading->height =
@@ -464,7 +442,7 @@ static bool read_plane(const tl_fabric_file *file, const struct tl_fabric_pictur
     *out = (tl_image){0};
     if (!picture->file)
         return true;
-    if (!(read == read_height ? decode_heights : decode)(file, picture, &raw, error))
+    if (!decode(file, picture->file, read == read_height, &raw, error))
         return false;
     *out = resized(picture, &raw, read, channels, raw.width, raw.height);
     tl_image_release(&raw);

@@ -249,6 +249,19 @@ void add_coat(Writer &writer, const tl_material &from, tinygltf::Material &to)
                 {"clearcoatRoughnessFactor", number(roughness_of(from.coat_glossiness))}});
 }
 
+/* Fuzz as the sheen that it is read back from. */
+void add_sheen(Writer &writer, const tl_material &from, tinygltf::Material &to)
+{
+    if (!tl_material_has_fuzz(&from))
+        return;
+    float roughness = model_sheen_of_fuzz(from.fuzz.roughness);
+    double amount = static_cast<double>(model_fuzz_of_sheen(roughness).amount);
+    double most = static_cast<double>(glms_vec3_max(from.fuzz.colour));
+    extend(writer, to, "KHR_materials_sheen",
+           {{"sheenColorFactor", colour(from.fuzz.colour, std::fmax(amount, most))},
+            {"sheenRoughnessFactor", number(static_cast<double>(roughness))}});
+}
+
 /* Diffuse transmission: its share, and the base colour for the remaining, reflected light. */
 double add_transmission(Writer &writer, const tl_material &from, tinygltf::Material &to)
 {
@@ -335,6 +348,7 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
     if (!metal)
         add_reflectance(writer, from, f0, to, path, error);
     add_coat(writer, from, to);
+    add_sheen(writer, from, to);
     tell_what_is_left_out(from, metal, path);
     add_map(writer, from.normal_map, AS_IT_IS, to.normalTexture, path, error);
     add_map(writer, from.occlusion_map, AS_IT_IS, to.occlusionTexture, path, error);

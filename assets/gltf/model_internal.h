@@ -134,6 +134,14 @@ bool model_bake_metal(const struct material_build *build, float factor, vec3s f0
 /* Factor on F0 when a GGX lobe of these widths is approximated by Ward's (model_extensions.c). */
 float model_ward_factor(float width_weft, float width_warp);
 
+/* Fuzz (tl_fuzz) for KHR_materials_sheen of a roughness in [0, 1]: `amount` multiplies the sheen's colour.
+ * And the sheen's roughness, from 0.2, for fuzz of a roughness. */
+struct model_fuzz {
+    float amount, roughness;
+};
+struct model_fuzz model_fuzz_of_sheen(float roughness);
+float model_sheen_of_fuzz(float roughness);
+
 /* Mean of a texture by channel; 1 without a texture. `which`: the channels in use, of "rgba", or "colour" for
  * red, green and blue, converted from sRGB to linear. If one of them varies, an approximation of `what` is
  * noted. */

@@ -301,6 +301,21 @@ static void name_all(const struct tl_opening_mesh *mesh, struct tl_openings *ope
     free(roots);
 }
 
+/* A raised arm may come first by its height: of a pair the left one does. */
+static void order_pairs(struct tl_openings *openings)
+{
+    for (size_t i = 0; i < openings->count; i++)
+        for (size_t j = i + 1; j < openings->count; j++) {
+            struct tl_opening *first = &openings->items[i], *second = &openings->items[j];
+            if (strncmp(first->name, "right ", 6) != 0 || strncmp(second->name, "left ", 5) != 0 ||
+                strcmp(first->name + 6, second->name + 5) != 0)
+                continue;
+            struct tl_opening right = *first;
+            *first = *second;
+            *second = right;
+        }
+}
+
 bool tl_openings_find(const struct tl_opening_mesh *mesh, struct tl_openings *out)
 {
     const struct tl_loop_source source = {mesh->vertex_count, mesh->triangle_count, mesh->triangles};
@@ -315,6 +330,7 @@ bool tl_openings_find(const struct tl_opening_mesh *mesh, struct tl_openings *ou
     tl_loops_release(&loops);
     qsort(out->items, out->count, sizeof *out->items, compare_openings);
     name_all(mesh, out);
+    order_pairs(out);
     return true;
 }
 

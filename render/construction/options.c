@@ -6,6 +6,8 @@ static const char *const seam_names[] = {"none",     "plain", "topstitched", "fl
 static const char *const hem_names[] = {"none", "plain", "topstitched", "twice", "bound", NULL};
 
 #define AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_AT_ONCE)
+/* Plies lie on each other at that distance. */
+#define THICKNESS_AFFECTS (TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_CLOTH | TL_AFFECTS_DRAPE)
 
 typedef struct tl_construction_params construction_params;
 static const struct tl_option rows[] = {
@@ -18,8 +20,9 @@ static const struct tl_option rows[] = {
                    "how free edges are finished; twice: two rows, as by a twin needle; bound: in tape"),
     TL_OPTION_FLOAT(construction_params, hem_mm, AFFECTS, 4, 28, "mm",
                     "width of hems; curved edges, as at a neck, have narrower ones"),
-    TL_OPTION_FLOAT(construction_params, thickness_mm, AFFECTS, 0.02, 5, "mm",
-                    "thickness of the cloth; larger: allowances and folds stand out more"),
+    TL_OPTION_FLOAT(
+        construction_params, thickness_mm, THICKNESS_AFFECTS, 0.02, 5, "mm",
+        "thickness of the cloth; larger: allowances and folds stand out more, plies lie farther apart"),
     TL_OPTION_FLOAT(construction_params, stitch_mm, AFFECTS, 0.5, 10, "mm",
                     "length of a stitch of visible rows"),
     TL_OPTION_FLOAT(construction_params, thread_mm, AFFECTS, 0.05, 2, "mm", "diameter of their thread"),

@@ -73,15 +73,16 @@ static void join_vertices(uint32_t *indices)
     }
 }
 
-/* A mesh of fixed shape: only where it lies and its size differ, so these are its revision. */
-static uint64_t revision_of(const struct tl_ground *ground)
+/* A mesh of fixed shape. Where it lies and its size make a motion's revision; its colour, which comes with
+ * the rest of its material, a topology's. */
+static uint64_t revision_of(const float *parts, int count)
 {
-    uint32_t parts[4];
-    memcpy(parts, &(float[4]){ground->centre.x, ground->centre.y, ground->centre.z, ground->radius},
-           sizeof parts);
     uint64_t mixed = 0;
-    for (int i = 0; i < 4; i++)
-        mixed = mixed * 1000003 + parts[i];
+    for (int i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &parts[i], sizeof bits);
+        mixed = mixed * 1000003 + bits;
+    }
     return mixed;
 }
 
@@ -107,7 +108,9 @@ void tl_ground_make(const struct tl_casters *casters, vec3s colour, struct tl_gr
                                 .part_count = 1,
                                 .parts = &out->part,
                                 .materials = &out->material,
-                                .motion_revision = revision_of(out)};
+                                .topology_revision = revision_of(colour.raw, 3),
+                                .motion_revision = revision_of(
+                                    (float[]){out->centre.x, out->centre.y, out->centre.z, out->radius}, 4)};
 }
 
 float tl_ground_cover(const struct tl_ground *ground, float x, float z)

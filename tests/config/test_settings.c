@@ -121,6 +121,26 @@ static void test_model_in_place_of_a_scene(void **state)
     static const char *const dressed[] = {"scene.garment=shirt.gltf"};
     assert_ok(load("m.gltf", dressed, 1, &error), error);
     assert_string_equal(settings.scene.garment, "shirt.gltf");
+    assert_string_equal(settings.scene.avatar, "m.gltf");
+}
+
+/* Where the options say who wears it, the model is the garment. */
+static void test_model_beside_a_body(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    static const char *const worn[] = {"scene.avatar=body.glb"};
+    assert_ok(load("shirt.obj", worn, 1, &error), error);
+    assert_string_equal(settings.scene.garment, "shirt.obj");
+    assert_string_equal(settings.scene.avatar, "body.glb");
+    assert_string_equal(settings.scene.fabric, "none");
+    static const char *const satin[] = {"scene.avatar=none", "scene.fabric=satin"};
+    assert_ok(load("shirt.obj", satin, 2, &error), error);
+    assert_string_equal(settings.scene.garment, "shirt.obj");
+    assert_string_equal(settings.scene.fabric, "satin");
+    static const char *const both[] = {"scene.avatar=body.glb", "scene.garment=skirt"};
+    assert_ok(load("shirt.obj", both, 2, &error), error);
+    assert_string_equal(settings.scene.garment, "skirt");
 }
 
 static size_t check_garment_names(const char *const *names)
@@ -300,6 +320,7 @@ int main(void)
         cmocka_unit_test_setup(test_built_in_scene, begin),
         cmocka_unit_test_setup(test_each_layer_wins, begin),
         cmocka_unit_test_setup(test_model_in_place_of_a_scene, begin),
+        cmocka_unit_test_setup(test_model_beside_a_body, begin),
         cmocka_unit_test_setup(test_garment_names, begin),
         cmocka_unit_test_setup(test_refusals, begin),
         cmocka_unit_test_setup(test_shipped_files, begin),

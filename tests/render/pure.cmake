@@ -13,6 +13,7 @@ foreach(name
     brdf/fuzz
     brdf/lobe_fit
     metrics/flip
+    metrics/lab
     surfaces/ground
     env/layout
     inspect/legend

@@ -148,6 +148,37 @@ static void test_adaptation(void **state)
     test_scene_close(&scene);
 }
 
+/* The mean of red of the lowest row's middle third: the ground before the figure. */
+static double red_of_ground(struct test_device *device, const struct test_scene *scene)
+{
+    tl_image drawn = test_scene_draw(scene, device->renderer);
+    const int width = drawn.width, from = width / 3, to = 2 * width / 3;
+    double sum = 0;
+    for (int x = from; x < to; x++)
+        sum += (double)tl_image_floats(
+            &drawn)[(size_t)drawn.channels * (size_t)((drawn.height - 1) * width + x)];
+    tl_image_release(&drawn);
+    return sum / (to - from);
+}
+
+/* The ground is of the colour that the environment's own has, from the frame in which the environment comes;
+ * an option sets it by hand. */
+static void test_ground_of_environment(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    open_scene(&scene, tl_environment_studio(), 120, 90);
+    scene.settings.image.ground = true;
+    scene.frame.environment_revision += 200;
+    double grey = red_of_ground(device, &scene);
+    scene.environment.ground = (vec3s){{0.1f, 0.3f, 0.3f}};
+    scene.frame.environment_revision++;
+    assert_near(red_of_ground(device, &scene) / grey, 0.1 / 0.4, 0.02);
+    scene.settings.image.ground_grey = 0.8f;
+    assert_near(red_of_ground(device, &scene) / grey, 0.8 / 0.4, 0.1);
+    test_scene_close(&scene);
+}
+
 /* An environment with a sun, as many texels as real ones have. */
 static void test_large_environment(void **state)
 {
@@ -232,9 +263,13 @@ static void test_views(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_backgrounds),    cmocka_unit_test(test_large_environment),
-        cmocka_unit_test(test_no_lamp_behind), cmocka_unit_test(test_cube),
-        cmocka_unit_test(test_views),          cmocka_unit_test(test_adaptation),
+        cmocka_unit_test(test_backgrounds),
+        cmocka_unit_test(test_large_environment),
+        cmocka_unit_test(test_no_lamp_behind),
+        cmocka_unit_test(test_cube),
+        cmocka_unit_test(test_views),
+        cmocka_unit_test(test_adaptation),
+        cmocka_unit_test(test_ground_of_environment),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

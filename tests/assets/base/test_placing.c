@@ -2,6 +2,8 @@
 #include "assets/base/placing.h"
 #include "tests/testing.h"
 
+#include "config/memory.h"
+
 static void place(const struct tl_placing *placing, vec3s *position, vec3s *normal)
 {
     struct tl_mesh_part part = {.uv_metres = 2};
@@ -59,10 +61,33 @@ static void size_direction_and_place_follow(void **state)
     assert_at(normal, 1, 0, 0);
 }
 
+/* What is placed can be traced back, and a change about a point leaves that point where it is and nothing
+ * else. */
+static void changes_about_a_point_keep_it(void **state)
+{
+    (void)state;
+    const struct tl_placing placing = {.z_up = true, .scale = 2, .turn_deg = 30, .move_m = {{1, -2, 0.5f}}};
+    const vec3s point = {{0.3f, 1.2f, -0.4f}}, other = {{0.5f, 1.2f, -0.4f}};
+    const struct tl_placing upright = {.scale = 2, .turn_deg = 30, .move_m = {{1, -2, 0.5f}}};
+    const struct tl_placing *placings[] = {&placing, &upright};
+    for (size_t i = 0; i < TL_COUNT(placings); i++) {
+        vec3s origin = tl_placing_origin(placings[i], point), far = tl_placing_origin(placings[i], other);
+        vec3s back = tl_placing_point(placings[i], origin);
+        assert_at(back, point.x, point.y, point.z);
+        const struct tl_placing changed = tl_placing_about(placings[i], point, 90, 1.5f);
+        assert_near(changed.scale, 3, 1e-6);
+        assert_near(changed.turn_deg, 120, 1e-4);
+        back = tl_placing_point(&changed, origin);
+        assert_at(back, point.x, point.y, point.z);
+        vec3s moved = tl_placing_point(&changed, far); /* 0.2 m to +X becomes 0.3 m to -Z */
+        assert_at(moved, point.x, point.y, point.z - 0.3f);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_changes_by_default),
-                                       cmocka_unit_test(z_up_stands),
-                                       cmocka_unit_test(size_direction_and_place_follow)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_changes_by_default), cmocka_unit_test(z_up_stands),
+        cmocka_unit_test(size_direction_and_place_follow), cmocka_unit_test(changes_about_a_point_keep_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,8 @@
 
 #include "tests/testing.h"
 
+#include "config/memory.h"
+
 #include <string.h>
 
 static struct tl_box box_of_size(float x, float y, float z)
@@ -117,12 +119,58 @@ static void models_along_z_are_detected(void **state)
     assert_false(tl_units_read(before, TL_UNITS_AUTO, false).z_up);
 }
 
+/* A dress from 27 to 63 units high, and with its arms up from 27 to 51: a person's in inches, either way. One
+ * that stands on the ground stays in centimetres. A shirt of 209 square units is one in decimetres, not a
+ * doll's in inches, spread or folded. What is set stays. */
+static void poses_have_one_size(void **state)
+{
+    (void)state;
+    const struct {
+        struct tl_box box;
+        double area;
+        enum tl_units wanted, expected;
+    } cases[] = {
+        {{{{12, 26.5f, -10}}, {{35, 62.8f, 12}}}, 3180, TL_UNITS_AUTO, TL_UNITS_IN},
+        {{{{12, 26.7f, -10}}, {{35, 51.1f, 12}}}, 2400, TL_UNITS_AUTO, TL_UNITS_IN},
+        {{{{-12, 0, -10}}, {{12, 36.3f, 12}}}, 3180, TL_UNITS_AUTO, TL_UNITS_CM},
+        {{{{-5, 1.2f, -3}}, {{5, 12.6f, 3}}}, 209, TL_UNITS_AUTO, TL_UNITS_DM},
+        {{{{-5, -4, -3}}, {{5, 4, 3}}}, 209, TL_UNITS_AUTO, TL_UNITS_DM},
+        {{{{-8, -4, -3}}, {{8, 4, 3}}}, 700, TL_UNITS_AUTO, TL_UNITS_IN},
+        {{{{-5, 1.2f, -3}}, {{5, 12.6f, 3}}}, 209, TL_UNITS_IN, TL_UNITS_IN},
+        {{{{-5, 1.2f, -3}}, {{5, 12.6f, 3}}}, 0, TL_UNITS_AUTO, TL_UNITS_IN},
+    };
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        struct tl_units_reading reading = tl_units_read(cases[i].box, cases[i].wanted, false);
+        tl_units_weigh(&reading, cases[i].box, cases[i].area);
+        assert_int_equal(reading.units, cases[i].expected);
+        assert_true(reading.other != reading.units);
+    }
+}
+
+/* A skirt of 0.5 by 0.25 by 0.37 m on a body whose waist is 1 m above the ground, with Z up: as wide as it is
+ * deep, it shows no axis by itself. With Y up, and beside the body, nothing is said. */
+static void a_body_shows_the_axis(void **state)
+{
+    (void)state;
+    const struct tl_box body = {{{-0.65f, 0, -0.15f}}, {{0.65f, 1.72f, 0.15f}}};
+    const struct tl_box lying = {{{-0.25f, -0.2f, 0.9f}}, {{0.25f, 0.17f, 1.15f}}};
+    const struct tl_box upright = {{{-0.25f, 0.9f, -0.17f}}, {{0.25f, 1.15f, 0.2f}}};
+    const struct tl_box beside = {{{1.25f, -0.2f, 0.9f}}, {{1.75f, 0.17f, 1.15f}}};
+    assert_false(tl_units_read(lying, TL_UNITS_M, false).z_up);
+    assert_true(tl_units_lies_z_up(lying, body));
+    assert_false(tl_units_lies_z_up(upright, body));
+    assert_false(tl_units_lies_z_up(beside, body));
+    const struct tl_box shoes = {{{-0.25f, 0, -0.05f}}, {{0.25f, 0.12f, 0.1f}}}; /* within it either way */
+    assert_false(tl_units_lies_z_up(shoes, body));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(units_are_guessed_from_sizes), cmocka_unit_test(fitting_guesses_have_garment_sizes),
         cmocka_unit_test(stated_units_are_used),        cmocka_unit_test(guesses_are_reported),
-        cmocka_unit_test(models_along_z_are_detected),
+        cmocka_unit_test(models_along_z_are_detected),  cmocka_unit_test(poses_have_one_size),
+        cmocka_unit_test(a_body_shows_the_axis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

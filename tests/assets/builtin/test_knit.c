@@ -260,6 +260,63 @@ static void test_a_strand_at_the_corner(void **state)
     tl_tile_release(&tile);
 }
 
+/* How far slopes within a window lie along one line: 0 in all directions alike, 1 all along one; the mean
+ * over windows of `side` texels, by their structure tensors. */
+static double coherence(const tl_weave *weave, int side)
+{
+    double sum = 0;
+    int windows = 0;
+    for (int top = 0; top + side <= weave->height.height; top += side)
+        for (int left = 0; left + side <= weave->height.width; left += side, windows++) {
+            double xx = 0, yy = 0, xy = 0;
+            for (int i = 0; i < side * side; i++) {
+                int column = left + i % side, row = top + i / side;
+                double x = height_at(weave, column + 1, row) - height_at(weave, column - 1, row);
+                double y = height_at(weave, column, row + 1) - height_at(weave, column, row - 1);
+                xx += x * x;
+                yy += y * y;
+                xy += x * y;
+            }
+            sum += hypot(xx - yy, 2 * xy) / (xx + yy);
+        }
+    return sum / windows;
+}
+
+/* Fibres of a pile lie anyhow, or as their patch was stroked: by its clumps, in more than one direction. */
+static void test_pile_leans_in_patches(void **state)
+{
+    (void)state;
+    struct tl_weave_params params = params_of(TL_WEAVE_PILE);
+    params.nap = 2;
+    params.fibre_mm = 0.1f;
+    params.clump_mm = 4;
+    params.crimp_mm = 0;
+    tl_weave anyhow = make(&params);
+    params.lean = 0.9f;
+    tl_weave stroked = make(&params);
+    const int patch = (int)(0.5 * 4e-3 / (double)stroked.size_m[0] * stroked.height.width);
+    assert_true(coherence(&stroked, patch) > 1.5 * coherence(&anyhow, patch)); /* of the few fibres there */
+    assert_true(coherence(&stroked, stroked.height.width) < 0.5 * coherence(&stroked, patch));
+    tl_weave_release(&anyhow);
+    tl_weave_release(&stroked);
+}
+
+/* A piece of pile is as large as its fibres can be drawn; clumps and patches stay in millimetres. */
+static void test_size_of_a_piece(void **state)
+{
+    (void)state;
+    static const float fibres_mm[] = {0.02f, 0.12f, 0.5f}, sizes_mm[] = {32, 40.96f, 48};
+    for (int i = 0; i < 3; i++) {
+        struct tl_weave_params params = params_of(TL_WEAVE_PILE);
+        params.fibre_mm = fibres_mm[i];
+        params.nap = 0;
+        tl_weave weave = make(&params);
+        assert_near(1e3 * (double)weave.size_m[0], sizes_mm[i], 1e-3);
+        assert_near(weave.size_m[1], weave.size_m[0], 0);
+        tl_weave_release(&weave);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacings),
@@ -267,6 +324,8 @@ int main(void)
                                        cmocka_unit_test(test_purl_and_interlock),
                                        cmocka_unit_test(test_maps),
                                        cmocka_unit_test(test_no_pattern_of_tiles),
-                                       cmocka_unit_test(test_a_strand_at_the_corner)};
+                                       cmocka_unit_test(test_a_strand_at_the_corner),
+                                       cmocka_unit_test(test_pile_leans_in_patches),
+                                       cmocka_unit_test(test_size_of_a_piece)};
     return cmocka_run_group_tests_name("knit", tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
-/* Girths against circles of known length. */
+/* Girths against circles of known length; garments moved and scaled to such a body. */
 #include "tests/testing.h"
 
+#include "assets/builtin/form.h"
 #include "assets/cut/fit.h"
 #include "config/memory.h"
 
@@ -86,12 +87,65 @@ static void size_is_told_by_girths(void **state)
     tl_mesh_release(&body);
 }
 
+/* A body 1.62 m high whose waist is a tube of 1.2 times the form's girth, at (0.02, -0.03): the middle
+ * between 0.56 and 0.66 of its height is where the narrowest section is found first. A garment of two points
+ * on the form's waist and one 10 cm below is moved there, and only if it is scaled its lengths change. */
+static void refit_alters_the_size_and_else_nothing_does(void **state)
+{
+    (void)state;
+    const float radius = 1.2f * (float)tl_form_girth(TL_FORM_WAIST) / (2 * SIDES * sinf((float)M_PI / SIDES));
+    const float circle[][3] = {{radius, 0.02f, -0.03f}};
+    tl_mesh body = tubes(circle, 1);
+    const float form_y = (float)TL_FORM_WAIST;
+    struct tl_waist waist;
+    assert_true(tl_mesh_waist(&body, &waist));
+    for (int scaled = 0; scaled < 2; scaled++) {
+        vec3s positions[] = {{{0.1f, form_y, 0}}, {{-0.1f, form_y, 0}}, {{0, form_y - 0.1f, 0.1f}}};
+        vec2s pattern[] = {{{0, 0}}, {{0.2f, 0}}, {{0.1f, 0.15f}}},
+              uvs[] = {{{0, 0}}, {{0.2f, 0}}, {{0.1f, -0.15f}}};
+        tl_garment garment = {
+            .model = {.name = "dress", .mesh = {.vertex_count = 3, .positions = positions, .uvs = uvs}},
+            .pattern = pattern};
+        tl_error error = {0};
+        assert_ok(tl_garment_fit(&garment, "body", &body, scaled, &error), error);
+        const float scale = scaled ? 1.2f : 1;
+        assert_near(positions[0].x, 0.02f + 0.1f * scale, 1e-4);
+        assert_near(positions[1].x, 0.02f - 0.1f * scale, 1e-4);
+        assert_near(positions[2].z, -0.03f + 0.1f * scale, 1e-4);
+        assert_near(positions[0].y, waist.y_m, 1e-5);
+        assert_near(positions[2].y, waist.y_m - 0.1f * scale, 1e-4);
+        assert_near(pattern[1].x, 0.2f * scale, 1e-4);
+        assert_near(uvs[2].y, -0.15f * scale, 1e-4);
+    }
+    tl_mesh_release(&body);
+}
+
+static void another_waist_is_told(void **state)
+{
+    (void)state;
+    const float to_girth = 2 * SIDES * sinf((float)M_PI / SIDES),
+                form_m = (float)tl_form_girth(TL_FORM_WAIST);
+    const float same[][3] = {{1.02f * form_m / to_girth, 0, 0}},
+                wide[][3] = {{1.2f * form_m / to_girth, 0, 0}};
+    tl_mesh fits = tubes(same, 1), large = tubes(wide, 1);
+    assert_null(tl_describe_waist("dress", "body", &fits));
+    char *line = tl_describe_waist("dress", "body", &large);
+    assert_non_null(line);
+    assert_non_null(strstr(line, "that of body is 0.82 m"));
+    assert_non_null(strstr(line, "1.20 times as large"));
+    free(line);
+    tl_mesh_release(&fits);
+    tl_mesh_release(&large);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(girth_of_a_tube_is_its_circle),
         cmocka_unit_test(girth_ignores_arms),
         cmocka_unit_test(size_is_told_by_girths),
+        cmocka_unit_test(another_waist_is_told),
+        cmocka_unit_test(refit_alters_the_size_and_else_nothing_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,8 @@
 
 static const float edges_m[] = {0.08f, 0.05f, 0.02f, 0.014f};
 
+static const struct tl_cut_params as_drafted;
+
 static tl_garment cut(const char *name, float edge_m)
 {
     tl_garment garment;
@@ -49,16 +51,29 @@ static double pattern_area(const tl_garment *garment)
     return area;
 }
 
+/* Every garment at every edge, each cut once: fine ones take seconds. */
+static tl_garment cuts[8][TL_COUNT(edges_m)];
+
 static void for_each_cut(void (*check)(const tl_garment *, const char *, float))
 {
     for (size_t g = 0; tl_garment_names[g]; g++) {
+        assert_true(g < TL_COUNT(cuts));
         /* A sleeve is three edges of 8 cm around, and a collar one of 5 cm high. */
         for (size_t e = strcmp(tl_garment_names[g], "shirt") == 0 ? 2 : 0; e < TL_COUNT(edges_m); e++) {
-            tl_garment garment = cut(tl_garment_names[g], edges_m[e]);
-            check(&garment, tl_garment_names[g], edges_m[e]);
-            drop(&garment);
+            if (!cuts[g][e].model.name)
+                cuts[g][e] = cut(tl_garment_names[g], edges_m[e]);
+            check(&cuts[g][e], tl_garment_names[g], edges_m[e]);
         }
     }
+}
+
+static int drop_cuts(void **state)
+{
+    (void)state;
+    for (size_t g = 0; g < TL_COUNT(cuts); g++)
+        for (size_t e = 0; e < TL_COUNT(edges_m); e++)
+            drop(&cuts[g][e]);
+    return 0;
 }
 
 static int compare_floats(const void *a, const void *b)
@@ -242,7 +257,7 @@ static void test_topology(void **state)
 /* The start shape is close enough to the flat pattern to settle without violent motion: mean strain of edges
  * below 2 %, none beyond 20 %, everything at least 4 mm off the form (5 mm of ease in the waistband, 6 mm
  * elsewhere). The bounds are what the settling solver handles easily, not the best that the cut can do. */
-static void check_start(const tl_garment *garment, const char *name, float edge_m)
+static void check_start_off(const tl_garment *garment, const char *name, float edge_m, double off_m)
 {
     const tl_mesh *mesh = &garment->model.mesh;
     double mean = 0, largest = 0, nearest = 1;
@@ -263,9 +278,14 @@ static void check_start(const tl_garment *garment, const char *name, float edge_
            (double)edge_m, mean, largest, nearest);
     assert_true(mean < 0.02);
     assert_true(largest < (strcmp(name, "shirt") == 0 ? 0.25 : 0.20)); /* its sleeve caps */
-    /* One step along a rough distance's gradient takes cloth to its 6 mm; between the figure's limbs it is
-     * rougher. */
-    assert_true(nearest > (tl_garment_is_for_figure(name) ? 0.003 : 0.004));
+    assert_true(nearest > off_m);
+}
+
+/* One step along a rough distance's gradient takes cloth to its 6 mm; between the figure's limbs it is
+ * rougher. */
+static void check_start(const tl_garment *garment, const char *name, float edge_m)
+{
+    check_start_off(garment, name, edge_m, tl_garment_is_for_figure(name) ? 0.003 : 0.004);
 }
 
 static void test_start(void **state)
@@ -367,6 +387,216 @@ static void test_deterministic(void **state)
     drop(&b);
 }
 
+static tl_garment cut_fine(const char *name, struct tl_cut_params sizes, float edge_m)
+{
+    tl_garment garment;
+    tl_error error = {0};
+    assert_ok(tl_garment_cut_sized(name, edge_m, &sizes, NULL, &garment, &error), error);
+    return garment;
+}
+
+static tl_garment cut_sized(const char *name, struct tl_cut_params sizes)
+{
+    return cut_fine(name, sizes, 0.03f);
+}
+
+/* The part of a material; its pieces lie on the table at one height. */
+static const struct tl_mesh_part *part_of(const tl_garment *garment, const char *material)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    for (size_t p = 0; p < mesh->part_count; p++)
+        if (strcmp(garment->model.materials[mesh->parts[p].material].name, material) == 0)
+            return &mesh->parts[p];
+    fail_msg("no part of %s", material);
+    return NULL;
+}
+
+static double table_height(const tl_garment *garment, const char *material)
+{
+    const struct tl_mesh_part *part = part_of(garment, material);
+    float lower = INFINITY, upper = -INFINITY;
+    for (uint32_t i = 0; i < part->index_count; i++) {
+        vec2s at = garment->pattern[garment->model.mesh.indices[part->first_index + i]];
+        lower = fminf(lower, at.y);
+        upper = fmaxf(upper, at.y);
+    }
+    return (double)(upper - lower);
+}
+
+/* Middle of a part's corners on +X. */
+static vec3s middle_of(const tl_garment *garment, const char *material)
+{
+    const struct tl_mesh_part *part = part_of(garment, material);
+    vec3s sum = GLMS_VEC3_ZERO;
+    float count = 0;
+    for (uint32_t i = 0; i < part->index_count; i++) {
+        vec3s at = garment->model.mesh.positions[garment->model.mesh.indices[part->first_index + i]];
+        if (at.x > 0)
+            sum = glms_vec3_add(sum, at), count++;
+    }
+    return glms_vec3_scale(sum, 1 / count);
+}
+
+/* Lengths of the openings, sewn, in the flat pattern: the sum over border edges between two heights. */
+static double border_between(const tl_garment *garment, float lowest_y, float highest_y)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    uint32_t *weld = weld_by_seams(garment);
+    uint64_t *edges = TL_NEW_ARRAY(uint64_t, mesh->index_count);
+    for (size_t i = 0; i < mesh->index_count; i++)
+        edges[i] = (uint64_t)weld[mesh->indices[i]] << 32 | weld[mesh->indices[i % 3 == 2 ? i - 2 : i + 1]];
+    uint64_t *sorted = TL_NEW_ARRAY(uint64_t, mesh->index_count);
+    memcpy(sorted, edges, mesh->index_count * sizeof *edges);
+    qsort(sorted, mesh->index_count, sizeof *sorted, compare_edges);
+    double length = 0;
+    for (size_t i = 0; i < mesh->index_count; i++) {
+        uint64_t opposite = edges[i] << 32 | edges[i] >> 32;
+        uint32_t a = mesh->indices[i], b = mesh->indices[i % 3 == 2 ? i - 2 : i + 1];
+        if (!bsearch(&opposite, sorted, mesh->index_count, sizeof *sorted, compare_edges) &&
+            mesh->positions[a].y > lowest_y && mesh->positions[a].y < highest_y)
+            length += (double)glms_vec2_distance(garment->pattern[a], garment->pattern[b]);
+    }
+    free(sorted);
+    free(edges);
+    free(weld);
+    return length;
+}
+
+static struct tl_box box_of(const tl_garment *garment)
+{
+    return tl_box_of(garment->model.mesh.positions, garment->model.mesh.vertex_count);
+}
+
+/* Sizes are differences in metres of cloth. Around: waists and hems are longer by all of the ease, and cuffs
+ * and leg hems, of which there are two, by half of it each. Chords of 3 cm are shorter than arcs by 0.3 % at
+ * most (the skirt's waist has a radius of 0.12 m), which is 1 mm of the difference. */
+static void test_ease(void **state)
+{
+    (void)state;
+    const struct tl_cut_params wider = {.ease_m = 0.1f};
+    const struct {
+        const char *name;
+        float lowest_y, highest_y; /* of the openings that are compared */
+        double by;
+    } rows[] = {
+        {"skirt", 1.0f, 1.1f, 0.1}, /* the waist */
+        {"skirt", 0.4f, 0.7f, 0.1}, /* the hem of a full circle: 2 pi (r + length), and r as the waist */
+        {"dress", 0.4f, 0.7f, 0.1},  {"trousers", 0.9f, 1.1f, 0.1}, {"trousers", 0.0f, 0.2f, 0.1},
+        {"shirt", 0.6f, 0.87f, 0.1}, {"shirt", 0.88f, 1.0f, 0.1}};
+    for (size_t i = 0; i < TL_COUNT(rows); i++) {
+        tl_garment drafted = cut_sized(rows[i].name, as_drafted), sized = cut_sized(rows[i].name, wider);
+        double before = border_between(&drafted, rows[i].lowest_y, rows[i].highest_y);
+        double after = border_between(&sized, rows[i].lowest_y, rows[i].highest_y);
+        printf("%s: %.4f m and %.4f m\n", rows[i].name, before, after);
+        assert_true(before > 0.4);
+        assert_near(after - before, rows[i].by, 0.001);
+        drop(&drafted);
+        drop(&sized);
+    }
+}
+
+/* Down: panels are longer by what was asked, and the hem starts lower. The skirt is a ring of that width. The
+ * dress's start shape is a cone of 0.42 rad, whose hem is lower by the cosine. */
+static void test_length(void **state)
+{
+    (void)state;
+    const struct {
+        const char *name;
+        struct tl_cut_params sizes;
+        double by;
+    } rows[] = {{"trousers", {.longer_m = -0.3f}, -0.3},
+                {"trousers", {.longer_m = 0.008f}, 0.008},
+                {"shirt", {.longer_m = 0.15f}, 0.15},
+                {"shirt", {.longer_m = -0.1f}, -0.1}};
+    for (size_t i = 0; i < TL_COUNT(rows); i++) {
+        tl_garment drafted = cut_sized(rows[i].name, as_drafted),
+                   sized = cut_sized(rows[i].name, rows[i].sizes);
+        /* Both hang straight down; how a hem sticks out changes their heights a little. */
+        assert_near(box_of(&drafted).lower.y - box_of(&sized).lower.y, rows[i].by, 0.003);
+        if (strcmp(rows[i].name, "trousers") == 0) /* whose legs lie at one height on the table */
+            assert_near(table_height(&sized, "trousers") - table_height(&drafted, "trousers"), rows[i].by,
+                        1e-5);
+        drop(&drafted);
+        drop(&sized);
+    }
+    tl_garment skirt = cut_sized("skirt", (struct tl_cut_params){.longer_m = -0.2f});
+    double radius = (tl_form_girth(1.045) + 0.03) / (2 * M_PI);
+    double expected = M_PI * (2 * radius + 0.4) * 0.4; /* as in test_skirt_area */
+    assert_near(pattern_area(&skirt), expected, 0.004 * expected);
+    drop(&skirt);
+    tl_garment dress = cut_sized("dress", as_drafted);
+    tl_garment shorter = cut_sized("dress", (struct tl_cut_params){.longer_m = -0.2f});
+    assert_near(box_of(&shorter).lower.y - box_of(&dress).lower.y, 0.2 * cos(0.42), 0.005);
+    drop(&dress);
+    drop(&shorter);
+}
+
+/* Sleeves end where they should along the arm, which is straight to 1 % from the elbow on. */
+static void test_sleeves(void **state)
+{
+    (void)state;
+    tl_garment drafted = cut_sized("shirt", as_drafted);
+    tl_garment sized = cut_sized("shirt", (struct tl_cut_params){.sleeve_m = -0.2f});
+    vec3s long_end = middle_of(&drafted, "cuffs"), short_end = middle_of(&sized, "cuffs");
+    printf("cuffs at %.4f, %.4f and %.4f, %.4f\n", (double)long_end.x, (double)long_end.y,
+           (double)short_end.x, (double)short_end.y);
+    assert_near(glms_vec3_distance(long_end, short_end), 0.2, 0.01);
+    assert_true(short_end.y > long_end.y);
+    drop(&drafted);
+    drop(&sized);
+}
+
+/* A garment of another size is as well made; wide legs lie closer under the crotch. */
+static void test_sized_cuts(void **state)
+{
+    (void)state;
+    const struct {
+        const char *name;
+        struct tl_cut_params sizes;
+    } rows[] = {{"dress", {.ease_m = 0.15f, .longer_m = 0.1f}},
+                {"dress", {.ease_m = -0.02f, .longer_m = -0.3f}},
+                {"skirt", {.ease_m = 0.06f, .longer_m = -0.35f}},
+                {"trousers", {.ease_m = 0.06f, .longer_m = -0.35f}},
+                {"trousers", {.ease_m = -0.03f}},
+                {"shirt", {0.1f, 0.15f, -0.2f}}};
+    for (size_t i = 0; i < TL_COUNT(rows); i++) {
+        const float edge_m = strcmp(rows[i].name, "shirt") == 0 ? 0.02f : 0.05f;
+        tl_garment garment = cut_fine(rows[i].name, rows[i].sizes, edge_m);
+        check_seams(&garment, rows[i].name, edge_m);
+        check_topology(&garment, rows[i].name, edge_m);
+        check_start_off(&garment, rows[i].name, edge_m, 0.002);
+        drop(&garment);
+    }
+}
+
+/* Lengths that a body leaves no room for are refused, with the limit, which is itself accepted. */
+static void test_lengths_refused(void **state)
+{
+    (void)state;
+    const struct {
+        const char *name, *option;
+        struct tl_cut_params sizes;
+    } rows[] = {{"trousers", "cut.longer_m: 0.3 m", {.longer_m = 0.3f}},
+                {"shirt", "cut.longer_m: -0.4 m", {.longer_m = -0.4f}},
+                {"shirt", "cut.sleeve_m: -0.4 m", {.sleeve_m = -0.4f}},
+                {"skirt", "cut.longer_m: -0.7 m", {.longer_m = -0.7f}},
+                {"dress", "cut.longer_m: -0.7 m", {.longer_m = -0.7f}}};
+    for (size_t i = 0; i < TL_COUNT(rows); i++) {
+        tl_garment garment;
+        tl_error error = {0};
+        assert_false(tl_garment_cut_sized(rows[i].name, 0.03f, &rows[i].sizes, NULL, &garment, &error));
+        assert_int_equal(error.code, TL_USAGE);
+        assert_non_null(strstr(error.message, rows[i].option));
+        const char *limit = strstr(error.message, "than ");
+        assert_non_null(limit);
+        struct tl_cut_params least = rows[i].sizes;
+        float *size = least.sleeve_m != 0 ? &least.sleeve_m : &least.longer_m;
+        *size = strtof(limit + 5, NULL);
+        garment = cut_sized(rows[i].name, least);
+        drop(&garment);
+    }
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -386,11 +616,21 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_quality),       cmocka_unit_test(test_skirt_area),
-        cmocka_unit_test(test_seams),         cmocka_unit_test(test_topology),
-        cmocka_unit_test(test_start),         cmocka_unit_test(test_pins),
-        cmocka_unit_test(test_outside),       cmocka_unit_test(test_model),
-        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_quality),
+        cmocka_unit_test(test_skirt_area),
+        cmocka_unit_test(test_seams),
+        cmocka_unit_test(test_topology),
+        cmocka_unit_test(test_start),
+        cmocka_unit_test(test_pins),
+        cmocka_unit_test(test_outside),
+        cmocka_unit_test(test_model),
+        cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_ease),
+        cmocka_unit_test(test_length),
+        cmocka_unit_test(test_sleeves),
+        cmocka_unit_test(test_sized_cuts),
+        cmocka_unit_test(test_lengths_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, drop_cuts);
 }

@@ -1,6 +1,7 @@
 #include "assets/model.h"
 #include "assets/model_export.h"
 
+#include "render/brdf/fuzz.h"
 #include "tests/assets/small_glb.h"
 
 /* The small model with `extensions` and other members of pbrMetallicRoughness in its second material, a
@@ -227,44 +228,73 @@ static void transmission_is_holes_and_scatter(void **state)
     tl_model_release(&model);
 }
 
-/* Albedo of the sheen by Monte Carlo: cosine-weighted views, uniform lights. */
-static double sheen_by_sampling(double roughness)
+/* Albedo of the "Charlie" sheen towards a view of cosine v, by the midpoint rule. */
+static double sheen_albedo(double roughness, double v)
 {
+    enum { STEPS = 100 };
     double inverse = 1 / (roughness * roughness), sum = 0;
-    uint32_t seed = 1;
-    const int draws = 400000;
-    for (int i = 0; i < draws; i++) {
-        double u[3];
-        for (int k = 0; k < 3; k++) {
-            seed = seed * 1664525u + 1013904223u;
-            u[k] = (double)(seed >> 8) / 0x1p24;
-        }
-        double v = sqrt(u[0]), l = u[1], x = sqrt(1 - v * v) + sqrt(1 - l * l) * cos(2 * M_PI * u[2]);
-        double y = sqrt(1 - l * l) * sin(2 * M_PI * u[2]), z = v + l;
+    for (int i = 0; i < STEPS * STEPS; i++) {
+        double l = (i / STEPS + 0.5) / STEPS, turn = M_PI * (i % STEPS + 0.5) / STEPS;
+        double x = sqrt(1 - v * v) + sqrt(1 - l * l) * cos(turn), y = sqrt(1 - l * l) * sin(turn), z = v + l;
         double sine = sqrt((x * x + y * y) / (x * x + y * y + z * z));
-        sum += (2 + inverse) * pow(sine, inverse) / (2 * M_PI) / (4 * (l + v - l * v)) * l * 2 * M_PI;
+        sum += (2 + inverse) * pow(sine, inverse) / (2 * M_PI) / (4 * (l + v - l * v)) * l;
     }
-    return sum / draws;
+    return sum / (STEPS * STEPS) * 2 * M_PI;
 }
 
-/* The mean albedo of sheen is diffuse, and the cloth under it gets the rest. */
-static void sheen_is_scattered_light(void **state)
+#define VIEWS 20
+/* Root mean square difference of the albedos, relative to the sheen's, over projected solid angle. */
+static double differs_by(const double albedos[VIEWS], double amount, double roughness)
+{
+    double difference = 0, whole = 0;
+    for (int i = 0; i < VIEWS; i++) {
+        double v = (i + 0.5) / VIEWS;
+        double own = amount * (double)fuzz_albedo((float)v, (float)roughness);
+        difference += v * (own - albedos[i]) * (own - albedos[i]);
+        whole += v * albedos[i] * albedos[i];
+    }
+    return sqrt(difference / whole);
+}
+
+/* Sheen becomes the fuzz whose albedo is nearest to its own, and leaves the rest of the material alone: both
+ * scale it by what they leave. A search finds none that is nearer by more than the table's steps cost. */
+static void sheen_becomes_fuzz(void **state)
 {
     (void)state;
-    for (int i = 3; i <= 10; i++) {
+    for (int i = 6; i <= 20; i++) {
         char text[160];
+        double roughness = i / 20.0, albedos[VIEWS], best = 1;
         snprintf(text, sizeof text,
                  "\"KHR_materials_sheen\":{\"sheenColorFactor\":[1,0.5,0],\"sheenRoughnessFactor\":%g}",
-                 i / 10.0);
+                 roughness);
         tl_model model = load_with(MATT, text);
         const tl_material *velvet = &model.materials[1];
-        double albedo = sheen_by_sampling(i / 10.0);
-        assert_near(velvet->diffuse.x, 0.8 * (1 - albedo) + albedo, 0.004);
-        assert_near(velvet->diffuse.y, 0.6 * (1 - albedo) + 0.5 * albedo, 0.004);
-        assert_near(velvet->specular.z, 0.04 * (1 - albedo), 2e-4);
-        assert_int_equal(notes_with(&model, "KHR_materials_sheen: its mean light is added"), 1);
+        double amount = (double)velvet->fuzz.colour.x;
+        for (int k = 0; k < VIEWS; k++)
+            albedos[k] = sheen_albedo(roughness, (k + 0.5) / VIEWS);
+        for (int y = 40; y <= 100; y += 2)
+            for (int a = 50; a <= 160; a += 2)
+                best = fmin(best, differs_by(albedos, a / 100.0, y / 100.0));
+        assert_near(differs_by(albedos, amount, (double)velvet->fuzz.roughness), best, 0.02);
+        assert_true(best < 0.08);
+        assert_near(velvet->fuzz.colour.y, amount / 2, 1e-6);
+        assert_near(velvet->fuzz.colour.z, 0, 0);
+        assert_near(velvet->diffuse.x, 0.8, 1e-6);
+        assert_near(velvet->specular.z, 0.04, 1e-7);
+        assert_int_equal(notes_with(&model, "KHR_materials_sheen: shown as fuzz"), 1);
+        assert_true(amount * (double)fuzz_albedo(0, velvet->fuzz.roughness) <= 1);
         tl_model_release(&model);
     }
+}
+
+/* Khronos' wording: a sheen of black is none. */
+static void black_sheen_is_none(void **state)
+{
+    (void)state;
+    tl_model model = load_with(MATT, "\"KHR_materials_sheen\":{\"sheenRoughnessFactor\":0.5}");
+    assert_false(tl_material_has_fuzz(&model.materials[1]));
+    assert_int_equal(model.approximated_count, 0);
+    tl_model_release(&model);
 }
 
 /* Numbers outside every valid range. */
@@ -310,6 +340,8 @@ static void exports_round_trip(void **state)
                "\"clearcoatRoughnessFactor\":0.3}"},
         {MATT, "\"KHR_materials_specular\":{\"specularColorFactor\":[1,0.5,0],\"specularColorTexture\":"
                "{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[3,2]}}}}"},
+        {MATT, "\"KHR_materials_sheen\":{\"sheenColorFactor\":[0.3,1,0],\"sheenRoughnessFactor\":0.25}"},
+        {MATT, "\"KHR_materials_sheen\":{\"sheenColorFactor\":[0.9,0.2,0.1],\"sheenRoughnessFactor\":0.97}"},
         {MATT, "\"KHR_materials_diffuse_transmission\":{\"diffuseTransmissionFactor\":0.25,"
                "\"diffuseTransmissionColorFactor\":[1,0.5,0]}"},
     };
@@ -328,7 +360,9 @@ static void exports_round_trip(void **state)
             assert_near(b->diffuse.raw[c], a->diffuse.raw[c], 2e-6);
             assert_near(b->specular.raw[c], a->specular.raw[c], 2e-6);
             assert_near(b->transmission.raw[c], a->transmission.raw[c], 2e-6);
+            assert_near(b->fuzz.colour.raw[c], a->fuzz.colour.raw[c], 2e-6);
         }
+        assert_near(b->fuzz.roughness, a->fuzz.roughness, 2e-6);
         assert_int_equal(b->gloss.model, a->gloss.model);
         assert_near(b->gloss.width_weft, a->gloss.width_weft, 2e-6);
         assert_near(b->gloss.width_warp, a->gloss.width_warp, 2e-6);
@@ -359,7 +393,7 @@ static void real_files_are_read(void **state)
     assert_true(notes_with(&model, "KHR_materials_anisotropy: shown by Ward") == 1);
     tl_model_release(&model);
     assert_ok(tl_model_load(test_data("models/SheenChair/SheenChair.gltf"), &model, &error), error);
-    assert_true(notes_with(&model, "KHR_materials_sheen: its mean light is added") == 1);
+    assert_true(notes_with(&model, "KHR_materials_sheen: shown as fuzz") == 1);
     tl_model_release(&model);
 }
 
@@ -403,7 +437,8 @@ int main(void)
         cmocka_unit_test(clearcoat_is_a_coat),
         cmocka_unit_test(diffuse_transmission_is_transmission),
         cmocka_unit_test(transmission_is_holes_and_scatter),
-        cmocka_unit_test(sheen_is_scattered_light),
+        cmocka_unit_test(sheen_becomes_fuzz),
+        cmocka_unit_test(black_sheen_is_none),
         cmocka_unit_test(invalid_parameters_are_clamped),
         cmocka_unit_test(exports_round_trip),
         cmocka_unit_test(real_files_are_read),

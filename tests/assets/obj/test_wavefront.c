@@ -216,9 +216,9 @@ static void real_garments(void **state)
     } garments[] = {
         {"garments/cipc_dress_knife_stage.obj", 15656, 29456, TL_UNITS_M, true},
         {"garments/diffcloth_dress-handsup-drape.obj", 3634, 7026, TL_UNITS_IN, false},
-        {"garments/diffcloth_dress-v5k-f10k.obj", 5563, 10180, TL_UNITS_CM, false},
+        {"garments/diffcloth_dress-v5k-f10k.obj", 5563, 10180, TL_UNITS_IN, false},
         {"garments/diffcloth_skirt3448.obj", 1809, 3448, TL_UNITS_M, false},
-        {"garments/diffcloth_tshirt1000-tri.obj", 1426, 2745, TL_UNITS_IN, false},
+        {"garments/diffcloth_tshirt1000-tri.obj", 1426, 2745, TL_UNITS_DM, false},
         {"sequences/tshirt_iter0/000.obj", 1426, 2745, TL_UNITS_DM, false},
     };
     for (size_t i = 0; i < sizeof garments / sizeof garments[0]; i++) {
