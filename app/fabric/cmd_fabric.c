@@ -1,8 +1,10 @@
 /* toile fabric: lists, writes and bakes fabrics. */
 #include "app/cli/json.h"
 #include "app/fabric/bake.h"
+#include "app/fabric/card.h"
 #include "app/fabric/commands.h"
 #include "app/fabric/fabric.h"
+#include "app/fabric/fields.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -26,32 +28,6 @@ static char *source_of(const char *name)
     return is_path ? tl_copy_string(name) : tl_format("./%s", name);
 }
 
-static void print_fields(const tl_fabric_file *file)
-{
-    size_t used = 0;
-    for (size_t i = 0; i < file->field_count; i++) {
-        const struct tl_fabric_field *field = &file->fields[i];
-        printf("%-44s %-34s %s\n", field->name, field->value, field->use);
-        used += field->is_used;
-    }
-    printf("%zu of %zu fields are used\n\n", used, file->field_count);
-}
-
-static cJSON *fields_of(const tl_fabric_file *file)
-{
-    cJSON *list = cJSON_CreateArray();
-    for (size_t i = 0; i < file->field_count; i++) {
-        const struct tl_fabric_field *field = &file->fields[i];
-        cJSON *row = cJSON_CreateObject();
-        cJSON_AddStringToObject(row, "name", field->name);
-        cJSON_AddStringToObject(row, "value", field->value);
-        cJSON_AddBoolToObject(row, "used", field->is_used);
-        cJSON_AddStringToObject(row, "use", field->use);
-        cJSON_AddItemToArray(list, row);
-    }
-    return list;
-}
-
 static void add_options(cJSON *object, const struct tl_binding *binding)
 {
     cJSON *table = cJSON_AddObjectToObject(object, binding->table->name);
@@ -70,17 +46,41 @@ static void print_fabric(struct tl_fabric *fabric, bool json)
     if (!json) {
         printf("# %s\n", tl_fabric_name(fabric));
         if (fabric->is_foreign)
-            print_fields(&fabric->file);
+            tl_fabric_fields_print(&fabric->file);
         tl_options_print_yaml(bindings, TL_FABRIC_TABLES, stdout);
         return;
     }
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "fabric", tl_fabric_name(fabric));
     if (fabric->is_foreign)
-        cJSON_AddItemToObject(object, "fields", fields_of(&fabric->file));
+        cJSON_AddItemToObject(object, "fields", tl_fabric_fields_json(&fabric->file));
     for (int i = 0; i < TL_FABRIC_TABLES; i++)
         add_options(object, &bindings[i]);
     tl_json_print(object);
+}
+
+/* Takes what --set gives over the fabric's own options. */
+static bool assign(struct tl_fabric *fabric, const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_binding bindings[TL_FABRIC_TABLES];
+    tl_fabric_bind(fabric, bindings);
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        if (!tl_options_set_assignment(bindings, TL_FABRIC_TABLES, arguments->assignments[i], error))
+            return false;
+    return true;
+}
+
+static bool list_or_write(const char *source, const struct tl_arguments *arguments, tl_error *error)
+{
+    struct tl_fabric *fabric = TL_NEW(struct tl_fabric);
+    bool done = tl_fabric_open(source, fabric, error) && assign(fabric, arguments, error);
+    if (done && arguments->output)
+        done = tl_fabric_write(fabric, arguments->output, error);
+    else if (done)
+        print_fabric(fabric, arguments->json);
+    tl_fabric_release(fabric);
+    free(fabric);
+    return done;
 }
 
 bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error)
@@ -89,17 +89,18 @@ bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error)
         return tl_fail(error, TL_USAGE,
                        "fabric: expected one fabric or height map: a name, a file or a folder, as in "
                        "`toile fabric denim`");
+    if (arguments->card && (arguments->output || arguments->json))
+        return tl_fail(error, TL_USAGE, "--card: writes the card alone: leave out %s",
+                       arguments->output ? "-o" : "--json, and end the card's name in .json for one");
     if (is_height_map(arguments->positionals[0]))
-        return tl_fabric_bake(arguments, error);
-    struct tl_fabric *fabric = TL_NEW(struct tl_fabric);
+        return arguments->card ? tl_fail(error, TL_USAGE,
+                                         "%s: a height map alone is no fabric: bake it with -o FOLDER, and "
+                                         "make the card of that folder's .yaml",
+                                         arguments->positionals[0])
+                               : tl_fabric_bake(arguments, error);
     char *source = source_of(arguments->positionals[0]);
-    bool done = tl_fabric_open(source, fabric, error);
-    if (done && arguments->output)
-        done = tl_fabric_write(fabric, arguments->output, error);
-    else if (done)
-        print_fabric(fabric, arguments->json);
-    tl_fabric_release(fabric);
-    free(fabric);
+    bool done =
+        arguments->card ? tl_fabric_card(source, arguments, error) : list_or_write(source, arguments, error);
     free(source);
     return done;
 }

@@ -97,3 +97,35 @@ refuse "words as an archive" 'words\.u3ma.*zip' fabric words.u3ma
 refuse "a folder of nothing" 'nothing.*no texture maps' render -o x.png --fabric nothing/
 refuse "a lost file" 'lost\.u3m.*no such file' fabric lost.u3m
 refuse "an unknown name" 'denin.*did you mean denim' fabric denin
+
+# ---- The card ----
+
+cheap_card="--set cloth.edge_m=0.03 --set cloth.settle_s=2 --set light.method=unshadowed --set light.rounds=1
+    --set image.supersample=1 $cheap_light"
+# Cloth without gloss and yarns sends back its base colour under light from everywhere: CIELAB of 0.2, 0.1, 0.05 is 40.8,
+# 10.8, 20.5. Its figures are the file's, and what follows from them: (6e-6 / (0.2 * 9.81))^(1/3) is 14.5 mm.
+printf 'fabric: {areal_density: 0.2, bend_weft: 6e-6}\nweave: {pattern: none}\nmaterial: {use_file: false, diffuse: [0.2, 0.1, 0.05], specular: [0, 0, 0], glossiness: 0}\n' >plain.yaml
+sed -i '1i # Woven by nobody.' plain.yaml
+"$TOILE" fabric plain.yaml --card card.json $cheap_card --quiet || fail "no card as JSON"
+has() { tr -d '\n\t' <card.json | grep -qE "$1" || fail "card.json: no $1: $(tr -d '\n\t' <card.json | head -c 4000)"; }
+has '"notes":"Woven by nobody\.'
+has '"Weight","value":200,"unit":"g/m[^"]*","source":"plain.yaml: fabric.areal_density"'
+has '"Bending rigidity, weft","value":6,"unit":"[^"]*m","source":"plain.yaml'
+has '"Bending rigidity, warp","value":10,"unit":"[^"]*m","source":"not stated'
+has '"Bending length, weft","value":14\.5'
+has '"coefficient_percent":[0-9]'
+has '"base":\{"lab_d65":\[40\.8[0-9]*, *10\.7[0-9]*, *20\.5'
+has '"ciede2000":0\.[0-3]'
+# A picture's mean is in the base colour; what is set is named, a file's field too, and those that are not used are listed.
+"$TOILE" fabric strips.json --card card.json $cheap_card --set fabric.shear=50 --quiet || fail "no card of measurements"
+has '"Weight","value":200,"unit":"g/m[^"]*","source":"raw_data.M"'
+has '"Shear stiffness","value":50,"unit":"N/m","source":"set: fabric.shear"'
+has '"used":false'
+tr -d '\n\t' <card.json | grep -q '"colour"' && fail "measurements have a colour"
+"$TOILE" fabric plain.yaml --card card.pdf $cheap_card --quiet || fail "no card as PDF"
+head -c 8 card.pdf | grep -q '%PDF-1' && grep -aq '/MediaBox \[ 0 0 595.27[0-9]* 841.88' card.pdf || fail "the card is no A4 page"
+refuse "a card of no kind" 'card\.txt.*\.png, \.pdf or \.json' fabric denim --card card.txt
+refuse "a card and a copy" 'leave out -o' fabric denim --card card.png -o copy
+refuse "a card into nothing" 'nowhere/card\.png' fabric denim --card nowhere/card.png
+refuse "a card of heights" 'height map alone' fabric height.png --card card.png
+refuse "an option of no fabric" 'light: no such table' fabric denim --set light.rounds=2

@@ -17,6 +17,13 @@ check "all of it is the sum of its panels" awk -F, '
 
 # Opened again, the export has the areas, lengths and strains that it had: its UVs are its pattern.
 $TOILE export --garment dress $quick -o dress.obj
+# One argument is enough, and what is exported again is where it was, to the micrometre.
+check "a garment file is exported again" $TOILE export dress.obj --quiet -o back.obj
+check "it is where it was" python3 -c '
+read = lambda name: [[float(x) for x in line.split()[1:]] for line in open(name) if line.startswith("v ")]
+a, b = read("dress.obj"), read("back.obj")
+assert len(a) == len(b) > 100, (len(a), len(b))
+assert all(abs(p - q) < 1e-6 for u, v in zip(a, b) for p, q in zip(u, v))'
 check "an export is measured" sh -c "$TOILE measure dress.obj --avatar form --quiet -o again.csv >again.txt"
 check "and has the same measures" awk -F, '
     NR == FNR { rest[$1 $2 $3] = $5; mean[$1 $2 $3] = $7; next }
