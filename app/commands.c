@@ -74,10 +74,11 @@ static const struct tl_command commands[] = {
      "Converts an environment map between layouts, keeping its light; or captures one from a scene.",
      TL_FLAGS_OUTPUT | TL_FLAGS_LAYOUT | TL_FLAGS_CAPTURE, tl_command_env},
     {"fabric",
-     "fabric NAME|FILE|FOLDER [-o FOLDER|FILE.yaml] [--json]\n"
+     "fabric NAME|FILE|FOLDER [-o FOLDER|FILE.yaml] [--json] [--set TABLE.KEY=VALUE]\n"
+     "       toile fabric NAME|FILE|FOLDER --card FILE.png|FILE.pdf|FILE.json\n"
      "       toile fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]",
-     "Lists what a fabric's file holds and what each field is used for, or writes the fabric in toile's own "
-     "form: a "
+     "Lists what a fabric's file holds and what each field is used for, writes the fabric in toile's own "
+     "form, or makes its card (swatch to scale, close-up, drape, colour, physical figures): a "
      "name, .yaml, U3M (.u3m, .u3ma), measurements (.json), a folder or .zip of texture maps. Of a height "
      "map it "
      "bakes normal, offset, horizon and gloss maps, and prints their size and scale.",

@@ -118,11 +118,14 @@ static bool export_motion(tl_session *session, const struct tl_arguments *argume
 bool tl_command_export(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_settings settings;
-    if (!check_output(arguments, error) || !tl_headless_settings(arguments, &settings, error))
+    if (!check_output(arguments, error))
+        return false;
+    bool is_glb = tl_path_has_extension(arguments->output, "glb"); /* which also holds a body alone */
+    if (!(is_glb ? tl_headless_settings : tl_headless_garment_settings)(arguments, &settings, error))
         return false;
     tl_session *session = tl_session_create(&settings, error);
     bool done = session != NULL;
-    if (done && !tl_session_garment(session) && !tl_path_has_extension(arguments->output, "glb"))
+    if (done && !tl_session_garment(session) && !is_glb)
         done = tl_fail(error, TL_USAGE, "%s: holds a garment, and the scene has none: add --garment FILE",
                        arguments->output);
     if (done)

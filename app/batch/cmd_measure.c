@@ -254,29 +254,10 @@ static bool report(const struct tl_measures *measures, const struct tl_arguments
     return true;
 }
 
-/* A model in place of a scene is the garment, not a body that is looked at. */
-static bool load_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
-{
-    const char *name = arguments->positional_count == 1 ? arguments->positionals[0] : "";
-    if (!tl_model_is_file(name))
-        return tl_headless_settings(arguments, out, error);
-    char *garment = tl_format("scene.garment=%s", name);
-    const char **assignments = TL_NEW_ARRAY(const char *, arguments->assignment_count + 1);
-    assignments[0] = garment;
-    for (size_t i = 0; i < arguments->assignment_count; i++)
-        assignments[i + 1] = arguments->assignments[i];
-    const struct tl_settings_source source = {.assignments = assignments,
-                                              .assignment_count = arguments->assignment_count + 1};
-    bool loaded = tl_settings_load(out, &source, error);
-    free(assignments);
-    free(garment);
-    return loaded;
-}
-
 bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_settings settings;
-    if (!check_output(arguments, error) || !load_settings(arguments, &settings, error))
+    if (!check_output(arguments, error) || !tl_headless_garment_settings(arguments, &settings, error))
         return false;
     tl_session *session = tl_session_create(&settings, error);
     bool done = session != NULL;

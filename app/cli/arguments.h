@@ -22,7 +22,7 @@ enum tl_flag_set {
     TL_FLAGS_QUICK = 1 << 8,    /* --quick */
     TL_FLAGS_FULL = 1 << 9,     /* --full */
     TL_FLAGS_LAYOUT = 1 << 10,  /* --layout NAME --from NAME --size N */
-    TL_FLAGS_FABRIC = 1 << 11,  /* --repeat-mm MM --height-mm MM --clamp */
+    TL_FLAGS_FABRIC = 1 << 11,  /* --card FILE --set --repeat-mm MM --height-mm MM --clamp */
     TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every --furnace --still --keep */
     TL_FLAGS_AOV = 1 << 13,     /* --aov */
     TL_FLAGS_SHEET = 1 << 14,   /* lists of what a contact sheet shows, --same-drape */
@@ -38,12 +38,13 @@ struct tl_arguments {
     char **assignments; /* "table.key=value", in order; owned */
     size_t assignment_count;
     /* NULL: not given */
-    const char *output, *keep;
+    const char *output, *keep, *baseline;
     const char *screenshots; /* folder for screenshots */
     const char *axis;
     const char *layout, *from;
     const char *path, *video, *against, *replay;
     const char *mask;
+    const char *card;
     struct { /* names with commas between them */
         const char *garments, *fabrics, *colourways, *environments, *views;
     } sheet;

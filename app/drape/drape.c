@@ -61,11 +61,18 @@ static void log_depth(const struct tl_drape_request *request, const tl_collider 
         deepest_m = tl_max(deepest_m, -contact.distance_m);
         count++;
     }
-    if ((double)count > NOTICED_SHARE * (double)mesh->vertex_count)
-        tl_info("%s: %zu of its %zu vertices lie inside %s, up to %.0f mm: it was made for another body or "
-                "pose; scene.drape=settle drapes it on this one",
-                request->garment->model.name, count, mesh->vertex_count, request->avatar->model.name,
-                1000 * deepest_m);
+    if (!((double)count > NOTICED_SHARE * (double)mesh->vertex_count))
+        return;
+    char *line =
+        tl_format("%s: %zu of its %zu vertices lie inside %s, up to %.0f mm: it was made for another "
+                  "body or pose; scene.drape=settle drapes it on this one",
+                  request->garment->model.name, count, mesh->vertex_count, request->avatar->model.name,
+                  1000 * deepest_m);
+    tl_info("%s", line);
+    if (request->inside)
+        *request->inside = line;
+    else
+        free(line);
 }
 
 /* Seams whose sides something holds apart: the body, or a fold of the cloth between them. */

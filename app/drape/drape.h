@@ -18,6 +18,8 @@ struct tl_drape_request {
     bool settles;     /* false: as authored; the cloth starts at the garment's own positions */
     bool only_sewn;   /* where it settles: no further than until its seams are closed */
     uint64_t options; /* a hash of all options whose rows affect a drape */
+    char **inside; /* gets one line about a garment as authored that lies inside its avatar, which the caller
+                      frees; else it stays as it is */
 };
 
 /* `collider` is new, of the avatar in its rest pose; it is moved into the clip's first pose. Shows progress.

@@ -1,6 +1,5 @@
 #include "app/scene/appearance.h"
 
-#include "app/pictures/height_picture.h"
 #include "assets/garment.h"
 #include "config/memory.h"
 #include "config/words.h"
@@ -91,30 +90,15 @@ static void set_construction(const struct tl_construction_params *params, tl_mat
         material->construction = tl_construction_of(params);
 }
 
-/* Finds or makes the weave of a fabric; NULL when it has none. Materials of one fabric share it. */
-static bool find_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
+/* The weave of a fabric; NULL when it has none. */
+static bool take_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
                        const struct tl_fabric_pictures **out, tl_error *error)
 {
-    *out = NULL;
-    for (size_t i = 0; i < appearance->weave_count && !*out; i++)
-        if (tl_options_equal(&tl_weave_options, &appearance->weaves[i].params, params))
-            *out = appearance->weaves[i].made;
-    struct tl_fabric_pictures made = {0};
-    if (*out)
-        return true;
-    bool pictured = params->pictures[0] || params->picture[0];
-    if (params->pictures[0] && !tl_fabric_pictures_make(params, &made, error))
+    if (!tl_weaves_take(params, out, error))
         return false;
-    if (!params->pictures[0] && params->picture[0] && !tl_height_picture_weave(params, &made.weave, error))
-        return false;
-    if (!pictured && !tl_weave_create(params, &made.weave))
-        return true;
     appearance->weaves =
-        tl_resize(appearance->weaves, appearance->weave_count + 1, sizeof *appearance->weaves);
-    struct tl_fabric_pictures *kept = TL_NEW(struct tl_fabric_pictures);
-    *kept = made;
-    appearance->weaves[appearance->weave_count++] = (struct tl_woven){*params, kept};
-    *out = kept;
+        tl_resize((void *)appearance->weaves, appearance->weave_count + 1, sizeof *appearance->weaves);
+    appearance->weaves[appearance->weave_count++] = *out;
     return true;
 }
 
@@ -204,7 +188,7 @@ static bool finish(struct tl_appearance *appearance, const struct tl_settings *s
                    struct making *making, tl_material *out, tl_error *error)
 {
     tl_material made = *making->file;
-    if (making->is_woven && !find_weave(appearance, &making->weave, &making->pictures, error))
+    if (making->is_woven && !take_weave(appearance, &making->weave, &making->pictures, error))
         return false;
     const tl_weave *weave = making->pictures ? &making->pictures->weave : NULL;
     if (!making->is_file)
@@ -385,10 +369,8 @@ bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garm
 
 void tl_appearance_release(struct tl_appearance *appearance)
 {
-    for (size_t i = 0; i < appearance->weave_count; i++) {
-        tl_fabric_pictures_release(appearance->weaves[i].made);
-        free(appearance->weaves[i].made);
-    }
+    for (size_t i = 0; i < appearance->weave_count; i++)
+        tl_weaves_give(appearance->weaves[i]);
     for (size_t i = 0; i < appearance->image_count; i++) {
         tl_image_release(appearance->images[i]);
         free(appearance->images[i]);
@@ -400,7 +382,7 @@ void tl_appearance_release(struct tl_appearance *appearance)
         free(dressings[i]->materials);
         free(dressings[i]->parts);
     }
-    free(appearance->weaves);
+    free((void *)appearance->weaves);
     free((void *)appearance->images);
     free((void *)appearance->names);
     *appearance = (struct tl_appearance){0};

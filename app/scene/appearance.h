@@ -8,18 +8,14 @@
 #ifndef TOILE_APP_SCENE_APPEARANCE_H
 #define TOILE_APP_SCENE_APPEARANCE_H
 
-#include "app/pictures/fabric_pictures.h"
+#include "app/pictures/weaves.h"
 #include "app/scene/moving.h"
 #include "app/settings/settings.h"
 
-struct tl_woven {
-    struct tl_weave_params params;
-    struct tl_fabric_pictures *made; /* of yarns its weave alone */
-};
-
 struct tl_appearance {
     struct tl_dressing garment, avatar; /* empty where there is none */
-    struct tl_woven *weaves;            /* the garment's materials point to these ... */
+    const struct tl_fabric_pictures *
+        *weaves; /* the garment's materials point to these, which are shared ... */
     size_t weave_count;
     tl_image **images; /* ... and to these: colour maps without their print */
     size_t image_count;
@@ -29,8 +25,7 @@ struct tl_appearance {
 
 /* Makes the appearance of the models, either of which may be NULL.
  * Errors: TL_USAGE when neither the scene nor a model has the colourway, or the garment has no material of a
- * name that the colourway gives; those of tl_height_picture_weave and tl_fabric_pictures_make for
- * a weave's pictures. `out` is then empty.
+ * name that the colourway gives; those of tl_weaves_take. `out` is then empty.
  * Lifetime: the caller releases `out`; it refers to the models' maps, so it is released before they are. */
 bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
                         struct tl_appearance *out, tl_error *error);

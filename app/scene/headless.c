@@ -2,6 +2,9 @@
 
 #include "config/interrupt.h"
 #include "config/log.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
 
 bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
 {
@@ -15,6 +18,25 @@ bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settin
         .assignment_count = arguments->assignment_count,
     };
     return tl_settings_load(out, &source, error);
+}
+
+bool tl_headless_garment_settings(const struct tl_arguments *arguments, struct tl_settings *out,
+                                  tl_error *error)
+{
+    const char *name = arguments->positional_count == 1 ? arguments->positionals[0] : "";
+    if (!tl_model_is_file(name))
+        return tl_headless_settings(arguments, out, error);
+    char *garment = tl_format("scene.garment=%s", name);
+    const char **assignments = TL_NEW_ARRAY(const char *, arguments->assignment_count + 1);
+    assignments[0] = garment;
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        assignments[i + 1] = arguments->assignments[i];
+    const struct tl_settings_source source = {.assignments = assignments,
+                                              .assignment_count = arguments->assignment_count + 1};
+    bool loaded = tl_settings_load(out, &source, error);
+    free(assignments);
+    free(garment);
+    return loaded;
 }
 
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error)

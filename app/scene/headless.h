@@ -16,6 +16,11 @@ struct tl_headless {
 /* Settings from the command line: its scene and its assignments. */
 bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error);
 
+/* The same for commands that need a garment: a model in place of a scene is one, not a body that is looked
+ * at. */
+bool tl_headless_garment_settings(const struct tl_arguments *arguments, struct tl_settings *out,
+                                  tl_error *error);
+
 /* Device and session (settled) for settings. On failure nothing is left. */
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error);
 /* tl_headless_settings, then tl_headless_open. */

@@ -166,9 +166,15 @@ static float lift_garment(const struct tl_settings *settings, const tl_avatar *w
     return -lowest_m;
 }
 
-static bool place_garment(const struct tl_settings *settings, tl_garment *garment, tl_error *error)
+static bool place_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *garment,
+                          tl_error *error)
 {
     const struct tl_scene_params *scene = &settings->scene;
+    const tl_mesh *mesh = &garment->model.mesh;
+    if (wearer && !garment->model.units.metric)
+        garment->model.units.z_up |=
+            tl_units_lies_z_up(tl_box_of(mesh->positions, mesh->vertex_count),
+                               tl_box_of(wearer->model.mesh.positions, wearer->model.mesh.vertex_count));
     const struct tl_placing placing = {
         .z_up = is_z_up(&garment->model, scene->up, tl_scene_plays_motion(settings), "--up"),
         .scale = scene->scale,
@@ -223,24 +229,32 @@ static void report_hanging(const tl_garment *garment, const tl_avatar *wearer)
             (double)(0.5f * (body.lower.z + body.upper.z) - middle.z));
 }
 
+static void report_size(char *line, struct tl_scene_standing *standing)
+{
+    standing->size = line;
+    if (line)
+        tl_info("%s", line);
+}
+
 /* Reads the garment from a file, places, lifts, sews and refines it. */
 static bool read_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
-                         float *lifted_m, tl_error *error)
+                         struct tl_scene_standing *standing, tl_error *error)
 {
     const struct tl_scene_params *scene = &settings->scene;
     if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
         return false;
     report_line(tl_units_describe(out->model.name, &out->model.units, "--units"));
-    bool placed = place_garment(settings, out, error);
+    bool placed = place_garment(settings, wearer, out, error);
     if (placed)
-        *lifted_m = lift_garment(settings, wearer, out);
+        standing->lifted_m = lift_garment(settings, wearer, out);
     if (placed) {
         take_stitches(settings, out);
         report_hanging(out, wearer);
     }
     if (placed && wearer && out->seam_count == 0)
-        report_line(
-            tl_describe_size(out->model.name, &out->model.mesh, wearer->model.name, &wearer->model.mesh));
+        report_size(
+            tl_describe_size(out->model.name, &out->model.mesh, wearer->model.name, &wearer->model.mesh),
+            standing);
     if (placed && refine_garment(settings, out, error) && take_rest(settings, out, error))
         return true;
     tl_garment_release(out);
@@ -255,7 +269,7 @@ static double distance_to_body(const void *body, const double point[3])
 }
 
 static bool make_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
-                         float *lifted_m, tl_error *error)
+                         struct tl_scene_standing *standing, tl_error *error)
 {
     const char *name = settings->scene.garment, *wearer_name = tl_settings_avatar(&settings->scene);
     const float edge_m = settings->cloth.edge_m;
@@ -264,26 +278,32 @@ static bool make_garment(const struct tl_settings *settings, const tl_avatar *we
         return true;
     if (tl_pattern_is_file(name))
         return tl_pattern_worn(name, &(struct tl_pattern_wearer){wearer_name, mesh}, edge_m, out, error);
-    if (!is_built_in_garment(name))
-        return read_garment(settings, wearer, out, lifted_m, error);
+    if (!is_built_in_garment(name)) {
+        if (settings->cut.ease_m != 0 || settings->cut.longer_m != 0 || settings->cut.sleeve_m != 0)
+            tl_warn("%s: the table cut is for built-in garments: --scale alters the size of a file's", name);
+        return read_garment(settings, wearer, out, standing, error);
+    }
     if (!wearer || strcmp(wearer_name, "form") == 0)
-        return tl_garment_cut(name, edge_m, out, error);
+        return tl_garment_cut_sized(name, edge_m, &settings->cut, NULL, out, error);
     tl_collider *body = tl_collider_create(mesh, false, error);
-    const struct tl_wearer worn_by = {wearer_name, mesh, {distance_to_body, body}};
-    bool good = body && tl_garment_cut_for(name, edge_m, &worn_by, out, error);
+    const struct tl_wearer worn_by = {
+        wearer->model.name, mesh, {distance_to_body, body}, settings->scene.refit};
+    bool good = body && tl_garment_cut_sized(name, edge_m, &settings->cut, &worn_by, out, error);
     tl_collider_destroy(&body);
+    if (good && !settings->scene.refit && !tl_garment_is_for_figure(name))
+        report_size(tl_describe_waist(name, wearer->model.name, mesh), standing);
     return good;
 }
 
 bool tl_scene_load_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment **out,
-                           float *lifted_m, tl_error *error)
+                           struct tl_scene_standing *standing, tl_error *error)
 {
     tl_garment made;
     *out = NULL;
-    *lifted_m = 0;
+    *standing = (struct tl_scene_standing){0};
     if (strcmp(settings->scene.garment, "none") == 0)
         return true;
-    if (!make_garment(settings, wearer, &made, lifted_m, error))
+    if (!make_garment(settings, wearer, &made, standing, error))
         return false;
     if (!tl_sewn_pin(settings->cloth.pin_openings, &made, error)) {
         tl_garment_release(&made);

@@ -16,9 +16,17 @@ bool tl_scene_plays_motion(const struct tl_settings *settings);
  * Lifetime: the caller releases and frees *out. */
 bool tl_scene_load_avatar(const struct tl_settings *settings, tl_avatar **out, int *clip, tl_error *error);
 
-/* `wearer` NULL: nobody wears it. *out is NULL when the scene has no garment; it was lifted by *lifted_m.
- * Errors: as above. Lifetime: the caller releases and frees *out. */
+/* How a garment came to stand where it does. */
+struct tl_scene_standing {
+    float lifted_m; /* onto the ground */
+    char *size;     /* one line about a garment that is of another size than its wearer; NULL: none */
+    char *inside;   /* the same about one that lies inside its wearer (app/drape/drape.h) */
+};
+
+/* `wearer` NULL: nobody wears it. *out is NULL when the scene has no garment.
+ * Errors: as above. Lifetime: the caller releases and frees *out, and frees standing->size, also after an
+ * error. */
 bool tl_scene_load_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment **out,
-                           float *lifted_m, tl_error *error);
+                           struct tl_scene_standing *standing, tl_error *error);
 
 #endif

@@ -21,6 +21,28 @@ void tl_environment_warn_of_cleaning(const tl_environment *environment)
                 environment->negative_count, environment->nan_count, environment->inf_count);
 }
 
+/* Every frame of a sequence is shown like its first one, with its ground: a picture does not flicker, and a
+ * frame looks the same wherever a run begins. */
+static void show_like(const tl_environment *first, tl_environment *frame)
+{
+    frame->shown = first->shown;
+    frame->ground = first->ground;
+}
+
+static bool load_frame(struct tl_moving_light *light, tl_error *error)
+{
+    tl_environment first;
+    if (!tl_environment_sequence_load(&light->sequence, light->shown, &light->environment, error))
+        return false;
+    if (light->shown == 0)
+        return true;
+    if (!tl_environment_sequence_load(&light->sequence, 0, &first, error))
+        return false;
+    show_like(&first, &light->environment);
+    tl_environment_release(&first);
+    return true;
+}
+
 static bool load(struct tl_moving_light *light, const char *name, double position, tl_error *error)
 {
     if (strcmp(name, "studio") == 0) {
@@ -37,7 +59,7 @@ static bool load(struct tl_moving_light *light, const char *name, double positio
     if (!tl_environment_sequence_open(name, &light->sequence, error))
         return false;
     light->shown = frame_at(&light->sequence, position);
-    return tl_environment_sequence_load(&light->sequence, light->shown, &light->environment, error);
+    return load_frame(light, error);
 }
 
 bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error)
@@ -61,8 +83,7 @@ bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_e
         return true;
     if (!tl_environment_sequence_load(&light->sequence, due, &fresh, error))
         return false;
-    fresh.shown = light->environment.shown; /* of the first frame: a picture does not flicker */
-    fresh.ground = light->environment.ground;
+    show_like(&light->environment, &fresh);
     tl_environment_release(&light->environment);
     light->environment = fresh;
     light->shown = due;

@@ -41,7 +41,7 @@ struct tl_session {
     tl_cloth *cloth; /* NULL: no garment, or one that is played back */
     bool authored;   /* the cloth starts as the garment's file has it */
     bool only_sewn;  /* it starts as it is when its seams have closed */
-    float lifted_m;  /* the garment, onto the ground */
+    struct tl_scene_standing standing;
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
@@ -124,6 +124,7 @@ static void read_back_start(tl_session *session)
 static bool drape(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
+    const struct tl_cloth_fabric fabric = tl_settings_fabric(settings);
     session->authored = is_authored(session);
     session->only_sewn = is_only_sewn(session);
     const tl_mesh *body = session->avatar ? &session->avatar->model.mesh : NULL;
@@ -131,11 +132,12 @@ static bool drape(tl_session *session, tl_error *error)
         .garment = session->garment,
         .avatar = session->avatar,
         .clip = session->clip,
-        .fabric = &settings->fabric,
+        .fabric = &fabric,
         .params = &settings->cloth,
         .settles = !session->authored,
         .only_sewn = session->only_sewn,
         .options = tl_settings_hash(settings, (struct tl_option_filter){.any_of = TL_AFFECTS_DRAPE}),
+        .inside = &session->standing.inside,
     };
     session->collider = tl_collider_create(body, settings->image.ground, error);
     if (!session->collider)
@@ -272,7 +274,7 @@ static bool load_all(tl_session *session, tl_error *error)
     const char *environment = settings->scene.environment;
     if (!tl_moving_light_open(&session->light, environment, 0, error) ||
         !tl_scene_load_avatar(settings, &session->avatar, &session->clip, error) ||
-        !tl_scene_load_garment(settings, session->avatar, &session->garment, &session->lifted_m, error))
+        !tl_scene_load_garment(settings, session->avatar, &session->garment, &session->standing, error))
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
@@ -329,6 +331,8 @@ void tl_session_destroy(tl_session **handle)
     free(session->strain.of_vertices);
     free(session->tucked);
     free(session->crossed.triangles);
+    free(session->standing.size);
+    free(session->standing.inside);
     tl_appearance_release(&session->appearance);
     for (size_t i = 0; i < TL_COUNT(session->spares); i++)
         tl_appearance_release(&session->spares[i].appearance);
@@ -507,8 +511,8 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
     /* tl_cloth_set discards the contacts, so it is called only when one of its options has changed. */
     bool same_cloth = !tl_settings_differ(&session->settings, settings,
                                           (struct tl_option_filter){.any_of = TL_AFFECTS_CLOTH});
-    return !session->cloth || same_cloth ||
-           tl_cloth_set(session->cloth, &settings->fabric, &settings->cloth, error);
+    const struct tl_cloth_fabric fabric = tl_settings_fabric(settings);
+    return !session->cloth || same_cloth || tl_cloth_set(session->cloth, &fabric, &settings->cloth, error);
 }
 
 static struct tl_spare_appearance *find_spare(tl_session *session, const struct tl_settings *settings)
@@ -750,7 +754,12 @@ enum tl_garment_state tl_session_garment_state(const tl_session *session)
 
 float tl_session_lifted_m(const tl_session *session)
 {
-    return session->lifted_m;
+    return session->standing.lifted_m;
+}
+
+const char *tl_session_size_note(const tl_session *session)
+{
+    return session->standing.size ? session->standing.size : session->standing.inside;
 }
 
 bool tl_session_is_authored(const tl_session *session)

@@ -196,6 +196,11 @@ bool tl_session_is_undraped(const tl_session *session);
  * ground. Errors: none. Threads: the session's. */
 float tl_session_lifted_m(const tl_session *session);
 
+/* One line about a garment that is of another size than the body that wears it, or lies inside it; NULL:
+ * there is nothing to say. Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or
+ * destroyed. Threads: the session's. */
+const char *tl_session_size_note(const tl_session *session);
+
 /* True when the avatar plays an animation. Errors: none. Threads: the session's. */
 bool tl_session_plays_clip(const tl_session *session);
 

@@ -64,6 +64,9 @@ static const struct tl_option scene_rows[] = {
                    "length unit of the avatar's file, as units"),
     TL_OPTION_ENUM(struct tl_scene_params, avatar_up, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE, tl_up_names,
                    "axis of the avatar's file that points up, as up"),
+    TL_OPTION_BOOL(struct tl_scene_params, refit, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
+                   "scales dress and skirt, which are cut for the form, to the avatar's waist; false: they "
+                   "are worn in their own size, and a bad fit shows"),
     TL_OPTION_ENUM(struct tl_scene_params, drape, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
                    drape_names,
                    "how the garment starts: authored: as its file has it; settle: at rest on its avatar; "
@@ -126,6 +129,7 @@ const struct tl_option_table tl_camera_options = TL_OPTION_TABLE(
 enum {
     SCENE,
     CAMERA,
+    CUT,
     CLOTH,
     FABRIC,
     WEAVE,
@@ -146,6 +150,7 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 {
     bindings[SCENE] = (struct tl_binding){&scene_table, &settings->scene};
     bindings[CAMERA] = (struct tl_binding){&tl_camera_options, &settings->camera};
+    bindings[CUT] = (struct tl_binding){&tl_cut_options, &settings->cut};
     bindings[CLOTH] = (struct tl_binding){&tl_cloth_options, &settings->cloth};
     bindings[FABRIC] = (struct tl_binding){&tl_cloth_fabric_options, &settings->fabric};
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
@@ -203,6 +208,14 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
+/* The model is a garment where the options say who wears it, or none. A fabric that they name stays. */
+static bool wear_model(const struct tl_binding *all, const char *path, tl_error *error)
+{
+    const struct tl_scene_params *scene = all[SCENE].params;
+    bool is_worn = strcmp(scene->garment, "none") == 0 && strcmp(scene->avatar, path) != 0;
+    return !is_worn || tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
+}
+
 /* A pattern, or panels with stitches, in place of a scene are worn by the body that the options name. */
 static bool apply_garment(const struct tl_binding *all, const char *path, tl_error *error)
 {
@@ -245,13 +258,16 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
+    bool is_cut = tl_pattern_is_file(scene) || tl_garment_has_stitches(scene);
+    bool is_model = !is_cut && tl_model_is_file(scene);
     bool applied = tl_point_cache_is_file(scene) ? apply_motion(all, scene, error)
-                   : tl_pattern_is_file(scene) || tl_garment_has_stitches(scene)
-                       ? apply_garment(all, scene, error)
-                   : tl_model_is_file(scene) ? apply_model(all, scene, error)
-                                             : apply_scene(all, scene, error);
+                   : is_cut                      ? apply_garment(all, scene, error)
+                   : is_model                    ? apply_model(all, scene, error)
+                                                 : apply_scene(all, scene, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
+    if (applied && is_model)
+        applied = wear_model(all, scene, error);
     return applied;
 }
 
@@ -259,6 +275,13 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
 static bool is_garment_file(const char *garment)
 {
     return tl_option_is_file_name(garment) && !tl_pattern_is_file(garment);
+}
+
+struct tl_cloth_fabric tl_settings_fabric(const struct tl_settings *settings)
+{
+    struct tl_cloth_fabric fabric = settings->fabric;
+    fabric.ply_m = 1e-3 * (double)settings->construction.thickness_mm;
+    return fabric;
 }
 
 const char *tl_settings_own_fabric(const char *garment)

@@ -6,6 +6,7 @@
 #include "app/settings/colourway.h"
 #include "assets/base/placing.h"
 #include "assets/builtin/weave.h"
+#include "assets/cut/options.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
 #include "render/brdf/options.h"
@@ -20,6 +21,7 @@ struct tl_scene_params {          /* table "scene": what to show; names of built
     char avatar[TL_STRING_SIZE];  /* "auto", "form", "none", or a glTF or OBJ file */
     int units, avatar_units;      /* enum tl_units: of their files */
     int drape;                    /* enum tl_drape_choice */
+    bool refit;                   /* built-in garments cut for the form are scaled to the avatar */
     int up, avatar_up;            /* enum tl_up: of their files */
     float turn_deg, scale, move_m[3];    /* places the garment's file */
     char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
@@ -48,6 +50,7 @@ extern const struct tl_option_table tl_camera_options;
 struct tl_settings {
     struct tl_scene_params scene;
     struct tl_camera_params camera;
+    struct tl_cut_params cut;
     struct tl_cloth_params cloth;
     struct tl_cloth_fabric fabric;
     struct tl_weave_params weave;
@@ -65,7 +68,7 @@ struct tl_settings {
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 16
+#define TL_SETTINGS_TABLES 17
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
@@ -106,6 +109,9 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
 /* Gives the garment's second fabric the appearance of a named one. */
 bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
+
+/* The fabric as the cloth takes it: with the thickness that the garment is sewn with. */
+struct tl_cloth_fabric tl_settings_fabric(const struct tl_settings *settings);
 
 /* The fabric of a garment for which none is named: a garment file has materials of its own, a built-in
  * garment and a pattern get theirs from a fabric that such a garment is made of: a shirt in satin would be

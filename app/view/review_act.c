@@ -7,6 +7,7 @@
 #include "app/view/review/review_keep.h"
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_place.h"
 #include "app/view/review/review_wipe.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
@@ -194,6 +195,24 @@ void tl_act_screenshot(struct tl_review *review, int argument)
     free(path);
 }
 
+void tl_act_next_units(struct tl_review *review, int argument)
+{
+    tl_review_next_units(review, argument);
+}
+
+void tl_act_next_up(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_next_up(review);
+}
+
+void tl_act_keep_reading(struct tl_review *review, int argument)
+{
+    (void)argument;
+    if (!tl_review_keep_reading(review))
+        tl_review_report(review, "nothing was guessed that could be kept");
+}
+
 void tl_act_options(struct tl_review *review, int argument)
 {
     (void)argument;
@@ -210,13 +229,13 @@ void tl_act_options(struct tl_review *review, int argument)
 void tl_act_back(struct tl_review *review, int argument)
 {
     (void)argument;
-    if (review->dropped)
-        tl_review_cancel_question(review);
-    else if (tl_panel_wants_keys(review->panel))
+    if (tl_review_cancel_question(review))
+        return;
+    if (tl_panel_wants_keys(review->panel))
         tl_panel_use_keys(review->panel, false);
     else if (review->help_shown)
         review->help_shown = false;
-    else if (tl_review_stop_loading(review))
+    else if (tl_review_stop_loading(review) || tl_review_keep_reading(review))
         return;
     else if (review->message_is_error && review->message[0])
         tl_review_clear_message(review);
@@ -360,6 +379,12 @@ void tl_act_help(struct tl_review *review, int argument)
 {
     (void)argument;
     review->help_shown = !review->help_shown;
+}
+
+void tl_act_recent(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_ask_recent(review);
 }
 
 void tl_act_quit(struct tl_review *review, int argument)

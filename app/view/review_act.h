@@ -16,6 +16,11 @@ tl_review_action tl_act_drape; /* settles a garment that was authored; else as t
 tl_review_action tl_act_reset; /* to the start: settled, or as authored */
 tl_review_action tl_act_pin;   /* pins the vertex that is pulled; takes all pins out when none is pulled */
 
+/* The reading of the garment's or the body's file. */
+tl_review_action tl_act_next_units; /* 1: the next unit, -1: the one before */
+tl_review_action tl_act_next_up;
+tl_review_action tl_act_keep_reading;
+
 /* Camera. */
 enum tl_act_direction { TL_ACT_LEFT, TL_ACT_RIGHT, TL_ACT_UP, TL_ACT_DOWN };
 tl_review_action tl_act_turn_camera; /* enum tl_act_direction */
@@ -35,6 +40,8 @@ tl_review_action tl_act_environment_turntable;
 
 /* Opens the file dialog. */
 tl_review_action tl_act_open;
+/* Offers the files that were opened last. */
+tl_review_action tl_act_recent;
 
 /* Fabric: the next one, the one before; index into tl_embedded_fabrics_names. */
 tl_review_action tl_act_next_fabric;

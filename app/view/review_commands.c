@@ -37,6 +37,10 @@ const struct tl_review_command tl_review_commands[] = {
      .keys = {TO(PERIOD, 1), WITH_TO(SHIFT, PERIOD, -1)}, .repeats = true},
     {"first, last frame of a motion", tl_act_end, TL_SECTION_CLOTH, .keys = {TO(HOME, -1), TO(END, 1)}},
     {"drape the garment: at rest on its avatar", tl_act_drape, TL_SECTION_CLOTH, .keys = {KEY(D)}},
+    {"read the file in the next, previous unit", tl_act_next_units, TL_SECTION_CLOTH,
+     .keys = {TO(U, 1), WITH_TO(SHIFT, U, -1)}},
+    {"read the file with Z up, with Y up", tl_act_next_up, TL_SECTION_CLOTH, .keys = {KEY(A)}},
+    {"keep units and axis as they were guessed", tl_act_keep_reading, TL_SECTION_CLOTH, .keys = {KEY(ENTER)}},
     {"back to the start", tl_act_reset, TL_SECTION_CLOTH, .keys = {KEY(R)}, .button = "Reset"},
     {"pin what is pulled; else remove all pins", tl_act_pin, TL_SECTION_CLOTH, .keys = {KEY(P)}},
 
@@ -74,6 +78,7 @@ const struct tl_review_command tl_review_commands[] = {
 
     {"open a file: garment, body, motion, light, scene", tl_act_open, TL_SECTION_WINDOW, .keys = {WITH(CTRL, O)},
      .button = "Open"},
+    {"open a garment again: the last ten", tl_act_recent, TL_SECTION_WINDOW, .keys = {WITH(CTRL, R)}},
     {"undo the last edit", tl_act_undo, TL_SECTION_WINDOW, .keys = {WITH(CTRL, Z)}, .repeats = true, .button = "Undo"},
     {"redo", tl_act_redo, TL_SECTION_WINDOW, .keys = {WITH(CTRL | SHIFT, Z), WITH(CTRL, Y)}, .repeats = true},
     {"less, more time for a frame", tl_act_budget, TL_SECTION_WINDOW, .keys = {TO(MINUS, -1), TO(EQUAL, 1)}},
@@ -89,6 +94,8 @@ const size_t tl_review_command_count = TL_COUNT(tl_review_commands);
 
 const struct tl_review_gesture tl_review_gestures[] = {
     {TL_SECTION_CLOTH, "Ctrl + drag", "pull the cloth"},
+    {TL_SECTION_CLOTH, "Ctrl + Shift + drag", "move a garment's file; right drag: turn it;"},
+    {TL_SECTION_CLOTH, "Ctrl + Shift + wheel", "size it"},
     {TL_SECTION_CAMERA, "drag", "turn about the figure"},
     {TL_SECTION_CAMERA, "right drag", "move the figure"},
     {TL_SECTION_CAMERA, "wheel", "nearer, farther"},
@@ -122,11 +129,11 @@ static void name_key(int key, char *text, size_t size)
         int key;
         const char *name;
     } named[] = {
-        {GLFW_KEY_SPACE, "Space"},    {GLFW_KEY_LEFT, "Left"}, {GLFW_KEY_RIGHT, "Right"},
-        {GLFW_KEY_UP, "Up"},          {GLFW_KEY_DOWN, "Down"}, {GLFW_KEY_PAGE_UP, "PgUp"},
-        {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_TAB, "Tab"},   {GLFW_KEY_ESCAPE, "Esc"},
-        {GLFW_KEY_F1, "F1"},          {GLFW_KEY_F12, "F12"},   {GLFW_KEY_HOME, "Home"},
-        {GLFW_KEY_END, "End"},
+        {GLFW_KEY_SPACE, "Space"},    {GLFW_KEY_LEFT, "Left"},   {GLFW_KEY_RIGHT, "Right"},
+        {GLFW_KEY_UP, "Up"},          {GLFW_KEY_DOWN, "Down"},   {GLFW_KEY_PAGE_UP, "PgUp"},
+        {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_TAB, "Tab"},     {GLFW_KEY_ESCAPE, "Esc"},
+        {GLFW_KEY_F1, "F1"},          {GLFW_KEY_F12, "F12"},     {GLFW_KEY_HOME, "Home"},
+        {GLFW_KEY_END, "End"},        {GLFW_KEY_ENTER, "Enter"},
     };
     for (size_t i = 0; i < TL_COUNT(named); i++)
         if (named[i].key == key) {

@@ -4,6 +4,7 @@
 #include "app/view/review/review_edit.h"
 #include "app/view/review/review_hand.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_place.h"
 #include "app/view/review/review_wipe.h"
 #include "app/view/review_commands.h"
 #include "config/log.h"
@@ -47,6 +48,11 @@ static bool is_on_wipe(const struct tl_review *review, float x, int width)
     return column > 0 && fabsf(x - (float)column) < reach;
 }
 
+static bool places(int modifiers)
+{
+    return (modifiers & GLFW_MOD_CONTROL) && (modifiers & GLFW_MOD_SHIFT);
+}
+
 static void on_press(struct tl_review *review, const struct tl_window_event *event)
 {
     int width, height;
@@ -57,7 +63,9 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
     review->pointer_x = event->x;
     review->pointer_y = event->y;
     tl_review_stop_moving(review);
-    if (event->button != GLFW_MOUSE_BUTTON_LEFT)
+    if (places(event->modifiers))
+        tl_review_place_begin(review);
+    else if (event->button != GLFW_MOUSE_BUTTON_LEFT)
         review->drag = TL_DRAG_PAN;
     else if (is_on_wipe(review, event->x, width))
         review->drag = TL_DRAG_WIPE;
@@ -103,6 +111,12 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
     case TL_DRAG_WIPE:
         tl_review_move_wipe(review, event->x / (float)width);
         return;
+    case TL_DRAG_PLACE:
+        if (review->drag_button == GLFW_MOUSE_BUTTON_LEFT)
+            tl_review_place_move(review, dx, dy);
+        else
+            tl_review_place_turn(review, dx);
+        return;
     case TL_DRAG_CLOTH:
         tl_review_hand_aim(review, event->x, event->y);
         return;
@@ -118,6 +132,13 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     if (event->x >= (float)width || tl_panel_wants_pointer(review->panel))
         return;
     tl_review_stop_moving(review);
+    if (places(event->modifiers)) {
+        const float factor_per_step = 1.02f;
+        if (tl_review_place_begin(review))
+            tl_review_place_scale(review, powf(factor_per_step, event->steps));
+        tl_review_hand_release(review);
+        return;
+    }
     tl_review_fix_camera(review);
     float x = (event->x - 0.5f * (float)width) / (float)height;
     float y = (event->y - 0.5f * (float)height) / (float)height;
@@ -126,7 +147,7 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     tl_review_note_motion(review);
 }
 
-/* A question of the panel takes all keys but Esc: its answers are numbered from 1. */
+/* A question of the panel takes all keys but Esc: its answers are numbered from 1, the tenth is 0. */
 static bool answer(struct tl_review *review, const struct tl_window_event *event)
 {
     size_t count;
@@ -134,6 +155,8 @@ static bool answer(struct tl_review *review, const struct tl_window_event *event
         return false;
     if (event->key >= GLFW_KEY_1 && event->key <= GLFW_KEY_9)
         tl_review_answer(review, (size_t)(event->key - GLFW_KEY_1));
+    else if (event->key == GLFW_KEY_0)
+        tl_review_answer(review, 9);
     return true;
 }
 

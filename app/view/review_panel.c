@@ -146,8 +146,12 @@ static void set_question(const struct tl_review *review, struct question *questi
         return;
     for (size_t i = 0; i < question->answer_count; i++)
         question->answers[i] = (struct tl_panel_button){answers[i].label, answers[i].help};
-    const char *slash = strrchr(review->dropped, '/');
-    snprintf(question->text, sizeof question->text, "%s: use it as", slash ? slash + 1 : review->dropped);
+    const char *slash = review->dropped ? strrchr(review->dropped, '/') : NULL;
+    if (review->recent.offered > 0)
+        snprintf(question->text, sizeof question->text, "Open again (Esc: none)");
+    else
+        snprintf(question->text, sizeof question->text, "%s: use it as", slash ? slash + 1 : review->dropped);
+    input->answers_below = review->recent.offered > 0;
     input->question = question->text;
     input->answers = question->answers;
     input->answer_count = question->answer_count;
@@ -301,6 +305,7 @@ void tl_review_build_panel(struct tl_review *review)
         .message = review->message,
         .message_is_error = review->message_is_error,
         .status = status,
+        .notice = review->reading.notice,
         .strip = strip_of(review, times, label, sizeof label),
         .timeline = timeline_of(review, moment, sizeof moment),
         .wipe = {tl_review_wipe_column(review, width), left, right},

@@ -19,7 +19,7 @@ struct tl_invariant {
 };
 
 extern const struct tl_invariant tl_invariants[];
-enum { TL_INVARIANTS_MAX = 32 };
+enum { TL_INVARIANTS_MAX = 40 };
 extern const size_t tl_invariant_count;
 
 /* The worst of all frames so far, by invariant. */
@@ -28,8 +28,15 @@ struct tl_verdict {
     int frame;
     bool ok;
 };
+/* What an earlier, clean run of the same scene found (baseline.h). */
+struct tl_check_baseline {
+    double worst[TL_INVARIANTS_MAX]; /* by invariant; NaN: not measured then */
+    double elastic_j;                /* of the cloth in frame 0; NaN: none */
+};
+
 struct tl_verdicts {
     int frames;
+    const struct tl_check_baseline *baseline; /* NULL: the general bounds hold */
     struct tl_verdict items[TL_INVARIANTS_MAX];
 };
 
@@ -37,6 +44,9 @@ struct tl_verdicts {
  * `verdicts`. Returns the index of the first broken invariant, -1: none; `broken` (or NULL) receives its
  * finding. */
 int tl_check_frame(const struct tl_checked *checked, struct tl_verdicts *verdicts, struct tl_finding *broken);
+/* The bound of an invariant: at most half as much again as the clean run found, and a tenth of the general
+ * bound for what rounding and other machines change. */
+double tl_check_bound(const struct tl_check_baseline *baseline, size_t invariant, double general);
 int tl_verdicts_failed(const struct tl_verdicts *verdicts); /* number of broken invariants */
 
 /* FNV-1a over the positions of all surfaces, and the image unless it is NULL. */

@@ -121,8 +121,18 @@ void tl_measure_momentum(const struct tl_checked *checked, struct tl_finding *fi
 void tl_measure_speed(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_checked_cloth *cloth = checked->cloth;
-    if (!cloth)
+    if (!cloth || !(cloth->allowed_speed > 0)) /* flat cloth in the first frame, or nothing that drives it */
         return;
     tl_finding_add(finding, cloth->report.max_speed / cloth->allowed_speed);
     tl_finding_place(finding, "garment: %.3g m/s of %.3g", cloth->report.max_speed, cloth->allowed_speed);
+}
+
+void tl_measure_rest(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const struct tl_checked_cloth *cloth = checked->cloth;
+    if (!cloth || !(cloth->first_elastic_j > 0))
+        return;
+    double elastic_j = cloth->report.elastic_energy;
+    tl_finding_add(finding, fabs(elastic_j - cloth->first_elastic_j) / cloth->first_elastic_j);
+    tl_finding_place(finding, "garment: %.6g J of %.6g", elastic_j, cloth->first_elastic_j);
 }

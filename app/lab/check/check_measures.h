@@ -22,13 +22,16 @@ tl_measure tl_measure_slices, tl_measure_pems;
 tl_measure tl_measure_moments, tl_measure_visibility, tl_measure_leaks;
 
 /* check_oracle.c */
-tl_measure tl_measure_oracle;
+tl_measure tl_measure_oracle, tl_measure_mean, tl_measure_patch, tl_measure_tile;
 
 /* check_furnace.c */
 tl_measure tl_measure_furnace, tl_measure_furnace_shadowed;
 
 /* check_cloth.c */
 tl_measure tl_measure_strain, tl_measure_stretch, tl_measure_inside, tl_measure_crossing, tl_measure_energy,
-    tl_measure_momentum, tl_measure_speed;
+    tl_measure_momentum, tl_measure_speed, tl_measure_rest;
+
+/* check_fall.c */
+tl_measure tl_measure_fall;
 
 #endif

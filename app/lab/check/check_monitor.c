@@ -79,12 +79,18 @@ static void find_centre(const struct tl_cloth_monitor *watch, const tl_frame *fr
     centre[1] = sum[1] / weight;
 }
 
+/* Without wearer and ground nothing ends a fall. */
+static bool nothing_below(const struct tl_cloth_monitor *watch, const tl_frame *frame)
+{
+    return frame->surface_count == 1 && !watch->settings->image.ground;
+}
+
 /* Horizontal displacement since the first frame, metres. NaN if anything supports, holds or pushes the cloth,
  * or did so earlier. */
 static double measure_drift(struct tl_cloth_monitor *watch, const tl_frame *frame, bool is_driven)
 {
     const struct tl_settings *settings = watch->settings;
-    bool is_free = frame->surface_count == 1 && !settings->image.ground && !(settings->cloth.pin_above_m > 0);
+    bool is_free = nothing_below(watch, frame) && !(settings->cloth.pin_above_m > 0);
     double centre[2];
     if (!is_free || is_driven || watch->was_held)
         return NAN;
@@ -120,6 +126,7 @@ struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch,
                                      .weight_n = watch->weight_n,
                                      .kept_m = watch->settings->fabric.thickness_m,
                                      .first_strain = watch->first_strain,
+                                     .first_elastic_j = NAN,
                                      .min_energy_j = watch->min_energy_j,
                                      .is_held = is_held,
                                      .is_hurried = is_changed,
@@ -127,6 +134,8 @@ struct tl_checked_cloth tl_cloth_monitor_measure(struct tl_cloth_monitor *watch,
                                      .is_dragged = tl_session_plays_clip(watch->session)};
     cloth.is_driven = is_held || is_changed || blows > 0 || cloth.is_dragged;
     const struct tl_cloth_report *report = &cloth.report;
+    if (nothing_below(watch, frame))
+        falls = fmax(falls, params->gravity * report->time_s);
     watch->was_held = watch->was_held || is_held;
     cloth.drift_m = measure_drift(watch, frame, cloth.is_driven);
     cloth.allowed_speed =

@@ -1,8 +1,10 @@
 #include "app/lab/check/check_run.h"
 
 #include "app/budget/governor.h"
+#include "app/lab/check/check_fall.h"
 #include "app/lab/check/check_keep.h"
 #include "app/lab/check/check_monitor.h"
+#include "app/lab/truth/truth.h"
 #include "app/measure/cost.h"
 #include "app/measure/motion.h"
 #include "config/hash.h"
@@ -86,7 +88,7 @@ static void release_images(tl_image *images, size_t count)
         tl_image_release(&images[i]);
 }
 
-enum { DRAWN, FRESH, WHITE, WHITE_SHADOWED, IMAGES };
+enum { DRAWN, FRESH, IN_MOTION, WHITE, WHITE_SHADOWED, IMAGES };
 
 /* If the image is upsampled from fewer samples than pixels, the furnace compares the samples: the sharpening
  * filter does not conserve light. */
@@ -140,11 +142,34 @@ static bool draw_frame(struct check_run *run, const tl_frame *frame,
     return tl_renderer_read(run->headless->renderer, image, error);
 }
 
+/* Draws with a renderer that knows nothing of earlier frames but their environment. */
+static bool draw_fresh(struct check_run *run, const tl_frame *frame,
+                       const struct tl_render_settings *settings, tl_image *image, tl_error *error)
+{
+    tl_renderer **fresh = &run->auxiliary.fresh;
+    return (!*fresh || tl_renderer_forget_scene(*fresh, error)) &&
+           draw_with(fresh, run, frame, settings, image, error);
+}
+
+/* Draws the frame as budgets and the window do, where that is another way. */
+static bool draw_in_motion(struct check_run *run, const tl_frame *frame, tl_image images[IMAGES],
+                           struct tl_checked *checked, tl_error *error)
+{
+    struct tl_render_settings settings = *checked->settings;
+    if (checked->is_reduced || !tl_truth_is_comparable(checked->settings) ||
+        settings.light.visibility != TL_VISIBILITY_RAYS || settings.light.ratio_at == TL_RATIO_AT_VERTICES)
+        return true;
+    settings.light.ratio_at = TL_RATIO_AT_VERTICES;
+    if (!draw_fresh(run, frame, &settings, &images[IN_MOTION], error))
+        return false;
+    checked->in_motion = &images[IN_MOTION];
+    return true;
+}
+
 /* Draws all images that the frame's invariants need. */
 static bool prepare(struct check_run *run, const tl_frame *frame, tl_image images[IMAGES],
                     struct tl_checked *checked, tl_error *error)
 {
-    struct auxiliary *auxiliary = &run->auxiliary;
     if (!draw_frame(run, frame, checked->settings, &images[DRAWN], error))
         return false;
     checked->renderer = run->headless->renderer;
@@ -153,11 +178,11 @@ static bool prepare(struct check_run *run, const tl_frame *frame, tl_image image
     checked->positions_hash = tl_check_hash(frame, NULL);
     if (!checked->is_sampled)
         return true;
-    if (auxiliary->fresh && !tl_renderer_forget_scene(auxiliary->fresh, error))
-        return false;
-    if (!draw_with(&auxiliary->fresh, run, frame, checked->settings, &images[FRESH], error))
+    if (!draw_fresh(run, frame, checked->settings, &images[FRESH], error))
         return false;
     checked->fresh = &images[FRESH];
+    if (!draw_in_motion(run, frame, images, checked, error))
+        return false;
     return !run->params->furnace || draw_white(run, frame, images, checked, error);
 }
 
@@ -206,6 +231,11 @@ static bool check_frame(struct check_run *run, int number, tl_error *error)
     if (tl_session_cloth(run->headless->session)) {
         /* A budget changes the solver's substeps, and with them its effective stiffness. */
         cloth = tl_cloth_monitor_measure(&run->watch, &frame, is_swung(run, number), run->governor);
+        if (number == 0) {
+            const struct tl_check_baseline *baseline = run->params->baseline;
+            run->outcome->elastic_j = cloth.report.elastic_energy;
+            cloth.first_elastic_j = baseline ? baseline->elastic_j : (double)NAN;
+        }
         checked.cloth = &cloth;
     }
     bool done = !is_finite(&frame) || prepare(run, &frame, images, &checked, error);
@@ -263,14 +293,14 @@ static bool play(struct check_run *run, tl_error *error)
     return done;
 }
 
-/* Plays the first frames once more from the start, with a new renderer. */
+/* Plays the first frames once more from the start, with a renderer that knows nothing of them. */
 static bool play_again(struct check_run *run, int count, tl_error *error)
 {
     if (!tl_session_apply(run->headless->session, &run->headless->settings, error) ||
         !tl_session_reset(run->headless->session, error))
         return false;
-    tl_renderer_destroy(&run->headless->renderer);
-    bool done = true;
+    tl_renderer **renderer = &run->auxiliary.fresh;
+    bool done = !*renderer || tl_renderer_forget_scene(*renderer, error);
     begin(run);
     for (int number = 0; done && number < count; number++) {
         tl_image image = {0};
@@ -278,13 +308,13 @@ static bool play_again(struct check_run *run, int count, tl_error *error)
         const struct tl_render_settings settings = tl_settings_render(&levelled);
         done = number == 0 || advance(run, number, error);
         tl_frame frame = frame_of(run, number);
-        done = done && draw_with(&run->headless->renderer, run, &frame, &settings, &image, error);
+        done = done && draw_with(renderer, run, &frame, &settings, &image, error);
         if (done) {
             struct tl_verdicts *verdicts = &run->outcome->verdicts;
             const struct tl_checked checked = {.number = number,
                                                .frame = &frame,
                                                .settings = &settings,
-                                               .renderer = run->headless->renderer,
+                                               .renderer = *renderer,
                                                .image = &image,
                                                .hash = tl_check_hash(&frame, &image),
                                                .first_hash = run->hashes[number],
@@ -297,6 +327,20 @@ static bool play_again(struct check_run *run, int count, tl_error *error)
         tl_image_release(&image);
     }
     return done;
+}
+
+/* Measures what needs the cloth for itself: nothing is played after it. */
+static bool let_fall(struct check_run *run, tl_error *error)
+{
+    struct tl_fall fall;
+    const struct tl_settings *settings = &run->headless->settings;
+    if (!tl_fall_measure(run->headless->session, settings, &fall, error))
+        return false;
+    tl_frame frame = frame_of(run, 0);
+    const struct tl_render_settings drawn = tl_settings_render(settings);
+    const struct tl_checked checked = {.frame = &frame, .settings = &drawn, .fall = &fall};
+    run->outcome->verdicts.frames--; /* no frame of its own */
+    return note(run, &checked, error);
 }
 
 static uint64_t hash_of(const struct check_run *run)
@@ -320,7 +364,7 @@ static void release(struct check_run *run)
 bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *params,
                    struct tl_check_outcome *out, tl_error *error)
 {
-    *out = (struct tl_check_outcome){.broken = -1};
+    *out = (struct tl_check_outcome){.broken = -1, .elastic_j = NAN, .verdicts.baseline = params->baseline};
     struct check_run run = {.headless = headless,
                             .params = params,
                             .outcome = out,
@@ -335,7 +379,7 @@ bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *p
     run.watch = tl_cloth_monitor_begin(headless->session, &headless->settings);
     bool done = play(&run, error);
     if (done && run.played == params->frames)
-        done = play_again(&run, again, error);
+        done = play_again(&run, again, error) && let_fall(&run, error);
     out->hash = hash_of(&run);
     tl_progress_end(&run.progress);
     release(&run);

@@ -15,13 +15,15 @@ struct tl_check_params {
     bool furnace;      /* those in white light too, where sampled checks are made */
     bool still;        /* no hand */
     double budget_ms;  /* 0: none; else the planner's, whose levels are kept and played again */
-    const char *keep;  /* folder for the first frame that breaks something; NULL: it is not kept */
+    const struct tl_check_baseline *baseline; /* NULL: none */
+    const char *keep; /* folder for the first frame that breaks something; NULL: it is not kept */
 };
 
 struct tl_check_outcome {
     struct tl_verdicts verdicts;
-    uint64_t hash; /* of all frames: positions and images */
-    int broken;    /* the invariant that broke first; -1: none */
+    double elastic_j; /* of the cloth in frame 0; NaN: none */
+    uint64_t hash;    /* of all frames: positions and images */
+    int broken;       /* the invariant that broke first; -1: none */
     int broken_frame;
     struct tl_finding found; /* there */
     bool is_kept;

@@ -8,6 +8,9 @@
 #include "app/scene/session.h"
 #include "render/renderer.h"
 
+struct tl_truth;
+struct tl_fall;
+
 /* The cloth of a frame, with the state that its bounds depend on. */
 struct tl_checked_cloth {
     struct tl_cloth_report report;
@@ -18,12 +21,14 @@ struct tl_checked_cloth {
     /* Minimum of kinetic + elastic + potential energy since only gravity acts on the cloth; NaN: no such
      * frame yet. */
     double min_energy_j;
-    double allowed_speed; /* m/s: what fall, wearer and wind can cause */
-    bool is_driven;       /* by the hand, a clip or the wind */
-    bool is_held;         /* by the hand */
-    bool is_dragged;      /* by its moving wearer */
-    bool is_hurried;      /* a budget may reduce its substeps */
-    bool cannot_cross;    /* contact with itself is on */
+    double allowed_speed;   /* m/s: what fall, wearer and wind can cause */
+    double first_elastic_j; /* in frame 0, of the clean run that this one is compared with; NaN: none, or
+                               later */
+    bool is_driven;         /* by the hand, a clip or the wind */
+    bool is_held;           /* by the hand */
+    bool is_dragged;        /* by its moving wearer */
+    bool is_hurried;        /* a budget may reduce its substeps */
+    bool cannot_cross;      /* contact with itself is on */
     /* Horizontal displacement of the centre of mass since frame 0; NaN unless the cloth is free of contact
      * and drive. */
     double drift_m;
@@ -41,8 +46,11 @@ struct tl_checked {
     const tl_renderer *white;       /* drew the frame unshadowed in white light */
     const tl_image *white_image;    /* its image */
     const tl_image *white_shadowed; /* the same with shadows */
+    const tl_image *in_motion;    /* the same frame with the ratio of light at vertices, as budgets draw it */
+    const struct tl_truth *truth; /* the worse of both images against the reference; tl_check_frame sets it */
     const struct tl_checked_cloth *cloth;
-    uint64_t hash, first_hash; /* of positions and image, now and in the first run; 0: none */
+    const struct tl_fall *fall; /* once, after the last frame */
+    uint64_t hash, first_hash;  /* of positions and image, now and in the first run; 0: none */
     uint64_t positions_hash, first_positions_hash; /* of positions alone */
     double predicted_ms, budget_ms;                /* of the plan; of the command line */
     double min_ms;                                 /* of the cheapest plan, where it exceeds the budget */

@@ -1,6 +1,6 @@
 /* toile check: every frame of a scene against the table of invariants. */
 #include "app/cli/json.h"
-#include "app/lab/check/check_run.h"
+#include "app/lab/check/baseline.h"
 #include "app/lab/check/commands.h"
 #include "app/scene/headless.h"
 #include "config/file.h"
@@ -39,14 +39,17 @@ static void print_table(const struct tl_check_outcome *outcome)
            tl_verdicts_failed(&outcome->verdicts), outcome->hash);
 }
 
-static void print_json(const struct tl_check_outcome *outcome, const char *keep)
+static void print_json(const struct tl_check_outcome *outcome, uint64_t scene, const char *keep)
 {
     cJSON *object = cJSON_CreateObject();
-    char hash[17];
+    char hash[17], scene_hash[17];
     snprintf(hash, sizeof hash, "%016" PRIx64, outcome->hash);
+    snprintf(scene_hash, sizeof scene_hash, "%016" PRIx64, scene);
     cJSON_AddNumberToObject(object, "frames", outcome->verdicts.frames);
     cJSON_AddNumberToObject(object, "failed", tl_verdicts_failed(&outcome->verdicts));
     cJSON_AddStringToObject(object, "hash", hash);
+    cJSON_AddStringToObject(object, "scene", scene_hash);
+    tl_json_add_number(object, "elastic_j", outcome->elastic_j);
     if (outcome->is_kept)
         cJSON_AddStringToObject(object, "kept", keep);
     cJSON *invariants = cJSON_AddArrayToObject(object, "invariants");
@@ -85,24 +88,30 @@ static bool judge(const struct tl_check_outcome *outcome, const char *keep, tl_e
 
 bool tl_command_check(const struct tl_arguments *arguments, tl_error *error)
 {
-    const struct tl_check_params params = {.frames =
-                                               arguments->frame_count > 0 ? arguments->frame_count : FRAMES,
-                                           .every = arguments->every > 0 ? arguments->every : EVERY,
-                                           .furnace = arguments->furnace,
-                                           .still = arguments->still,
-                                           .budget_ms = arguments->budget_ms,
-                                           .keep = arguments->keep};
+    struct tl_check_params params = {.frames = arguments->frame_count > 0 ? arguments->frame_count : FRAMES,
+                                     .every = arguments->every > 0 ? arguments->every : EVERY,
+                                     .furnace = arguments->furnace,
+                                     .still = arguments->still,
+                                     .budget_ms = arguments->budget_ms,
+                                     .keep = arguments->keep};
     struct tl_headless headless;
     struct tl_check_outcome outcome;
+    struct tl_check_baseline baseline;
     if (params.frames > FRAMES_MAX)
         return tl_fail(error, TL_USAGE, "--frames: %d: at most %d", params.frames, FRAMES_MAX);
     if ((params.keep && !tl_folder_make(params.keep, error)) ||
         !tl_headless_create(&headless, arguments, error))
         return false;
+    const uint64_t scene = tl_baseline_scene(&headless.settings, &params);
+    if (arguments->baseline && !tl_baseline_load(arguments->baseline, scene, &baseline, error)) {
+        tl_headless_release(&headless);
+        return false;
+    }
+    params.baseline = arguments->baseline ? &baseline : NULL;
     bool done = tl_check_play(&headless, &params, &outcome, error);
     bool has_found = outcome.verdicts.frames > 0; /* even where it could not go on */
     if (has_found && arguments->json)
-        print_json(&outcome, params.keep);
+        print_json(&outcome, scene, params.keep);
     else if (has_found)
         print_table(&outcome);
     tl_headless_release(&headless);

@@ -60,6 +60,23 @@ void draw_status(const tl_panel_input &input)
     ImGui::End();
 }
 
+/* One line below the status. */
+void draw_notice(const tl_panel_input &input)
+{
+    if (!input.notice || !input.notice[0])
+        return;
+    const ImVec4 warm(0.98f, 0.80f, 0.45f, 1.0f);
+    const float wrap = 0.8f * view_width(input), line = 2.4f * ImGui::GetFontSize();
+    make_room(input.notice, wrap);
+    begin_overlay("notice", input, 0, line / ImGui::GetIO().DisplaySize.y);
+    ImGui::PushStyleColor(ImGuiCol_Text, warm);
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
+    ImGui::TextUnformatted(input.notice);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::End();
+}
+
 void draw_progress(const tl_panel_input &input)
 {
     if (!input.progress.what)
@@ -240,6 +257,7 @@ void tl_panel_overlay_draw(const tl_panel_input &input)
 {
     draw_wipe(input);
     draw_status(input);
+    draw_notice(input);
     draw_legend(input);
     draw_message(input);
     draw_progress(input);

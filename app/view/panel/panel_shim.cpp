@@ -212,10 +212,10 @@ void draw_question(const tl_panel_input &input, tl_panel_result &result)
         return;
     ImGui::TextUnformatted(input.question);
     for (size_t i = 0; i < input.answer_count; i++) {
-        if (i > 0)
+        if (i > 0 && !input.answers_below)
             ImGui::SameLine();
-        char label[64];
-        snprintf(label, sizeof label, "%d  %s", static_cast<int>(i) + 1, input.answers[i].label);
+        char label[160];
+        snprintf(label, sizeof label, "%d  %s", (static_cast<int>(i) + 1) % 10, input.answers[i].label);
         if (ImGui::Button(label))
             result.answer = static_cast<int>(i);
         tooltip_of_last_item(input.answers[i].help);
@@ -235,8 +235,9 @@ void note_lines(tl_panel_fonts *fonts, const tl_panel_line *lines, size_t count)
 /* Every text that may hold a name: a file's, a material's, a part's. Labels and help of options are ASCII. */
 void note_texts(tl_panel_fonts *fonts, const tl_panel_input &input)
 {
-    for (const char *text : {input.title, input.message, input.status, input.strip.label, input.wipe.left,
-                             input.wipe.right, input.progress.what, input.read_out, input.question})
+    for (const char *text :
+         {input.title, input.message, input.status, input.notice, input.strip.label, input.wipe.left,
+          input.wipe.right, input.progress.what, input.read_out, input.question})
         tl_panel_fonts_note(fonts, text);
     for (size_t i = 0; i < input.measure_count; i++)
         note_lines(fonts, input.measures[i].lines, input.measures[i].count);

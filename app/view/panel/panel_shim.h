@@ -75,6 +75,7 @@ struct tl_panel_input {
     const char *message; /* the last report, or ""; over the view */
     bool message_is_error;
     const char *status; /* motion without input, or ""; over the view */
+    const char *notice; /* what is to be accepted, or NULL or ""; below the status */
     struct tl_panel_strip strip;
     struct tl_panel_wipe wipe;
     struct tl_panel_progress progress;
@@ -95,6 +96,7 @@ struct tl_panel_input {
     const char *question; /* a modal question with answers; NULL: none */
     const struct tl_panel_button *answers;
     size_t answer_count;
+    bool answers_below;      /* one a line, which names of files need */
     int x, y, width, height; /* the panel's place, framebuffer pixels; width 0: hidden */
 };
 

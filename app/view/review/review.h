@@ -10,6 +10,7 @@
  *     review_draw    when an image is drawn, and how it gets on the screen
  *     review_move    turntable, glides to saved views, camera paths
  *     review_hand    the pointer's point on the garment, and the hand that pulls it
+ *     review_place   units, axes and place of the files
  *     review_wipe    two appearances side by side
  *     review_read    the legend of the image's colours, and the values under the pointer
  *     review_keep    state that is kept between runs; files that are reloaded when they are edited
@@ -23,6 +24,7 @@
 #include "app/scene/path.h"
 #include "app/scene/session.h"
 #include "app/view/memory/history.h"
+#include "app/view/memory/recent.h"
 #include "app/view/memory/saved_views.h"
 #include "app/view/memory/state.h"
 #include "app/view/panel/panel_shim.h"
@@ -32,7 +34,15 @@
 #include "app/view/window/frame_times.h"
 #include "app/view/window/window.h"
 
-enum tl_review_drag { TL_DRAG_NONE, TL_DRAG_ORBIT, TL_DRAG_PAN, TL_DRAG_LIGHT, TL_DRAG_CLOTH, TL_DRAG_WIPE };
+enum tl_review_drag {
+    TL_DRAG_NONE,
+    TL_DRAG_ORBIT,
+    TL_DRAG_PAN,
+    TL_DRAG_LIGHT,
+    TL_DRAG_CLOTH,
+    TL_DRAG_WIPE,
+    TL_DRAG_PLACE
+};
 
 struct tl_review_times {       /* of the last frame that had such a part */
     double frame, cloth, draw; /* ms; frame: from its start to the swap of buffers */
@@ -65,6 +75,29 @@ struct tl_review_wipe {
     tl_renderer *renderer;       /* of A; NULL: nothing is compared */
     struct tl_settings settings; /* of A */
     float place;                 /* of the line between A and B, as a share of the view's width */
+};
+
+/* How the file of a garment or a body was read; kept: what the user has accepted. */
+enum tl_reading_of { TL_READING_NONE, TL_READING_GARMENT, TL_READING_AVATAR, TL_READING_COUNT };
+struct tl_review_reading {
+    enum tl_reading_of of;     /* whose reading is shown */
+    char name[TL_STRING_SIZE]; /* of its file */
+    char kept[TL_READING_COUNT][TL_STRING_SIZE];
+    char kept_size[512];
+    char notice[1024]; /* "": none is shown */
+};
+
+struct tl_review;
+struct tl_review_answer {
+    const char *label, *help;
+    void (*use)(struct tl_review *review, const char *path); /* NULL: the file is not used */
+};
+
+/* The garments that were opened last; while they are offered, one answer each. */
+struct tl_review_recent {
+    struct tl_recent files;
+    size_t offered; /* 0: they are not */
+    struct tl_review_answer answers[TL_RECENT_MAX];
 };
 
 struct tl_review_memory {
@@ -116,6 +149,8 @@ struct tl_review {
     vec3s grab_target,
         grab_at; /* metres: the pointer's point in that plane, and the hand, which follows it */
 
+    struct tl_review_reading reading;
+    struct tl_review_recent recent;
     char *title;
     char message[1200]; /* "": none is shown */
     bool message_is_error;

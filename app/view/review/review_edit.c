@@ -1,5 +1,7 @@
 #include "app/view/review/review_edit.h"
 
+#include "app/fabric/fields.h"
+#include "app/settings/imported.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern.h"
 #include "config/embedded.h"
@@ -26,17 +28,19 @@ bool tl_review_set(struct tl_review *review, const char *key, const char *text)
 /* Sets the options that a name or a file stands for. */
 typedef bool apply_name(struct tl_settings *settings, const char *name, tl_error *error);
 
-static void apply_named(struct tl_review *review, apply_name *apply, const char *name)
+static bool apply_named(struct tl_review *review, apply_name *apply, const char *name)
 {
     tl_error error;
     char *copy = tl_copy_string(name); /* `name` may point into the settings that are changed */
-    if (apply(&review->wanted, copy, &error)) {
+    bool applied = apply(&review->wanted, copy, &error);
+    if (applied) {
         review->changed = true;
     } else {
         tl_review_report_error(review, &error);
         review->wanted = review->good;
     }
     free(copy);
+    return applied;
 }
 
 void tl_review_apply_names(struct tl_review *review)
@@ -167,9 +171,21 @@ static char *take_dropped(struct tl_review *review)
     return path;
 }
 
-void tl_review_cancel_question(struct tl_review *review)
+bool tl_review_cancel_question(struct tl_review *review)
 {
-    free(take_dropped(review));
+    bool is_open = review->recent.offered > 0 || review->dropped;
+    if (review->recent.offered > 0)
+        review->recent.offered = 0;
+    else
+        free(take_dropped(review));
+    return is_open;
+}
+
+/* Whether a model was opened alone: the scene holds it as a body that wears nothing. */
+static bool is_alone(const struct tl_review *review)
+{
+    const struct tl_scene_params *scene = &review->wanted.scene;
+    return strcmp(scene->garment, "none") == 0 && tl_option_is_file_name(scene->avatar);
 }
 
 static void use_as_garment(struct tl_review *review, const char *path)
@@ -178,14 +194,82 @@ static void use_as_garment(struct tl_review *review, const char *path)
         tl_review_apply_names(review);
 }
 
+/* A garment that was opened alone is worn by the body that comes after it. */
 static void use_as_avatar(struct tl_review *review, const char *path)
 {
+    char *worn = is_alone(review) ? tl_copy_string(review->wanted.scene.avatar) : NULL;
+    if (worn)
+        use_as_garment(review, worn);
     tl_review_set(review, "scene.avatar", path);
+    free(worn);
+}
+
+/* In place of a model that was opened alone, which need not be a body. */
+static void open_again(struct tl_review *review, const char *path)
+{
+    if (is_alone(review))
+        tl_review_set(review, "scene.avatar", "auto");
+    use_as_garment(review, path);
+}
+
+void tl_review_ask_recent(struct tl_review *review)
+{
+    struct tl_review_recent *recent = &review->recent;
+    recent->offered = tl_recent_count(&recent->files);
+    for (size_t i = 0; i < recent->offered; i++) {
+        const char *path = recent->files.garments[i], *slash = strrchr(path, '/');
+        recent->answers[i] = (struct tl_review_answer){slash ? slash + 1 : path, path, open_again};
+    }
+    if (recent->offered == 0)
+        tl_review_report(review, "no garment has been opened from a file yet");
 }
 
 static void use_as_fabric(struct tl_review *review, const char *path)
 {
     apply_named(review, tl_settings_apply_fabric, path);
+}
+
+/* Reports what a fabric's file holds, once it is used: how many of its fields are, and which are not. */
+static void report_fields(struct tl_review *review, const tl_fabric_file *file)
+{
+    const struct tl_weave_params *weave = &review->wanted.weave;
+    char *unused = tl_fabric_fields_unused(file), width[64] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < file->field_count; i++)
+        used += file->fields[i].is_used;
+    if (weave->pictures[0])
+        snprintf(width, sizeof width, ", %g mm wide%s", (double)tl_weave_picture_mm(weave),
+                 weave->picture_mm > 0 ? "" : " (assumed: set weave.picture_mm)");
+    tl_review_report(review, "fabric %s: %zu of %zu fields are used%s%s%s", file->name, used,
+                     file->field_count, width, unused[0] ? "; not used: " : "", unused);
+    free(unused);
+}
+
+/* Uses a fabric of another program, or a folder of toile's own, and says what of it. False, without a report,
+ * for a file that is none: a .json file may be a pattern. */
+static bool use_foreign_fabric(struct tl_review *review, const char *path)
+{
+    tl_error error;
+    tl_fabric_file file;
+    if (!tl_fabric_file_is(path))
+        return false;
+    char *own = tl_imported_own_file(path);
+    bool is_own = own != NULL;
+    free(own);
+    if (is_own) {
+        tl_review_use_fabric(review, path);
+        return true;
+    }
+    if (!tl_fabric_file_open(path, &file, &error)) {
+        bool may_be_pattern = tl_pattern_is_file(path);
+        if (!may_be_pattern)
+            tl_review_report_error(review, &error);
+        return !may_be_pattern;
+    }
+    if (apply_named(review, tl_settings_apply_fabric, path))
+        report_fields(review, &file);
+    tl_fabric_file_release(&file);
+    return true;
 }
 
 static void use_as_preset(struct tl_review *review, const char *path)
@@ -208,7 +292,9 @@ static const struct tl_review_answer text_answers[] = {
 
 const struct tl_review_answer *tl_review_answers(const struct tl_review *review, size_t *count)
 {
-    *count = 0;
+    *count = review->recent.offered;
+    if (*count > 0)
+        return review->recent.answers;
     if (!review->dropped)
         return NULL;
     bool is_model = tl_model_is_file(review->dropped);
@@ -222,7 +308,8 @@ void tl_review_answer(struct tl_review *review, size_t index)
     const struct tl_review_answer *answers = tl_review_answers(review, &count);
     if (index >= count)
         return;
-    char *path = take_dropped(review);
+    char *path = review->recent.offered > 0 ? tl_copy_string(answers[index].help) : take_dropped(review);
+    review->recent.offered = 0;
     if (answers[index].use)
         answers[index].use(review, path);
     free(path);
@@ -235,6 +322,8 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
         tl_review_set(review, "scene.environment", path);
     } else if (tl_point_cache_is_file(path)) {
         tl_review_set(review, "scene.motion", path);
+    } else if (use_foreign_fabric(review, path)) {
+        return;
     } else if (tl_pattern_is_file(path)) {
         use_as_garment(review, path);
     } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
@@ -244,8 +333,9 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
         tl_error error;
         tl_fail(
             &error, TL_INPUT,
-            "%s: cannot be used here: open a .glb, .gltf, .obj, .json (a pattern), .pc2, .mdd, .exr, .hdr or "
-            ".yaml file",
+            "%s: cannot be used here: open a .glb, .gltf, .obj, .json (a pattern or a fabric's "
+            "measurements), "
+            ".pc2, .mdd, .exr, .hdr, .yaml, .u3m or .u3ma file, or a folder or .zip of a fabric's textures",
             path);
         tl_review_report_error(review, &error);
     }

@@ -22,18 +22,16 @@ void tl_review_next_view(struct tl_review *review, int by); /* image.view */
 void tl_review_open_dropped(struct tl_review *review, const char *path);
 /* Takes over the file that was chosen in the dialog, as if it had been dropped; called every frame. */
 void tl_review_take_chosen(struct tl_review *review);
-/* The possible uses of the dropped file that the open question is about; NULL and 0 without a question.
- * Static. */
-struct tl_review_answer {
-    const char *label, *help;
-    void (*use)(struct tl_review *review, const char *path); /* NULL: the file is not used */
-};
-#define TL_REVIEW_ANSWERS_MAX 4
+/* The possible uses of the dropped file that the open question is about, or the recent files to open again;
+ * NULL and 0 without a question. Borrowed until the question ends. */
+#define TL_REVIEW_ANSWERS_MAX 10
 const struct tl_review_answer *tl_review_answers(const struct tl_review *review, size_t *count);
 /* Answers the open question by an index of the answers; the next file in the queue is asked about. */
 void tl_review_answer(struct tl_review *review, size_t index);
-/* Drops the open question and its file. */
-void tl_review_cancel_question(struct tl_review *review);
+/* Drops the open question and its file; false: none was open. */
+bool tl_review_cancel_question(struct tl_review *review);
+/* Asks which of the recent garments to open again. */
+void tl_review_ask_recent(struct tl_review *review);
 
 /* The environments that E cycles through: adds one, and goes to the next. */
 void tl_review_add_environment(struct tl_review *review, const char *name);

@@ -16,6 +16,36 @@ static char *state_file(const struct tl_review *review)
     return tl_format("%s/review.yaml", review->state_folder);
 }
 
+static char *recent_file(const struct tl_review *review)
+{
+    return tl_format("%s/recent.yaml", review->state_folder);
+}
+
+static void restore_recent(struct tl_review *review)
+{
+    tl_error error;
+    char *file = recent_file(review);
+    if (!tl_recent_load(file, &review->recent.files, &error))
+        tl_warn("view: %s: the recent files are not offered", error.message);
+    free(file);
+}
+
+void tl_review_keep_recent(struct tl_review *review)
+{
+    const struct tl_scene_params *scene = &review->wanted.scene;
+    const char *name = strcmp(scene->garment, "none") != 0 ? scene->garment : scene->avatar;
+    char *path = tl_option_is_file_name(name) ? realpath(name, NULL) : NULL;
+    if (path && review->recent.offered == 0 && strcmp(review->recent.files.garments[0], path) != 0) {
+        tl_error error;
+        char *file = review->state_folder ? recent_file(review) : NULL;
+        tl_recent_add(&review->recent.files, path);
+        if (file && !tl_recent_save(file, &review->recent.files, &error))
+            tl_warn("view: %s: the recent files are not saved", error.message);
+        free(file);
+    }
+    free(path);
+}
+
 bool tl_review_restore_state(struct tl_review *review)
 {
     const struct tl_arguments *arguments = review->arguments;
@@ -28,6 +58,7 @@ bool tl_review_restore_state(struct tl_review *review)
     review->state_folder = arguments->fresh ? NULL : tl_state_folder();
     if (!review->state_folder)
         return false;
+    restore_recent(review);
     tl_error error;
     struct tl_state state;
     char *file = state_file(review);

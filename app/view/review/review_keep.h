@@ -11,6 +11,10 @@ bool tl_review_restore_state(struct tl_review *review);
 /* Saves them; a failure is a warning. */
 void tl_review_save_state(struct tl_review *review);
 
+/* Puts the garment that was loaded, or the model that was opened alone, among the recent files, when it is a
+ * file. A failure is a warning. */
+void tl_review_keep_recent(struct tl_review *review);
+
 void tl_review_save_view(struct tl_review *review, int index);
 /* After another scene was loaded: loads its saved views. */
 void tl_review_load_views(struct tl_review *review);

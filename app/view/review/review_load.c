@@ -1,5 +1,7 @@
 #include "app/view/review/review_load.h"
 
+#include "app/view/review/review_keep.h"
+#include "app/view/review/review_place.h"
 #include "app/view/review/review_wipe.h"
 #include "config/interrupt.h"
 #include "config/log.h"
@@ -175,6 +177,8 @@ static void finish(struct tl_review *review)
             tl_info("view: %s hangs in %s", made_of.scene.garment, made_of.scene.fabric);
         review->reported_frame = -1;
         review->drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
+        tl_review_note_reading(review);
+        tl_review_keep_recent(review);
     } else {
         tl_session_replace_light(review->session, &loaded.light, environment);
         take_lights(review, &loaded);
@@ -195,7 +199,7 @@ void tl_review_load(struct tl_review *review)
             finish(review);
         review->changed = true;
     }
-    bool waits = review->loader || review->editing;
+    bool waits = review->loader || review->editing || review->drag == TL_DRAG_PLACE;
     if (!waits && ((review->changed && is_slow(review, &review->wanted)) || wants_drape(review)))
         start(review);
 }
@@ -252,6 +256,8 @@ bool tl_review_finish_first(struct tl_review *review, tl_error *error)
     review->session = loaded.session;
     loaded.session = NULL;
     review->draped = review->wanted.fabric;
+    tl_review_note_reading(review);
+    tl_review_keep_recent(review);
     take_lights(review, &loaded);
     tl_loaded_release(&loaded);
     return true;

@@ -88,12 +88,26 @@ static void on_move(GLFWwindow *handle, double x, double y)
     queue(window, pointer_event(window, TL_WINDOW_MOVE));
 }
 
+/* GLFW tells them of keys and buttons only. */
+static int held_modifiers(GLFWwindow *handle)
+{
+    static const int keys[][2] = {{GLFW_KEY_LEFT_CONTROL, GLFW_MOD_CONTROL},
+                                  {GLFW_KEY_RIGHT_CONTROL, GLFW_MOD_CONTROL},
+                                  {GLFW_KEY_LEFT_SHIFT, GLFW_MOD_SHIFT},
+                                  {GLFW_KEY_RIGHT_SHIFT, GLFW_MOD_SHIFT}};
+    int modifiers = 0;
+    for (size_t i = 0; i < TL_COUNT(keys); i++)
+        modifiers |= glfwGetKey(handle, keys[i][0]) == GLFW_PRESS ? keys[i][1] : 0;
+    return modifiers;
+}
+
 static void on_wheel(GLFWwindow *handle, double x, double y)
 {
     (void)x;
     tl_window *window = glfwGetWindowUserPointer(handle);
     struct tl_window_event event = pointer_event(window, TL_WINDOW_WHEEL);
     event.steps = (float)y;
+    event.modifiers = held_modifiers(handle);
     queue(window, event);
 }
 

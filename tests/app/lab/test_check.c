@@ -1,10 +1,8 @@
 /* Each fault, put into a frame on purpose, is named by the invariant that it breaks; a clean frame passes. */
-#include "tests/app/quick_session.h"
+#include "tests/app/lab/verdicts.h"
 
-#include "app/lab/check/check.h"
 #include "app/lab/stability/extremes_light.h"
 #include "cloth/mesh/topology.h"
-#include "cloth/state.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -145,48 +143,6 @@ static struct stand *by_slices(void)
 }
 
 /* ---- What is found ---- */
-
-static size_t row_of(const char *name)
-{
-    for (size_t i = 0; i < tl_invariant_count; i++)
-        if (strcmp(tl_invariants[i].name, name) == 0)
-            return i;
-    fail_msg("%s: no such invariant", name);
-    return 0;
-}
-
-static struct tl_verdict verdict_on(const struct tl_checked *checked, const char *name)
-{
-    struct tl_verdicts verdicts = {0};
-    tl_check_frame(checked, &verdicts, NULL);
-    return verdicts.items[row_of(name)];
-}
-
-/* Named, and where. */
-static void assert_breaks(const struct tl_checked *checked, const char *name, const char *place)
-{
-    struct tl_verdict verdict = verdict_on(checked, name);
-    if (!verdict.finding.is_measured || verdict.ok || !strstr(verdict.finding.place, place)) {
-        print_error("%s: %s, worst %g of %g at \"%s\", expected to break at \"%s\"\n", name,
-                    verdict.finding.is_measured ? "measured" : "not measured", verdict.finding.worst,
-                    verdict.finding.bound, verdict.finding.place, place);
-        fail();
-    }
-    assert_int_equal(verdict.frame, checked->number);
-}
-
-static void assert_clean(const struct tl_checked *checked)
-{
-    struct tl_verdicts verdicts = {0};
-    struct tl_finding broken = {0};
-    int first = tl_check_frame(checked, &verdicts, &broken);
-    if (first >= 0) {
-        print_error("%s: worst %g of %g at \"%s\"\n", tl_invariants[first].name, broken.worst, broken.bound,
-                    broken.place);
-        fail();
-    }
-    assert_int_equal(tl_verdicts_failed(&verdicts), 0);
-}
 
 static void assert_measured(const struct tl_checked *checked, const char *const *names, size_t count)
 {
@@ -379,6 +335,47 @@ static void faults_of_pixels_are_named(void **state)
     assert_breaks(&stand->checked, "run.repeat", "in pixels only");
     stand->checked.positions_hash++;
     assert_breaks(&stand->checked, "run.repeat", "in positions");
+    take_down(&stand);
+}
+
+/* Scales a square of pixels. */
+static void scale_square(const struct stand *stand, int left, int top, int side, float factor)
+{
+    for (int y = top; y < top + side; y++)
+        for (int x = left; x < left + side; x++)
+            for (int c = 0; c < 3; c++)
+                tl_image_floats(&stand->image)[4 * (y * WIDTH + x) + c] *= factor;
+}
+
+/* Wherever it lies: a patch is found in all of the picture. */
+static void patches_are_named(void **state)
+{
+    (void)state;
+    struct stand *stand = by_rays();
+    const size_t bytes = (size_t)WIDTH * HEIGHT * 4 * sizeof(float);
+    float *kept = copied(stand->image.texels, 1, bytes);
+    scale_square(stand, 40, 28, 8, 0.1f);
+    assert_breaks(&stand->checked, "image.patch", "pixel 44, 32");
+    memcpy(stand->image.texels, kept, bytes);
+    scale_square(stand, 40, 28, 8, 3);
+    assert_breaks(&stand->checked, "image.patch", "pixel 44, 32");
+    memcpy(stand->image.texels, kept, bytes);
+    scale_square(stand, 40, 28, 5, 10);
+    assert_breaks(&stand->checked, "image.tile", "pixel 42, 30");
+    memcpy(stand->image.texels, kept, bytes);
+    for (int i = 0; i < WIDTH * HEIGHT * 4; i++)
+        tl_image_floats(&stand->image)[i] *= i % 4 == 2 ? 0.9f : 1;
+    assert_breaks(&stand->checked, "image.mean", "");
+    memcpy(stand->image.texels, kept, bytes);
+
+    /* As a budget draws it. */
+    stand->checked.in_motion = &stand->fresh_image;
+    assert_clean(&stand->checked);
+    tl_image *drawn = &stand->fresh_image;
+    for (int y = 28; y < 36; y++)
+        memset(tl_image_floats(drawn) + 4 * (y * WIDTH + 40), 0, 8 * 4 * sizeof(float));
+    assert_breaks(&stand->checked, "image.patch", "pixel 44, 32");
+    free(kept);
     take_down(&stand);
 }
 
@@ -645,70 +642,28 @@ static void a_furnace_that_glows_is_named(void **state)
     take_down(&stand);
 }
 
-/* ---- Cloth ---- */
-
-static struct tl_checked check_cloth(tl_session *session, struct tl_checked_cloth *cloth, tl_frame *frame)
-{
-    static const struct tl_render_settings unused;
-    *frame = tl_session_frame(session);
-    cloth->report = tl_session_report(session);
-    return (struct tl_checked){.number = 7, .frame = frame, .settings = &unused, .cloth = cloth};
-}
-
-static void faults_of_cloth_are_named(void **state)
+/* A deviation that the general bound allows breaks the bound of a scene whose clean run had a smaller one. */
+static void a_baseline_tightens_bounds(void **state)
 {
     (void)state;
-    tl_session *session = quick_session(NULL);
-    struct tl_cloth *cloth = tl_session_cloth(session);
-    struct tl_checked_cloth watched = {.strain_limit = 0.1,
-                                       .weight_n = 2,
-                                       .kept_m = 0.003,
-                                       .first_strain = 0.1,
-                                       .drift_m = NAN,
-                                       .min_energy_j = NAN,
-                                       .allowed_speed = 20};
-    tl_frame frame;
-    struct tl_checked checked = check_cloth(session, &watched, &frame);
-    assert_clean(&checked);
-    double moving = watched.report.kinetic_energy + watched.report.potential_energy;
-    watched.min_energy_j = moving - 0.004 * watched.weight_n; /* lifted by 4 mm out of nothing */
-    assert_breaks(&checked, "cloth.energy", "garment");
-    watched.min_energy_j = moving - 0.002 * watched.weight_n; /* as contacts may */
-    watched.drift_m = 1e-6;
-    assert_clean(&checked);
-    watched.drift_m = 1e-3;
-    assert_breaks(&checked, "cloth.momentum", "");
+    const size_t row = row_of("image.tile");
+    struct tl_check_baseline baseline;
+    for (size_t i = 0; i < TL_INVARIANTS_MAX; i++)
+        baseline.worst[i] = NAN;
+    assert_near(tl_check_bound(&baseline, row, 1.5), 1.5, 1e-9);
+    baseline.worst[row] = 0.1;
+    assert_near(tl_check_bound(&baseline, row, 1.5), 0.3, 1e-9);
+    baseline.worst[row] = 1.4;
+    assert_near(tl_check_bound(&baseline, row, 1.5), 1.5, 1e-9);
 
-    /* One particle is thrown: its kinetic energy, and its speed. */
-    vec3d *velocity = &cloth->particles.v[cloth->particles.count / 2], rest = *velocity;
-    velocity->x += 60;
-    checked = check_cloth(session, &watched, &frame);
-    assert_breaks(&checked, "cloth.energy", "garment");
-    assert_breaks(&checked, "cloth.speed", "m/s");
-    watched.is_driven = true;
-    assert_false(verdict_on(&checked, "cloth.energy").finding.is_measured);
-    *velocity = rest;
-
-    /* ... is pushed into the body: the middle of the hips is far below any skin. */
-    vec3d *place = &cloth->particles.x[cloth->particles.count / 2], outside = *place;
-    *place = (vec3d){0, 1.0, 0};
-    checked = check_cloth(session, &watched, &frame);
-    assert_breaks(&checked, "cloth.inside", "garment");
-    *place = (vec3d){3 * outside.x, outside.y, 3 * outside.z};
-    checked = check_cloth(session, &watched, &frame);
-    assert_breaks(&checked, "cloth.strain", "garment");
-    place->y = NAN;
-    checked = check_cloth(session, &watched, &frame);
-    assert_breaks(&checked, "cloth.strain", "garment"); /* no number is no pass */
-    *place = outside;
-
-    /* ... all of it is drawn apart by an eighth, by which no edge is too long. */
-    for (size_t i = 0; i < cloth->particles.count; i++)
-        cloth->particles.x[i] = vec3d_scale(cloth->particles.x[i], 1.125);
-    checked = check_cloth(session, &watched, &frame);
-    assert_true(verdict_on(&checked, "cloth.strain").ok);
-    assert_breaks(&checked, "cloth.stretch", "garment");
-    tl_session_destroy(&session);
+    struct stand *stand = by_rays();
+    struct tl_verdicts verdicts = {.baseline = &baseline};
+    baseline.worst[row] = 0.05;
+    scale_square(stand, 40, 28, 5, 1.6f);
+    assert_true(verdict_on(&stand->checked, "image.tile").ok);
+    tl_check_frame(&stand->checked, &verdicts, NULL);
+    assert_false(verdicts.items[row].ok);
+    take_down(&stand);
 }
 
 int main(void)
@@ -718,7 +673,9 @@ int main(void)
         cmocka_unit_test(a_clean_frame_passes),
         cmocka_unit_test(faults_of_geometry_are_named),
         cmocka_unit_test(faults_of_pixels_are_named),
+        cmocka_unit_test(patches_are_named),
         cmocka_unit_test(a_plan_over_budget_is_named),
+        cmocka_unit_test(a_baseline_tightens_bounds),
         cmocka_unit_test(a_leaking_shadow_is_named),
         cmocka_unit_test(visibility_out_of_range_is_named),
         cmocka_unit_test(moments_that_cannot_be_are_named),
@@ -727,7 +684,6 @@ int main(void)
         cmocka_unit_test(lost_light_is_named),
         cmocka_unit_test(a_lost_region_is_named),
         cmocka_unit_test(a_furnace_that_glows_is_named),
-        cmocka_unit_test(faults_of_cloth_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

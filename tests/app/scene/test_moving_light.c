@@ -3,6 +3,7 @@
 #include "tests/testing.h"
 
 #include "app/scene/session.h"
+#include "assets/environment.h"
 #include "assets/image/exr.h"
 #include "config/file.h"
 #include "config/log.h"
@@ -125,6 +126,35 @@ static void replays_are_the_same(void **state)
     tl_session_destroy(&session);
 }
 
+/* The factors of pictures and the ground are those of the first frame in every frame, also where the
+ * sequence is opened at a later one. Frames differ in brightness, and would be shown alike. */
+static void frames_are_shown_like_the_first(void **state)
+{
+    (void)state;
+    write_sequence();
+    tl_session *session = open_session("30");
+    tl_error error = {0};
+    const vec3s factors = tl_session_frame(session).environment->shown;
+    const vec3s ground = tl_session_frame(session).environment->ground;
+    assert_true(factors.g > 0 && ground.g > 0);
+    assert_ok(tl_session_advance(session, &error), error);
+    for (int opened = 0; opened < 2; opened++) {
+        const tl_environment *later = tl_session_frame(session).environment;
+        tl_environment own;
+        assert_int_equal(shown(session), 2);
+        assert_true(glms_vec3_eqv(later->shown, factors) && glms_vec3_eqv(later->ground, ground));
+        assert_ok(tl_environment_load(FOLDER "/sky.02.exr", &own, &error), error);
+        assert_true(own.shown.g < 0.7f * factors.g); /* another one, by itself */
+        tl_environment_release(&own);
+        struct tl_settings settings = *tl_session_settings(session);
+        strcpy(settings.scene.environment, "studio");
+        assert_ok(tl_session_apply(session, &settings, &error), error);
+        strcpy(settings.scene.environment, PATTERN);
+        assert_ok(tl_session_apply(session, &settings, &error), error);
+    }
+    tl_session_destroy(&session);
+}
+
 static void settings_change_in_place(void **state)
 {
     (void)state;
@@ -178,6 +208,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_follow_their_rate),
         cmocka_unit_test(replays_are_the_same),
+        cmocka_unit_test(frames_are_shown_like_the_first),
         cmocka_unit_test(settings_change_in_place),
         cmocka_unit_test(a_broken_frame_is_named_and_nothing_is_lost),
     };

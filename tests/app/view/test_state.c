@@ -1,4 +1,5 @@
 /* The window's state: written and read back equal; broken files are reported and change nothing. */
+#include "app/view/memory/recent.h"
 #include "app/view/memory/saved_views.h"
 #include "app/view/memory/state.h"
 #include "config/file.h"
@@ -209,6 +210,44 @@ static void folder_follows_the_standard(void **unused)
     }
 }
 
+/* Twelve files leave ten, the latest first; one that is opened again moves to the front and is there once.
+ * What is written is read back equal, names with a colon and quotes included, and no temporary file stays. */
+static void recent_files_are_the_last_ten(void **state)
+{
+    (void)state;
+    struct tl_recent *recent = TL_NEW(struct tl_recent), *read = TL_NEW(struct tl_recent);
+    tl_error error = {0};
+    assert_int_equal(tl_recent_count(recent), 0);
+    for (int i = 0; i < 12; i++) {
+        char *path = tl_format("/garments/\"no: %d\"/it's é.obj", i);
+        tl_recent_add(recent, path);
+        free(path);
+    }
+    assert_int_equal(tl_recent_count(recent), TL_RECENT_MAX);
+    assert_string_equal(recent->garments[0], "/garments/\"no: 11\"/it's é.obj");
+    assert_string_equal(recent->garments[9], "/garments/\"no: 2\"/it's é.obj");
+    tl_recent_add(recent, "/garments/\"no: 5\"/it's é.obj");
+    assert_string_equal(recent->garments[0], "/garments/\"no: 5\"/it's é.obj");
+    assert_string_equal(recent->garments[1], "/garments/\"no: 11\"/it's é.obj");
+    assert_string_equal(recent->garments[9], "/garments/\"no: 2\"/it's é.obj");
+    for (int i = 1; i < TL_RECENT_MAX; i++)
+        assert_string_not_equal(recent->garments[i], recent->garments[0]);
+    char *file = in_folder("new folder/recent.yaml"), *made = in_folder("new folder");
+    assert_ok(tl_recent_save(file, recent, &error), error);
+    assert_ok(tl_recent_load(file, read, &error), error);
+    assert_memory_equal(read->garments, recent->garments, sizeof read->garments);
+    char *command = tl_format("test \"$(ls '%s')\" = recent.yaml", made);
+    assert_int_equal(system(command), 0); // NOLINT(cert-env33-c): a folder of the test's own
+    write_text(file, "recent: {garment_11: x}\n");
+    assert_false(tl_recent_load(file, read, &error));
+    assert_int_equal(tl_recent_count(read), 0);
+    free(command);
+    free(made);
+    free(file);
+    free(read);
+    free(recent);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +257,7 @@ int main(void)
         cmocka_unit_test(relative_files_become_absolute),
         cmocka_unit_test(views_come_back),
         cmocka_unit_test(names_tell_scenes_apart),
+        cmocka_unit_test(recent_files_are_the_last_ten),
         cmocka_unit_test(folder_follows_the_standard),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

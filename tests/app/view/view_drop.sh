@@ -15,6 +15,15 @@ echo "no light" >broken.exr
 echo "no model" >broken.glb
 echo "a letter" >letter.txt
 
+mkdir maps own nothing
+$TOILE render $fast --garment sphere --avatar none --size 16x16 --quiet -o maps/cloth_basecolor.png
+cp maps/cloth_basecolor.png maps/notes_on_it.png
+strip='{"S2": {"width": 5, "samplesTree": [[8, 0, 8.1, 10, 8.2, 60]]}}'
+printf '{"raw_data": {"M": 200, "L": %s, "W": %s, "B": %s}}' "$strip" "$strip" "$strip" >strips.json
+printf '{"schema": "1.1"' >cut.u3m
+echo '{"pattern": {"panels": {}}}' >panels.json # is read as a pattern, not as measurements
+$TOILE fabric satin -o own/ --quiet
+
 open_display
 : >log
 PATH=$PWD/bin:/nonexistent $(command -v "$TOILE" || echo "$TOILE") view $fast --fresh >out 2>log &
@@ -39,7 +48,27 @@ drops light.exr "view: environment .*/light.exr"
 answers "bleu é 100%.yaml" 2 "view: fabric .*/bleu é 100%.yaml"
 answers skirt.obj 1 "view: garment .*/skirt.obj"
 press d "view: loads .*/skirt.obj"
+# A file in millimetres with Z up: how it is read is changed by keys, it is moved by the pointer, and accepted.
+awk '/^v / { print "v", 1000 * $2, -1000 * $4, 1000 * $3; next } /^vn / { print "vn", $2, -$4, $3; next } { print }' skirt.obj >lying.obj
+answers lying.obj 1 "view: garment .*/lying.obj"
+logged "lying.obj: .* taken as millimetres"
+press a "view: reads it with Z up"
+press u "view: reads it in centimetres"
+press shift+u "view: reads it in millimetres"
+xdotool keydown ctrl keydown shift; drag 1 200 200 240 200; xdotool keyup shift keyup ctrl
+logged "view: --move 0.*,0,.* --turn 0 --scale 1"
+xdotool keydown ctrl keydown shift; drag 3 200 200 240 200; xdotool keyup shift keyup ctrl
+logged "view: --move .* --turn [1-9].* --scale 1"
+press Return "view: keeps --units mm --up z"
 answers scene.yaml 1 "view: garment dress"
+
+# Fabrics of other programs are used at once, and what of them is said.
+drops maps "view: fabric maps: 1 of 2 fields are used, 100 mm wide (assumed.*); not used: notes_on_it.png"
+drops strips.json "view: fabric strips: 4 of [0-9]* fields are used; not used: raw_data.L.D1"
+drops own "view: fabric: .*/own"
+drops panels.json "warning: view: .*panels.json: pattern.panels: "
+drops cut.u3m "warning: view: .*cut.u3m:1: "
+drops nothing "warning: view: .*nothing.*no texture maps"
 
 drops letter.txt "warning: view: .*letter.txt: cannot be used here"
 drops broken.exr "warning: view: .*broken.exr"
@@ -70,11 +99,15 @@ logged "view: environment .*/light.exr" 2
 press 1 "view: garment .*/skirt.obj"
 press 2 "view: fabric .*/bleu é 100%.yaml"
 
+# The garments that were opened, the last one first.
+xdotool key ctrl+r
+press 2 "view: garment .*/lying.obj"
+
 # It goes on, shows what could be opened, and closes.
 press t "turntable turns"
 press t "turntable stands"
 xdotool key q
 closed
-[ "$(grep -c "warning" log)" = 7 ] || fail "not one line for each file that is refused"
+[ "$(grep -c "warning" log)" = 10 ] || fail "not one line for each file that is refused"
 [ ! -s out ] || fail "something on standard output"
 echo "ok     all"

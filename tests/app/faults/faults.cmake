@@ -1,0 +1,32 @@
+# toile_faults: the program with the faults of faults.txt in it, switched on by the environment's TOILE_FAULT. Only the
+# files that have a fault are compiled again; they take the place of the libraries' own.
+set(fault_table ${CMAKE_CURRENT_LIST_DIR}/faults.txt)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${fault_table})
+add_executable(make_faults faults/make_faults.c faults/fault_table.c)
+target_link_libraries(make_faults PRIVATE toile_flags)
+file(STRINGS ${fault_table} fault_files REGEX "^file .*\\.c$")
+list(TRANSFORM fault_files REPLACE "^file +" "")
+list(REMOVE_DUPLICATES fault_files)
+set(faulty_sources)
+foreach(file IN LISTS fault_files ITEMS shaders)
+  string(REPLACE "/" "_" name ${file})
+  string(REPLACE ".c" "" name ${name})
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/faults/${name}.c)
+  set(original ${CMAKE_SOURCE_DIR}/${file})
+  if(file STREQUAL shaders)
+    set(original ${CMAKE_SOURCE_DIR}/render/visibility/vsm.glsl)
+  endif()
+  add_custom_command(OUTPUT ${out} COMMAND make_faults ${fault_table} ${CMAKE_SOURCE_DIR} ${out} ${file}
+    DEPENDS make_faults ${fault_table} ${original} VERBATIM)
+  list(APPEND faulty_sources ${out})
+endforeach()
+file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/faults)
+add_executable(toile_faults ${CMAKE_SOURCE_DIR}/app/main.c ${faulty_sources} faults/shader_faults.c)
+target_link_libraries(toile_faults PRIVATE toile_app PkgConfig::EPOXY PkgConfig::CGLM)
+target_compile_definitions(toile_faults PRIVATE TOILE_VERSION="${PROJECT_VERSION}")
+
+add_executable(test_faults faults/test_faults.c faults/fault_table.c)
+target_link_libraries(test_faults PRIVATE toile_config PkgConfig::CJSON)
+add_test(NAME faults COMMAND test_faults ${fault_table} $<TARGET_FILE:toile_faults>)
+set_tests_properties(faults PROPERTIES LABELS faults TIMEOUT ${toile_script_timeout}
+  ENVIRONMENT "OMP_WAIT_POLICY=passive;${toile_cache}")

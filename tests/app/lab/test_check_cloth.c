@@ -1,0 +1,112 @@
+/* Faults of the cloth are named by the invariants that they break. */
+#include "tests/app/lab/verdicts.h"
+#include "tests/app/quick_session.h"
+
+#include "app/lab/check/check_fall.h"
+#include "cloth/state.h"
+#include "config/log.h"
+
+static struct tl_checked check_cloth(tl_session *session, struct tl_checked_cloth *cloth, tl_frame *frame)
+{
+    static const struct tl_render_settings unused;
+    *frame = tl_session_frame(session);
+    cloth->report = tl_session_report(session);
+    return (struct tl_checked){.number = 7, .frame = frame, .settings = &unused, .cloth = cloth};
+}
+
+static void faults_of_cloth_are_named(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    struct tl_cloth *cloth = tl_session_cloth(session);
+    struct tl_checked_cloth watched = {.strain_limit = 0.1,
+                                       .weight_n = 2,
+                                       .kept_m = 0.003,
+                                       .first_strain = 0.1,
+                                       .drift_m = NAN,
+                                       .min_energy_j = NAN,
+                                       .allowed_speed = 20};
+    tl_frame frame;
+    struct tl_checked checked = check_cloth(session, &watched, &frame);
+    assert_clean(&checked);
+    double moving = watched.report.kinetic_energy + watched.report.potential_energy;
+    watched.min_energy_j = moving - 0.004 * watched.weight_n; /* lifted by 4 mm out of nothing */
+    assert_breaks(&checked, "cloth.energy", "garment");
+    watched.min_energy_j = moving - 0.002 * watched.weight_n; /* as contacts may */
+    watched.drift_m = 1e-6;
+    assert_clean(&checked);
+    watched.drift_m = 1e-3;
+    assert_breaks(&checked, "cloth.momentum", "");
+
+    /* One particle is thrown: its kinetic energy, and its speed. */
+    vec3d *velocity = &cloth->particles.v[cloth->particles.count / 2], rest = *velocity;
+    velocity->x += 60;
+    checked = check_cloth(session, &watched, &frame);
+    assert_breaks(&checked, "cloth.energy", "garment");
+    assert_breaks(&checked, "cloth.speed", "m/s");
+    watched.is_driven = true;
+    assert_false(verdict_on(&checked, "cloth.energy").finding.is_measured);
+    *velocity = rest;
+
+    /* ... is pushed into the body: the middle of the hips is far below any skin. */
+    vec3d *place = &cloth->particles.x[cloth->particles.count / 2], outside = *place;
+    *place = (vec3d){0, 1.0, 0};
+    checked = check_cloth(session, &watched, &frame);
+    assert_breaks(&checked, "cloth.inside", "garment");
+    *place = (vec3d){3 * outside.x, outside.y, 3 * outside.z};
+    checked = check_cloth(session, &watched, &frame);
+    assert_breaks(&checked, "cloth.strain", "garment");
+    place->y = NAN;
+    checked = check_cloth(session, &watched, &frame);
+    assert_breaks(&checked, "cloth.strain", "garment"); /* no number is no pass */
+    *place = outside;
+
+    /* ... all of it is drawn apart by an eighth, by which no edge is too long. */
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        cloth->particles.x[i] = vec3d_scale(cloth->particles.x[i], 1.125);
+    checked = check_cloth(session, &watched, &frame);
+    assert_true(verdict_on(&checked, "cloth.strain").ok);
+    assert_breaks(&checked, "cloth.stretch", "garment");
+    tl_session_destroy(&session);
+}
+
+/* A garment falls as its closed form has it; one that is pulled, or that falls at another rate, does not. */
+static void a_fall_is_measured(void **state)
+{
+    (void)state;
+    struct tl_settings settings = quick_settings(NULL);
+    struct tl_fall fall;
+    tl_error error = {0};
+    tl_session *session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    assert_ok(tl_fall_measure(session, &settings, &fall, &error), error);
+    assert_false(fall.is_measured); /* it was not at rest */
+    tl_session_destroy(&session);
+    settings.cloth.settle_s = 10;
+    session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    assert_ok(tl_fall_measure(session, &settings, &fall, &error), error);
+    assert_true(fall.is_measured);
+    assert_near(fall.expected_m, 9.81 * 0.0526, 0.03); /* less than g t^2 / 2 by what air takes */
+    tl_frame frame = tl_session_frame(session);
+    static const struct tl_render_settings unused;
+    struct tl_checked checked = {.number = 7, .frame = &frame, .settings = &unused, .fall = &fall};
+    assert_clean(&checked);
+    const struct tl_fall fell = fall;
+    fall.fallen_m *= 1.03;
+    assert_breaks(&checked, "cloth.fall", "garment");
+    fall = fell;
+    fall.sideways_m = 0.02;
+    assert_breaks(&checked, "cloth.fall", "sideways");
+    tl_session_destroy(&session);
+}
+
+int main(void)
+{
+    tl_log_set_level(TL_LOG_WARN);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(faults_of_cloth_are_named),
+        cmocka_unit_test(a_fall_is_measured),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
