@@ -60,7 +60,8 @@ static void widen_radii(struct tl_apart *apart, const vec3d *from, const vec3d *
     size_t count = apart->near.topology->vertex_count;
 #pragma omp parallel for if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
-        double wanted = WIDE * vec3d_distance(tl_affine_undo(&apart->back, to[i]), from[i]);
+        apart->way[i] = vec3d_sub(tl_affine_undo(&apart->back, to[i]), from[i]);
+        double wanted = WIDE * vec3d_norm(apart->way[i]);
         apart->radius[i] = tl_max(apart->radius[i], tl_min(wanted, WIDEST_SHARE * apart->size[i]));
     }
 }
@@ -126,15 +127,15 @@ struct found {
     } * tight; /* no plane separates them safely */
 };
 
-static void add_plane(struct found *found, uint32_t vertex, vec3d normal, double room, double radius)
+static void add_plane(struct found *found, uint32_t vertex, const struct tl_apart_plane *plane, double radius)
 {
-    if (room >= radius)
+    if (plane->room + tl_min(plane->gain, 0) >= radius)
         return;
     if (found->plane_count == found->plane_capacity) {
         found->plane_capacity = 2 * found->plane_capacity + 256;
         found->planes = tl_resize(found->planes, found->plane_capacity, sizeof *found->planes);
     }
-    found->planes[found->plane_count++] = (struct found_plane){vertex, {normal, tl_max(room, 0)}};
+    found->planes[found->plane_count++] = (struct found_plane){vertex, *plane};
 }
 
 static void add_tight(struct found *found, const struct tl_near_pair *pair, double distance)
@@ -148,31 +149,47 @@ static void add_tight(struct found *found, const struct tl_near_pair *pair, doub
     found->tight[found->tight_count++] = tight;
 }
 
+/* Heights of a pair's highest vertex of the first feature and lowest one of the second. */
+struct facing {
+    double below, above;
+};
+
+static struct facing facing_heights(const double heights[4], int second)
+{
+    struct facing facing = {-HUGE_VAL, HUGE_VAL};
+    for (int i = 0; i < second; i++)
+        facing.below = tl_max(facing.below, heights[i]);
+    for (int i = second; i < 4; i++)
+        facing.above = tl_min(facing.above, heights[i]);
+    return facing;
+}
+
 /* Puts the plane half way between the features, as the vertices themselves show it: so it separates them even
- * where the nearest points are rounded. */
+ * where the nearest points are rounded. At the substep's end it may be half way between where they want to
+ * be. */
 static void add_planes(const struct tl_apart *apart, const struct tl_near_pair *pair, const vec3d *x,
                        vec3d normal, double distance, struct found *found)
 {
     int second = tl_near_second(pair);
-    double heights[4], below = -HUGE_VAL, above = HUGE_VAL;
+    double heights[4], later[4];
     for (int i = 0; i < 4; i++) {
         heights[i] = vec3d_dot(normal, vec3d_sub(x[pair->v[i]], x[pair->v[0]]));
-        if (i < second)
-            below = tl_max(below, heights[i]);
-        else
-            above = tl_min(above, heights[i]);
+        later[i] = heights[i] + vec3d_dot(normal, apart->way[pair->v[i]]);
     }
-    if (!(above - below > UNPLANED_SHARE * distance)) {
+    const struct facing now = facing_heights(heights, second), then = facing_heights(later, second);
+    if (!(now.above - now.below > UNPLANED_SHARE * distance)) {
         add_tight(found, pair, distance);
         return;
     }
-    double middle = (below + above) / 2;
+    double middle = (now.below + now.above) / 2, step = (then.below + then.above) / 2 - middle;
     for (int i = 0; i < 4; i++) {
-        bool first = i < second;
-        double room = (first ? middle - heights[i] : heights[i] - middle) -
-                      tl_min(FLOOR_M, FLOOR_SHARE * apart->size[pair->v[i]]);
-        add_plane(found, pair->v[i], first ? normal : vec3d_scale(normal, -1), room,
-                  apart->radius[pair->v[i]]);
+        double side = i < second ? 1 : -1;
+        double room = side * (middle - heights[i]) - tl_min(FLOOR_M, FLOOR_SHARE * apart->size[pair->v[i]]);
+        const struct tl_apart_plane plane = {.normal = vec3d_scale(normal, side),
+                                             .room = tl_max(room, 0),
+                                             .gain = side * step,
+                                             .pair = (uint32_t)(pair - apart->near.pairs)};
+        add_plane(found, pair->v[i], &plane, apart->radius[pair->v[i]]);
     }
 }
 
@@ -421,8 +438,11 @@ static void add_body(const struct tl_apart *apart, const struct tl_apart_params 
 {
     struct tl_contact_height at;
     for (size_t i = 0; i < apart->near.topology->vertex_count && params->body; i++)
-        if (tl_contacts_height(params->body, i, x[i], params->phase, &at))
-            add_plane(found, (uint32_t)i, vec3d_scale(at.up, -1), at.height_m, apart->radius[i]);
+        if (tl_contacts_height(params->body, i, x[i], params->phase, &at)) {
+            const struct tl_apart_plane plane = {
+                .normal = vec3d_scale(at.up, -1), .room = tl_max(at.height_m, 0), .pair = TL_NONE};
+            add_plane(found, (uint32_t)i, &plane, apart->radius[i]);
+        }
 }
 
 static void find_planes(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
@@ -490,6 +510,7 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
         apart->velocity = (struct tl_affine){0};
     choose_radii(apart, x, params->h);
     tl_apart_set_time(apart, to ? params->h : 0);
+    memset(apart->way, 0, count * sizeof *apart->way);
     if (to)
         widen_radii(apart, x, to);
     double stretch = measure_list(apart, x);
@@ -502,7 +523,7 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
         apart->radius[i] = tl_min(apart->radius[i], (near->reach[i] - apart->off[i]) / stretch);
     find_planes(apart, params, x, stretch, still);
     apart->current = true;
-    apart->rim = apart->stopped = false;
+    apart->rim = apart->stopped = apart->spent = false;
     apart->substeps = to ? 1 : 0;
     apart->windows++;
 }
@@ -518,12 +539,11 @@ void tl_apart_renew(struct tl_apart *apart, const struct tl_apart_params *params
     make_window(apart, params, x, NULL, false);
 }
 
-void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params,
-                    const struct tl_particles *particles, bool still)
+void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
+                    const vec3d *to, bool still)
 {
     size_t count = apart->near.topology->vertex_count;
-    const vec3d *x = particles->x, *before = particles->previous;
     for (size_t i = 0; i < count; i++)
-        apart->speed[i] = vec3d_scale(vec3d_sub(x[i], before[i]), 1 / params->h);
-    make_window(apart, params, before, x, still);
+        apart->speed[i] = vec3d_scale(vec3d_sub(to[i], from[i]), 1 / params->h);
+    make_window(apart, params, from, to, still);
 }

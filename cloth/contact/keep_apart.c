@@ -12,8 +12,9 @@
 #define RIM_SUBSTEPS     2
 #define STOPPED_SUBSTEPS 5
 /* Farther past a plane, m, a vertex is not moved back before a new window has made sure that it must be:
- * planes stand still, and two features that move on together would be stopped by the plane between them. */
-#define CUT_M 2e-5
+ * planes stand still, and two features that move on together would be stopped by the plane between them. What
+ * is moved back loses its momentum. */
+#define CUT_M 5e-6
 /* m/s, at which depth from before a substep is removed; at most this many of the mesh's own sizes in a
  * second. */
 #define PUSH_SPEED 0.3
@@ -29,6 +30,8 @@ void tl_apart_release(struct tl_apart *apart)
     free(apart->speed);
     free(apart->base);
     free(apart->radius);
+    free(apart->way);
+    free(apart->left);
     free(apart->off);
     free(apart->plane_first);
     free(apart->planes);
@@ -77,6 +80,8 @@ void tl_apart_prepare(struct tl_apart *apart, const struct tl_apart_params *para
                                .speed = TL_NEW_ARRAY(vec3d, count),
                                .base = TL_NEW_ARRAY(vec3d, count),
                                .radius = TL_NEW_ARRAY(double, count),
+                               .way = TL_NEW_ARRAY(vec3d, count),
+                               .left = TL_NEW_ARRAY(vec3d, count),
                                .off = TL_NEW_ARRAY(double, count),
                                .plane_first = TL_NEW_ARRAY(uint32_t, count + 1)};
     measure_sizes(params->topology, params->rest, apart->size);
@@ -193,9 +198,8 @@ static bool sinks(const struct tl_apart_params *params, size_t i, vec3d from, ve
            tl_contacts_height(params->body, i, from, params->phase, &above) && at.height_m < above.height_m;
 }
 
-/* `last`: a vertex that wants to leave its ball, or far past a plane, is moved back too. */
 static void truncate_one(const struct tl_apart *apart, const struct tl_apart_params *params, size_t i,
-                         bool last, vec3d *x, struct truncation *seen)
+                         vec3d *x, struct truncation *seen)
 {
     double radius = apart->radius[i];
     vec3d d = vec3d_sub(tl_affine_undo(&apart->back, *x), apart->base[i]);
@@ -203,13 +207,13 @@ static void truncate_one(const struct tl_apart *apart, const struct tl_apart_par
     uint32_t from = apart->plane_first[i], to = apart->plane_first[i + 1];
     seen->rim |= squared > RIM_SHARE * RIM_SHARE * radius * radius;
     bool over = squared > radius * radius;
-    seen->over |= over && !last;
-    if ((over && !last) || (from == to && !over))
+    seen->over |= over;
+    if (over || from == to)
         return;
     vec3d kept = bounded(d, radius, apart->planes + from, to - from, &seen->stopped);
     bool cut = vec3d_distance(kept, d) > CUT_M;
-    seen->over |= cut && !last;
-    if ((cut && !last) || (kept.x == d.x && kept.y == d.y && kept.z == d.z))
+    seen->over |= cut;
+    if (cut || (kept.x == d.x && kept.y == d.y && kept.z == d.z))
         return;
     vec3d result = tl_affine_apply(&apart->moved, vec3d_add(apart->base[i], kept));
     seen->sunk |= sinks(params, i, *x, result);
@@ -217,7 +221,7 @@ static void truncate_one(const struct tl_apart *apart, const struct tl_apart_par
 }
 
 static struct truncation truncate_all(const struct tl_apart *apart, const struct tl_apart_params *params,
-                                      const bool *free, bool last, vec3d *x)
+                                      const bool *free, vec3d *x)
 {
     size_t count = apart->near.topology->vertex_count;
     bool rim = false, stopped = false, over = false, let_go = false, sunk = false;
@@ -225,7 +229,7 @@ static struct truncation truncate_all(const struct tl_apart *apart, const struct
     for (size_t i = 0; i < count; i++) {
         struct truncation seen = {.let_go = free && free[i]};
         if (!seen.let_go)
-            truncate_one(apart, params, i, last, &x[i], &seen);
+            truncate_one(apart, params, i, &x[i], &seen);
         rim = rim || seen.rim;
         stopped = stopped || seen.stopped;
         over = over || seen.over;
@@ -235,22 +239,124 @@ static struct truncation truncate_all(const struct tl_apart *apart, const struct
     return (struct truncation){rim, stopped, over, let_go, sunk};
 }
 
+/* ---- Planes that move ---- */
+
+/* Planes that stand still stop plies that move on together, the more, the thinner the plies are, and their
+ * momentum is lost. Within one substep each vertex goes a straight way, and so may each plane: what is on its
+ * side at the start and at the end is there at all times between. At the end, a plane is half way between
+ * where its two features want to be.
+ *
+ * A moving plane may leave a vertex no place, if others hold that back. All planes of that vertex then stand
+ * still, for the other vertices of their pairs too, which may find no place any more in turn. Where all
+ * planes of a vertex stand still, it can stay where it was. */
+
+/* Rounds of holding vertices back before all planes stand still. */
+#define HOLD_ROUNDS 16
+/* m, rounding of a displacement. */
+#define ON_PLANE_M 1e-12
+
+static bool is_kept(vec3d d, double radius, const struct tl_apart_plane *planes, size_t plane_count)
+{
+    bool kept = vec3d_norm(d) <= radius + ON_PLANE_M;
+    for (size_t k = 0; k < plane_count && kept; k++)
+        kept = vec3d_dot(d, planes[k].normal) <= planes[k].room + ON_PLANE_M;
+    return kept;
+}
+
+static bool has_held(const struct tl_apart *apart, const bool *held, uint32_t pair)
+{
+    const uint32_t *v = apart->near.pairs[pair].v;
+    return held[v[0]] || held[v[1]] || held[v[2]] || held[v[3]];
+}
+
+/* Stops the planes of all pairs with a vertex that is held; all planes if `held` is NULL. */
+static void stop_planes(struct tl_apart *apart, const bool *held)
+{
+    for (uint32_t k = 0; k < apart->plane_first[apart->near.topology->vertex_count]; k++) {
+        struct tl_apart_plane *plane = &apart->planes[k];
+        if (plane->pair == TL_NONE || (held && !has_held(apart, held, plane->pair)))
+            continue;
+        plane->room -= plane->gain;
+        plane->gain = 0;
+    }
+}
+
+/* Finds displacements `kept` [vertex] that all moving planes allow; returns whether each vertex has one, and
+ * marks in `held` those that have none. */
+static bool find_displacements(const struct tl_apart *apart, const vec3d *x, const bool *exempt, vec3d *kept,
+                               bool *held)
+{
+    bool found = true;
+    size_t count = apart->near.topology->vertex_count;
+#pragma omp parallel for reduction(&& : found) if (count >= TL_PARALLEL_VERTICES)
+    for (size_t i = 0; i < count; i++) {
+        const struct tl_apart_plane *planes = apart->planes + apart->plane_first[i];
+        size_t plane_count = apart->plane_first[i + 1] - apart->plane_first[i];
+        bool stopped = false;
+        vec3d d = vec3d_sub(tl_affine_undo(&apart->back, x[i]), apart->base[i]);
+        kept[i] = bounded(d, apart->radius[i], planes, plane_count, &stopped);
+        if ((exempt && exempt[i]) || held[i] || is_kept(kept[i], apart->radius[i], planes, plane_count))
+            continue;
+        held[i] = true;
+        found = false;
+    }
+    return found;
+}
+
+/* Afterwards the window's planes hold no more. Its contacts serve the next substep too, which makes a window
+ * when it ends. */
+static void truncate_moving(struct tl_apart *apart, const struct tl_apart_params *params, const bool *exempt,
+                            vec3d *x, struct truncation *seen)
+{
+    size_t count = apart->near.topology->vertex_count;
+    bool *held = TL_NEW_ARRAY(bool, count);
+    vec3d *kept = TL_NEW_ARRAY(vec3d, count);
+    for (uint32_t k = 0; k < apart->plane_first[count]; k++)
+        apart->planes[k].room += apart->planes[k].gain;
+    for (int round = 1; !find_displacements(apart, x, exempt, kept, held); round++)
+        stop_planes(apart, round < HOLD_ROUNDS ? held : NULL);
+    for (size_t i = 0; i < count; i++) {
+        if (exempt && exempt[i])
+            continue;
+        vec3d result = tl_affine_apply(&apart->moved, vec3d_add(apart->base[i], kept[i]));
+        seen->sunk |= sinks(params, i, x[i], result);
+        x[i] = result;
+    }
+    apart->spent = true;
+    free(held);
+    free(kept);
+}
+
+static struct truncation truncate_widely(struct tl_apart *apart, const struct tl_apart_params *params,
+                                         const bool *exempt, const vec3d *from, bool still, vec3d *x)
+{
+    tl_apart_widen(apart, params, from, x, still);
+    struct truncation seen = truncate_all(apart, params, exempt, x);
+    if (seen.over)
+        truncate_moving(apart, params, exempt, x, &seen);
+    return seen;
+}
+
 void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
                        struct tl_particles *particles)
 {
     if (!apart->current)
         return;
-    struct truncation seen = truncate_all(apart, params, free, false, particles->x);
-    if (seen.over) {
-        tl_apart_widen(apart, params, particles, false);
-        seen = truncate_all(apart, params, free, true, particles->x);
-    }
-    if (seen.sunk) {
-        tl_apart_widen(apart, params, particles, true);
-        seen = truncate_all(apart, params, free, true, particles->x);
-    }
+    /* Planes have moved in this substep, and what comes after it has moved vertices once more: from where
+     * they were left, so that none is moved back that stayed there. */
+    bool again = apart->spent && apart->substeps == 1;
+    const vec3d *from = again ? apart->left : particles->previous;
+    struct truncation seen = {.over = apart->spent};
+    if (!apart->spent)
+        seen = truncate_all(apart, params, free, particles->x);
+    if (seen.over)
+        seen = truncate_widely(apart, params, free, from, false, particles->x);
+    if (seen.sunk)
+        seen = truncate_widely(apart, params, free, from, true, particles->x);
+    if (apart->spent)
+        memcpy(apart->left, particles->x, particles->count * sizeof *particles->x);
     apart->clean = apart->clean && !seen.let_go;
-    apart->current = apart->current && !seen.let_go;
+    apart->current = apart->current && !seen.let_go && !again;
     apart->rim = apart->rim || seen.rim;
     apart->stopped = apart->stopped || seen.stopped;
 }

@@ -40,6 +40,8 @@
 struct tl_apart_plane {
     vec3d normal;
     double room;
+    double gain;   /* m, of room at the substep's end, if the plane moves on with its pair */
+    uint32_t pair; /* of the list; TL_NONE: a plane on the body */
 };
 
 /* The gap of a pair is normal . sum of weights[i] x[v[i]]; weights of the first feature are negative. */
@@ -87,6 +89,7 @@ struct tl_apart {
     bool made;                 /* near is that of the topology */
     bool current;              /* there is a window */
     bool rim, stopped;         /* a vertex has come near its ball's rim; a plane has stopped one */
+    bool spent;                /* its planes have moved, and hold for the present substep only */
     int substeps;              /* of the window so far */
     double time_s;             /* of the window so far */
     double longest_s;          /* that the common motion may be continued */
@@ -97,6 +100,8 @@ struct tl_apart {
     vec3d *speed;          /* [vertex] m/s, at the window's start */
     vec3d *base;           /* [vertex] m */
     double *radius;        /* [vertex] m, of the balls */
+    vec3d *way;            /* [vertex] m, from base to where the vertex wants to be; 0 unless widened */
+    vec3d *left;           /* [vertex] m, positions after the last truncation by planes that moved */
     double *off;           /* [vertex] m, from the list's base, common motion taken out */
     uint32_t *plane_first; /* [vertex + 1] */
     size_t plane_capacity;
@@ -138,18 +143,19 @@ void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params
 void tl_apart_carry(struct tl_apart *apart, const struct tl_apart_params *params,
                     struct tl_particles *particles);
 
-/* Makes a window in the middle of a substep, at the positions before it, whose balls hold the present ones.
- * If it is `still`, it knows no common motion, and no vertex enters the body that was outside before. */
-void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params,
-                    const struct tl_particles *particles, bool still);
+/* Makes a window in the middle of a substep, at positions `from`, whose balls hold the positions `to`. If it
+ * is `still`, it knows no common motion, and no vertex enters the body that was outside before. */
+void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
+                    const vec3d *to, bool still);
 
 /* Sets the window's time, and its common motion's place at that time. */
 void tl_apart_set_time(struct tl_apart *apart, double time_s);
 
 /* Moves every vertex back that has passed a plane. Where vertices want to leave their balls, or far past a
  * plane, a new window is made first, about this substep's start and as wide as its ways, so that only what
- * would meet within the substep is held back. If there are `free` ones (NULL: none), these are left where
- * they are, and crossings are searched from then on until there are none. */
+ * would meet within the substep is held back. Where vertices are far past a plane of that too, planes move
+ * on with their pairs during the substep (keep_apart.c). If there are `free` ones (NULL: none), these are
+ * left where they are, and crossings are searched from then on until there are none. */
 void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
                        struct tl_particles *particles);
 
