@@ -52,14 +52,66 @@ static struct tl_material_params params_of(const tl_material *material)
     return params;
 }
 
+/* Whether light from inside threads is a lobe of its own (tl_thread), instead of a part of the surface's. */
+static bool has_threads(const struct tl_material_params *params)
+{
+    return params->model != TL_REFLECT_PHONG && params->thread > 0 && params->thread_along > 0 &&
+           params->thread_across > 0;
+}
+
+/* The share of the colour that threads send back as gloss. The rest is even, and the lobes' colours are told
+ * as ratios to it, so it cannot be nothing. */
+static float thread_share(const struct tl_material_params *params)
+{
+    return has_threads(params) ? fminf(params->thread, 0.95f) : params->thread;
+}
+
+/* The colour of warps or wefts. */
+static vec3s system_colour(const struct tl_material_params *params, bool is_weft)
+{
+    const float *weft = params->weft_colour;
+    const bool is_given = weft[0] > 0 || weft[1] > 0 || weft[2] > 0;
+    const float *colour = is_weft && is_given ? weft : params->diffuse;
+    return (vec3s){{colour[0], colour[1], colour[2]}};
+}
+
+static vec3s cloth_colour(const struct tl_material_params *params)
+{
+    if (!has_threads(params))
+        return system_colour(params, false);
+    return glms_vec3_lerp(system_colour(params, true), system_colour(params, false), params->warp_share);
+}
+
+static vec3s even_colour(const struct tl_material_params *params)
+{
+    return glms_vec3_scale(cloth_colour(params), 1 - thread_share(params));
+}
+
+/* Warps run along v, so their band is narrow along it; that of the wefts is turned by a right angle. */
+static void add_thread(const struct tl_material_params *params, bool is_weft, tl_material *material)
+{
+    const float area = is_weft ? 1 - params->warp_share : params->warp_share;
+    if (!(area > 0))
+        return;
+    const vec3s colour = system_colour(params, is_weft), even = even_colour(params);
+    struct tl_thread *thread = &material->threads[material->thread_count++];
+    for (int c = 0; c < 3; c++)
+        thread->ratio.raw[c] =
+            even.raw[c] > 0 ? area * thread_share(params) * colour.raw[c] / even.raw[c] : 0;
+    thread->width_weft = is_weft ? params->thread_along : params->thread_across;
+    thread->width_warp = is_weft ? params->thread_across : params->thread_along;
+}
+
 static void set_params(const struct tl_material_params *params, tl_material *material)
 {
-    memcpy(material->diffuse.raw, params->diffuse, sizeof material->diffuse.raw);
-    memcpy(material->specular.raw, params->specular, sizeof material->specular.raw);
     memcpy(material->transmission.raw, params->transmission, sizeof material->transmission.raw);
+    material->diffuse = even_colour(params);
+    material->thread_count = 0;
+    for (int weft = 0; has_threads(params) && weft < 2; weft++)
+        add_thread(params, weft == 1, material);
     for (int c = 0; c < 3; c++) { /* light from inside a thread is gloss of the thread's colour */
-        material->specular.raw[c] = fminf(params->specular[c] + params->thread * params->diffuse[c], 1);
-        material->diffuse.raw[c] = (1 - params->thread) * params->diffuse[c];
+        const float joined = has_threads(params) ? 0 : params->thread * params->diffuse[c];
+        material->specular.raw[c] = fminf(params->specular[c] + joined, 1);
         material->fuzz.colour.raw[c] = params->fuzz * params->fuzz_colour[c];
     }
     material->fuzz.roughness = params->fuzz_roughness;
@@ -77,8 +129,9 @@ static void set_back(const struct tl_material_params *params, tl_material *mater
     if (!material->back.is_given)
         return;
     for (int c = 0; c < 3; c++) {
-        material->back.diffuse.raw[c] = (1 - params->thread) * params->back[c];
-        material->back.specular.raw[c] = fminf(params->specular[c] + params->thread * params->back[c], 1);
+        const float joined = has_threads(params) ? 0 : params->thread * params->back[c];
+        material->back.diffuse.raw[c] = (1 - thread_share(params)) * params->back[c];
+        material->back.specular.raw[c] = fminf(params->specular[c] + joined, 1);
     }
 }
 
@@ -128,7 +181,7 @@ static void set_fabric(struct tl_appearance *appearance, const struct tl_materia
     vec3s file_diffuse = material->diffuse;
     set_params(fabric, material);
     if (material->diffuse_map.image && fabric->on_print == TL_ON_PRINT_KEEP)
-        material->diffuse = file_diffuse;
+        material->diffuse = glms_vec3_scale(file_diffuse, has_threads(fabric) ? 1 - thread_share(fabric) : 1);
     if (fabric->on_print == TL_ON_PRINT_REPLACE)
         drop_print(appearance, material);
     material->gloss_map.image = NULL;
@@ -199,8 +252,8 @@ static bool finish(struct tl_appearance *appearance, const struct tl_settings *s
         made.weave = weave;
     if (making->is_plain)
         drop_print(appearance, &made);
-    for (int c = 0; c < 3 && (making->is_dyed || making->is_plain); c++)
-        made.diffuse.raw[c] = (1 - making->params.thread) * making->params.diffuse[c];
+    if (making->is_dyed || making->is_plain)
+        made.diffuse = even_colour(&making->params);
     set_back(&making->params, &made);
     set_construction(&settings->construction, &made);
     *out = made;

@@ -45,6 +45,14 @@ bool tl_material_is_layered(const tl_material *material)
            tl_material_has_fuzz(material) || tl_material_transmits(material);
 }
 
+vec3s tl_material_colour(const tl_material *material)
+{
+    vec3s colour = material->diffuse;
+    for (int i = 0; i < material->thread_count; i++)
+        colour = glms_vec3_muladd(material->diffuse, material->threads[i].ratio, colour);
+    return glms_vec3_minv(colour, glms_vec3_one());
+}
+
 bool tl_material_has_fuzz(const tl_material *material)
 {
     return glms_vec3_max(material->fuzz.colour) > 0;

@@ -116,12 +116,23 @@ struct tl_fuzz {
     float roughness; /* [0.4, 1]; smaller: closer to the silhouette */
 };
 
+/* One system of threads, of which light that has been inside comes back as a lobe of its own that follows the
+ * thread: render/brdf/brdf.h. Needs a gloss of facets, because it lies in the same frame. */
+#define TL_THREADS_MAX 2
+struct tl_thread {
+    vec3s ratio;      /* of the lobe's colour to the diffuse colour, by channel */
+    float width_weft; /* as of tl_gloss, of the lobe; narrow along the thread */
+    float width_warp;
+};
+
 typedef struct tl_material {
     char name[64];
     vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
     vec3s specular;   /* F0: reflectance at normal incidence; [0, 1] */
     float glossiness; /* g in [0, 1] */
     struct tl_gloss gloss;
+    int thread_count; /* 0: all gloss is `specular` */
+    struct tl_thread threads[TL_THREADS_MAX];
     float coat;            /* share of the surface under a clear coat: Lo = F Lm + (1 - F) Lbase; [0, 1] */
     float coat_glossiness; /* g of the coat's own lobe; its index is 1.5 */
     vec3s transmission;    /* share of light scattered through to the other side, diffusely; [0, 1] */
@@ -151,6 +162,8 @@ tl_material tl_material_default(const char *name);
 /* Whether the material has more than two cosine lobes about the normal and the mirror direction: microfacets,
  * a coat, fuzz, or transmission. */
 bool tl_material_is_layered(const tl_material *material);
+/* The even light of the material and that of its threads: its colour from afar. */
+vec3s tl_material_colour(const tl_material *material);
 /* Whether fibres stand on it. */
 bool tl_material_has_fuzz(const tl_material *material);
 /* Whether seams or hems are drawn. */

@@ -278,6 +278,7 @@ void tell_what_is_left_out(const tl_material &from, bool metal, const char *path
     std::string left;
     const std::pair<bool, const char *> parts[] = {
         {from.gloss.model != TL_REFLECT_PHONG && !is_stretched(from), "its reflectance model"},
+        {from.thread_count > 0, "the bands of light from inside its threads"},
         {from.openness > 0 && from.alpha_cutoff > 0, "its openness beside its mask"},
         {metal && glms_vec3_max(from.transmission) > 0, "transmission of a metal"},
         {from.weave != nullptr, "its weave"},
@@ -321,12 +322,13 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
 {
     tinygltf::Material to;
     to.name = from.name;
-    bool metal = glms_vec3_max(from.diffuse) < 0.5f * glms_vec3_max(from.specular);
+    const vec3s diffuse = tl_material_colour(&from);
+    bool metal = glms_vec3_max(diffuse) < 0.5f * glms_vec3_max(from.specular);
     vec3s f0 = from.specular;
     if (is_stretched(from))
         f0 = glms_vec3_divs(f0, model_ward_factor(from.gloss.width_weft, from.gloss.width_warp));
     double scattered_back = metal ? 1 : 1 - add_transmission(writer, from, to);
-    const vec3s &base = metal ? f0 : from.diffuse;
+    const vec3s &base = metal ? f0 : diffuse;
     to.pbrMetallicRoughness.baseColorFactor.clear();
     for (float channel : base.raw)
         to.pbrMetallicRoughness.baseColorFactor.push_back(

@@ -64,6 +64,46 @@ struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float gloss
     return brdf;
 }
 
+/* A thread's lobe is as wide as its own widths say, and widened as the surface's lobe is. */
+static struct tl_brdf thread_of(const tl_material *material, const struct tl_thread *thread, vec3s f0,
+                                vec3s kd, float glossiness, const float widening[2])
+{
+    struct tl_brdf brdf = {.gloss = {.model = TL_REFLECT_WARD,
+                                     .ward = TL_WARD_BOUNDED,
+                                     .width_weft = thread->width_weft,
+                                     .width_warp = thread->width_warp,
+                                     .rotation = material->gloss.rotation,
+                                     .index = 1},
+                           .f0 = f0,
+                           .exponent = tl_lobe_exponent(finite_or(glossiness, 0)),
+                           .is_inside = true,
+                           .colour = glms_vec3_mul(thread->ratio, kd)};
+    float own = square_of(tl_lobe_exponent(finite_or(material->glossiness, 0)));
+    widen(&brdf.gloss, own, 0, widening);
+    for (int c = 0; c < 3; c++)
+        brdf.colour.raw[c] = fminf(fmaxf(finite_or(brdf.colour.raw[c], 0), 0), 1);
+    return brdf;
+}
+
+struct tl_brdf_sum tl_brdf_sum_of(const tl_material *material, vec3s f0, vec3s kd, float glossiness,
+                                  const float widening[2])
+{
+    struct tl_brdf_sum sum = {.count = 1};
+    sum.items[0] = tl_brdf_bumped(material, f0, glossiness, widening);
+    for (int i = 0; i < material->thread_count; i++)
+        sum.items[sum.count++] =
+            thread_of(material, &material->threads[i], sum.items[0].f0, kd, glossiness, widening);
+    return sum;
+}
+
+vec3s tl_brdf_sum_gloss(const struct tl_brdf_sum *sum, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
+{
+    vec3s gloss = tl_brdf_gloss(&sum->items[0], frame, l, v);
+    for (int i = 1; i < sum->count; i++)
+        gloss = glms_vec3_add(gloss, tl_brdf_gloss(&sum->items[i], frame, l, v));
+    return gloss;
+}
+
 /* P(w^2) is the integral of 2 d exp(-(d/w)^2) cos d sin d / (d w^2) over d in [0, pi/2]. It is 1 for
  * narrow facets. This polynomial interpolates it at five Chebyshev nodes of w^2 in [0, 1], with an error
  * below 1e-4. */
@@ -187,6 +227,10 @@ vec3s tl_brdf_fresnel(const struct tl_brdf *brdf, float cosine)
 {
     const struct tl_gloss *gloss = &brdf->gloss;
     vec3s reflectance = brdf->f0;
+    for (int c = 0; brdf->is_inside && c < 3; c++)
+        reflectance.raw[c] = brdf->colour.raw[c] * (1 - tl_fresnel_schlick(brdf->f0.raw[c], cosine));
+    if (brdf->is_inside)
+        return reflectance;
     if (gloss->fresnel == TL_FRESNEL_DIELECTRIC)
         return glms_vec3_scale(reflectance, tl_fresnel_dielectric(gloss->index, cosine));
     if (gloss->fresnel == TL_FRESNEL_CONDUCTOR)

@@ -42,6 +42,8 @@ struct tl_brdf {
     struct tl_gloss gloss; /* with both widths resolved: neither is 0 */
     vec3s f0;
     float exponent; /* s = 1 / (1 - g) */
+    bool is_inside; /* light that has been inside a thread: `colour` (1 - F) for F */
+    vec3s colour;
 };
 
 /* The model of a material where its maps give glossiness g and reflectance f0. A width of 0 becomes sqrt(2 /
@@ -53,6 +55,26 @@ struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossines
  * `widening` (tl_bump_statistics_widening) instead. */
 struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness,
                               const float widening[2]);
+
+/* The gloss of cloth of which light comes back from the threads' surface, white, and from their inside,
+ * coloured [Sadeghi, Bisker, De Deken and Jensen 2013 measure both; their cylinders are not used here]:
+ *
+ *     f_r cos a = F W_surface + sum over the systems of threads of colour (1 - F) W_thread
+ *
+ * W is a lobe with F = 1: of the material's own model, and WARD bounded for the threads, whose widths are
+ * narrow along the thread and broad across it. F is Schlick's, from the same f0, at h.l of each. So the sum
+ * is reciprocal where the surface's model is, and where the colours add up to at most 1 its albedo is at most
+ * that of the larger of two lobes that each reflect at most all light, but for the different facets at which
+ * the two take F; tests/render/brdf/test_threads.c measures it. */
+struct tl_brdf_sum {
+    int count; /* 1: no threads */
+    struct tl_brdf items[1 + TL_THREADS_MAX];
+};
+/* Of a point where maps give f0, the diffuse colour kd, glossiness and widening (tl_brdf_bumped). */
+struct tl_brdf_sum tl_brdf_sum_of(const tl_material *material, vec3s f0, vec3s kd, float glossiness,
+                                  const float widening[2]);
+/* f_r cos a of all of them. */
+vec3s tl_brdf_sum_gloss(const struct tl_brdf_sum *sum, const struct tl_brdf_frame *frame, vec3s l, vec3s v);
 
 /* f_r cos a by channel; 0 where light or viewer lie below the surface. Finite for all finite input. */
 vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v);

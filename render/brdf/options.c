@@ -22,6 +22,20 @@ static const struct tl_option material_rows[] = {
         "share of the diffuse colour that threads send back as gloss, because light has been inside "
         "them; larger: more contrast, as of satin"),
     TL_OPTION_FLOAT(
+        material_params, thread_along, AFFECTS, 0, 1, "",
+        "root mean square slope, along the thread, of the band of light that has been inside threads; "
+        "it is coloured and lies under the white light of specular; 0: one lobe for both; not with "
+        "model phong"),
+    TL_OPTION_FLOAT(material_params, thread_across, AFFECTS, 0, 1, "", "the same across the thread"),
+    TL_OPTION_FLOAT(
+        material_params, warp_share, AFFECTS, 0, 1, "",
+        "thread_along: share of the surface in warps, which run along v; the rest is wefts, whose band "
+        "is turned by a right angle"),
+    TL_OPTION_COLOUR(
+        material_params, weft_colour, AFFECTS, 0, 1,
+        "thread_along: diffuse albedo of the wefts where it differs from that of the warps, diffuse, "
+        "as in shot silk; 0 0 0: the same"),
+    TL_OPTION_FLOAT(
         material_params, glossiness, AFFECTS, 0, 1, "",
         "0: reflects in all directions, 1: a mirror; the exponent of the lobe is 1 / (1 - glossiness)"),
     TL_OPTION_ENUM(material_params, model, AFFECTS, model_names, "reflectance model of the glossy lobe"),
@@ -68,7 +82,8 @@ static const struct tl_option material_rows[] = {
 };
 #define DEFAULTS                                                                                             \
     .use_file = true, .diffuse = {0.5f, 0.5f, 0.5f}, .specular = {0.04f, 0.04f, 0.04f}, .glossiness = 0.5f,  \
-    .index = 1.5f, .coat_glossiness = 0.95f, .fuzz_colour = {1, 1, 1}, .fuzz_roughness = 0.5f
+    .warp_share = 1, .index = 1.5f, .coat_glossiness = 0.95f, .fuzz_colour = {1, 1, 1},                      \
+    .fuzz_roughness = 0.5f
 
 const struct tl_option_table tl_material_options =
     TL_OPTION_TABLE("material", "appearance of the garment: a diffuse and a glossy lobe", material_rows,

@@ -10,7 +10,10 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
     float diffuse[3];
     float specular[3];
-    float thread; /* share of `diffuse` that is sent back as gloss */
+    float thread;                      /* share of `diffuse` that is sent back as gloss */
+    float thread_along, thread_across; /* slopes of a lobe of its own for that; 0: it joins `specular` */
+    float warp_share;                  /* of the surface, in warps; the rest is wefts */
+    float weft_colour[3];              /* diffuse colour of the wefts; 0: as the warps, `diffuse` */
     float glossiness;
     int model, facets, masking, ward, fresnel; /* as struct tl_gloss */
     float index, extinction;

@@ -69,6 +69,25 @@ static uint32_t exponents_between(float least, float greatest)
                                1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
 }
 
+/* The exponents of the lobes of light from inside threads: from as narrow as they are to as wide as bumps can
+ * make any, where `low` says that there are such. */
+static uint32_t thread_exponents(const tl_material *material, float low, float high)
+{
+    const float none[2] = {0, 0}, all[2] = {1, 1}, *widest = low < material->glossiness ? all : none;
+    const struct tl_brdf_sum narrow =
+        tl_brdf_sum_of(material, material->specular, material->diffuse, high, none);
+    const struct tl_brdf_sum wide =
+        tl_brdf_sum_of(material, material->specular, material->diffuse, low, widest);
+    uint32_t needed = 0;
+    for (int i = 1; i < narrow.count; i++) {
+        float least, greatest, unused;
+        tl_lobe_fit_exponents(&wide.items[i], &least, &unused);
+        tl_lobe_fit_exponents(&narrow.items[i], &unused, &greatest);
+        needed |= exponents_between(least, greatest);
+    }
+    return needed;
+}
+
 /* The exponents that a material's lobes beyond the first two need. */
 static uint32_t layered_exponents(const tl_material *material, float low, float high)
 {
@@ -84,7 +103,7 @@ static uint32_t layered_exponents(const tl_material *material, float low, float 
     struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
     tl_lobe_fit_exponents(&dull, &least, &unused);
     tl_lobe_fit_exponents(&shiny, &unused, &greatest);
-    return needed | exponents_between(least, greatest);
+    return needed | exponents_between(least, greatest) | thread_exponents(material, low, high);
 }
 
 uint32_t tl_exponents_of(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail)

@@ -26,13 +26,12 @@ struct sums {
 };
 
 /* The lobes of a sample beyond the two: a multi-lobe fit, and a coat. Environment's frame. */
-#define LOBES_MAX (TL_LOBE_FIT_MAX + 1)
+#define LOBES_MAX ((1 + TL_THREADS_MAX) * TL_LOBE_FIT_MAX + 1)
 struct lobes {
     int count;
     struct tl_fitted_lobe items[LOBES_MAX];
-    int facets; /* so many of them stand for `brdf`, which suns shine on themselves; the next one is the coat
-                 */
-    struct tl_brdf brdf;
+    int facets; /* so many of them stand for `gloss`, which suns shine on itself; the next one is the coat */
+    struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame;
     vec3s viewer;
     float base; /* what coat and fuzz leave */
@@ -305,11 +304,14 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
     const vec4s stored = tl_sample_tangent(sample, request->ranges);
     vec3s tangent = into_environment(block, (vec3s){{stored.x, stored.y, stored.z}});
     vec3s normal = into_environment(block, sample->normal);
-    lobes->brdf = tl_brdf_bumped(material, sample->specular, sample->glossiness, sample->widening);
+    lobes->gloss =
+        tl_brdf_sum_of(material, sample->specular, sample->diffuse, sample->glossiness, sample->widening);
     float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
-    lobes->facets =
-        tl_lobe_fit_make(&lobes->brdf, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
+    lobes->facets = 0;
+    for (int i = 0; i < lobes->gloss.count; i++)
+        lobes->facets += tl_lobe_fit_make(&lobes->gloss.items[i], &lobes->frame, lobes->viewer,
+                                          request->params->fan, &lobes->items[lobes->facets]);
     for (int k = 0; k < lobes->facets; k++)
         lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
     lobes->count = lobes->facets;
@@ -387,7 +389,8 @@ TL_INLINE void see_lobes(const struct block *block, size_t index, const struct l
 {
     const struct tl_compose_request *request = block->request;
     const struct tl_region_lights *lights = request->lights;
-    float sums[LOBES_MAX][3][TL_LANES] = {0};
+    float sums[LOBES_MAX][3][TL_LANES];
+    memset(sums, 0, (size_t)lobes->count * sizeof sums[0]);
     for (int g = 0; g < lights->group_count; g++) {
         const struct tl_region_group *group = &lights->groups[g];
         if (glms_vec3_dot(group->axis, smooth) < -group->reach_sine)
@@ -416,10 +419,11 @@ static vec3s sun_on_lobes(const struct block *block, size_t index, const struct 
         const struct tl_sun *sun = &request->suns->items[i];
         const float *visibility = request->sun_visibility[i];
         vec3s gloss = {{0, 0, 0}};
-        if (lobes->facets > 0)
-            gloss = glms_vec3_scale(tl_brdf_gloss_under_disc(&lobes->brdf, &lobes->frame, sun->direction,
-                                                             lobes->viewer, sun->radius),
-                                    lobes->base);
+        for (int k = 0; lobes->facets > 0 && k < lobes->gloss.count; k++)
+            gloss =
+                glms_vec3_add(gloss, tl_brdf_gloss_under_disc(&lobes->gloss.items[k], &lobes->frame,
+                                                              sun->direction, lobes->viewer, sun->radius));
+        gloss = glms_vec3_scale(gloss, lobes->base);
         if (lobes->count > lobes->facets) {
             const struct tl_fitted_lobe *coat = &lobes->items[lobes->facets];
             float exponent = lobe_broadened_exponent(coat->exponent, sun->radius * GLM_SQRT1_2f);

@@ -5,6 +5,10 @@
 #include "tables.glsl"
 
 layout(location = 71) uniform vec2 gloss_optics; // index, extinction
+#ifdef THREADS
+layout(location = 88) uniform vec2 thread_widths[THREADS]; // along weft and warp without maps
+layout(location = 90) uniform vec3 thread_ratios[THREADS]; // of their light to the diffuse colour
+#endif
 
 const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
 const int GAUSSIAN = 0, BECKMANN = 1;
@@ -20,10 +24,14 @@ float lobe_exponent(float glossiness)
 }
 
 // The material's widths, with what maps and bumps add to their squares along weft and warp (tl_brdf_bumped).
+vec2 widened(vec2 widths, vec2 widening)
+{
+    return clamp(sqrt(max(widths * widths + widening, 0.0)), 1e-3, 1.0);
+}
+
 vec2 widths_of(vec2 widening)
 {
-    vec2 square = gloss_widths.xy * gloss_widths.xy;
-    return clamp(sqrt(max(square + widening, 0.0)), 1e-3, 1.0);
+    return widened(gloss_widths.xy, widening);
 }
 
 float fresnel_dielectric(float index, float cosine)
@@ -105,12 +113,12 @@ float masked(Cosines c, float width)
     return g / (PI * c.b);
 }
 
-float ward(Cosines c, vec2 widths)
+float ward(Cosines c, vec2 widths, bool is_bounded)
 {
     vec2 slope = c.half_plane / (widths * c.half_normal);
     float facets = exp(-dot(slope, slope)) / (4.0 * PI * widths.x * widths.y);
     float steep = c.t * c.half_normal * c.half_normal;
-    if (WARD_FORM == BOUNDED)
+    if (is_bounded)
         return facets > 0.0 ? facets * c.a / (steep * steep) : 0.0;
     return facets * sqrt(c.a / c.b);
 }
@@ -137,7 +145,7 @@ float lobe(Cosines c, float s, vec2 widening)
         return facets(c.half_sine2 / (c.half_normal * c.half_normal), width) * masked(c, width);
     }
     if (MODEL == WARD)
-        return ward(c, widths_of(widening));
+        return ward(c, widths_of(widening), WARD_FORM == BOUNDED);
     if (MODEL == BLINN_PHONG)
         return (4.0 * s + 2.0) / (8.0 * PI) * power(c.half_normal, c.half_sine2, 4.0 * s);
     if (MODEL == BANKS) {
@@ -159,4 +167,20 @@ vec3 gloss(Cosines c, vec3 f0, float s, vec2 widening)
 #else
     return fresnel(f0, c) * lobe(c, s, widening);
 #endif
+}
+
+// Light that has been inside threads (tl_brdf_sum_of of brdf.h); `widening` along weft and warp as Ward's facets have it.
+vec3 inside_threads(Cosines c, vec3 f0, vec3 kd, vec2 widening)
+{
+    vec3 sent = vec3(0.0);
+#ifdef THREADS
+    if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
+        return sent;
+    float away = 1.0 - clamp(c.t, 0.0, 1.0), away2 = away * away;
+    vec3 surface = f0 + (min(50.0 * f0, vec3(1.0)) - f0) * (away2 * away2 * away);
+    for (int i = 0; i < THREADS; i++)
+        sent += clamp(thread_ratios[i] * kd, 0.0, 1.0) * ward(c, widened(thread_widths[i], widening), true);
+    sent *= 1.0 - surface;
+#endif
+    return sent;
 }

@@ -15,8 +15,8 @@ struct lit {
     const tl_material *material;
     vec3s viewer;
     float base, coat; /* fractions of the material below the coat and of the reflection by the coat */
-    bool faceted;     /* gloss is `brdf` instead of K_s about the mirror direction */
-    struct tl_brdf brdf;
+    bool faceted;     /* gloss is `gloss` instead of K_s about the mirror direction */
+    struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame;
 };
 
@@ -39,7 +39,8 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
     if (lit.faceted) {
         const vec4s tangent = tl_sample_tangent(sample, request->ranges);
         float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
-        lit.brdf = tl_brdf_bumped(lit.material, sample->specular, sample->glossiness, sample->widening);
+        lit.gloss = tl_brdf_sum_of(lit.material, sample->specular, sample->diffuse, sample->glossiness,
+                                   sample->widening);
         lit.frame = tl_brdf_frame_make(sample->normal, (vec3s){{tangent.x, tangent.y, tangent.z}}, tangent.w,
                                        side * lit.material->gloss.rotation);
     }
@@ -50,7 +51,7 @@ static vec3s gloss_of(const struct lit *lit, vec3s l)
 {
     const tl_sample *sample = lit->sample;
     if (lit->faceted)
-        return tl_brdf_gloss(&lit->brdf, &lit->frame, l, lit->viewer);
+        return tl_brdf_sum_gloss(&lit->gloss, &lit->frame, l, lit->viewer);
     return glms_vec3_scale(sample->specular, tl_lobe_cosine(tl_lobe_exponent(sample->glossiness),
                                                             glms_vec3_dot(sample->mirror, l)));
 }

@@ -29,7 +29,9 @@ enum {
     TABLE_SCALES = 83,
     EMISSION = 84,
     EMISSION_ROWS = 85,
-    LAMP_FUZZ = 87
+    LAMP_FUZZ = 87,
+    THREAD_WIDTHS = 88, /* two of each */
+    THREAD_RATIOS = 90
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -152,6 +154,8 @@ static void define_all(const struct tl_local_request *request, const struct lit_
         define(defines, "COAT");
     if (tl_material_has_fuzz(part->material))
         define(defines, "FUZZ");
+    if (part->material->thread_count > 0)
+        define(defines, part->material->thread_count > 1 ? "THREADS 2" : "THREADS 1");
     if (pass->define)
         define(defines, pass->define);
     size_t length = strlen(defines);
@@ -215,6 +219,11 @@ static void set_gloss(const tl_material *material)
     glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
                 1 - material->openness);
     glUniform2f(GLOSS_OPTICS, gloss->index, gloss->extinction);
+    for (int i = 0; i < material->thread_count; i++) {
+        const struct tl_thread *thread = &material->threads[i];
+        glUniform2f(THREAD_WIDTHS + i, thread->width_weft, thread->width_warp);
+        glUniform3fv(THREAD_RATIOS + i, 1, thread->ratio.raw);
+    }
     if (tl_material_has_fuzz(material)) {
         const struct tl_fuzz *fuzz = &material->fuzz;
         glUniform4f(LAMP_FUZZ, fuzz->colour.x, fuzz->colour.y, fuzz->colour.z, fuzz->roughness);

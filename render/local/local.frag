@@ -161,17 +161,21 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 }
 #endif
 
-// What maps and bumps add to squared widths along weft and warp; `rough` is the roughness of all lobes that are round.
-vec2 widening_here(float rough)
+// What maps and bumps add to squared widths along weft and warp.
+vec2 thread_widening_here()
 {
     float own_rough = 1.0 - material_scalars.x;
-    if (MODEL != WARD)
-        return vec2(detail_widening(own_rough, rough, 0.0));
     float yarn_rough = 1.0 - glossiness(place.uv);
     vec2 wider = bumpy ? detail_widenings(own_rough, yarn_rough, bumps)
                        : vec2(detail_widening(own_rough, yarn_rough, 0.0));
     vec2 shares = gloss_widths.zw * gloss_widths.zw; // spreads are along u and v, widths along the threads
     return vec2(dot(wider, shares), dot(wider, shares.yx));
+}
+
+// The same for the model's facets; `rough` is the roughness of all lobes that are round.
+vec2 widening_here(float rough)
+{
+    return MODEL == WARD ? thread_widening_here() : vec2(detail_widening(1.0 - material_scalars.x, rough, 0.0));
 }
 
 // Unshadowed reflected light divided by the irradiance.
@@ -194,6 +198,9 @@ vec3 reflected(float side, vec3 smooth_normal)
     if (bumpy)
         rough = detail_rough(rough, bumps, view);
     vec3 shine = gloss(c, specular_f0(place.uv), lobe_exponent(1.0 - rough), widening_here(rough));
+#endif
+#ifdef THREADS
+    shine += inside_threads(c, specular_f0(place.uv), kd, thread_widening_here());
 #endif
     vec3 light = kd * (max(c.a, 0.0) / PI) + shine;
     return shown > 0.0 ? shown * light : vec3(0.0);

@@ -184,9 +184,12 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
     }
     if (layers->faceted) {
         vec3s viewer = gather->points->viewer[i];
-        vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
-        float pdf = tl_brdf_pdf(&layers->brdf, &layers->frame, direction, viewer);
-        share = glms_vec3_add(share, glms_vec3_scale(gloss, layers->base / (sample_pdf + count * pdf)));
+        for (int k = 0; k < layers->gloss.count; k++) {
+            const struct tl_brdf *brdf = &layers->gloss.items[k];
+            vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);
+            float pdf = tl_brdf_pdf(brdf, &layers->frame, direction, viewer);
+            share = glms_vec3_add(share, glms_vec3_scale(gloss, layers->base / (sample_pdf + count * pdf)));
+        }
     }
     if (glms_vec3_max(layers->fuzz.colour) > 0) { /* broad: the environment's samples are enough */
         float fibres =
@@ -389,24 +392,25 @@ static void gather_coats(struct gather *gather, int sample)
     trace_batch(gather, &batch);
 }
 
-/* Adds one sample of the facets of each point. */
-static void gather_facets(struct gather *gather, int sample)
+/* Adds one sample of lobe `lobe` of the facets of each point that has so many. */
+static void gather_facets(struct gather *gather, int sample, int lobe)
 {
     const struct tl_gather_request *request = gather->request;
     struct ray_batch batch;
     begin_batch(&batch, false);
     for (int i = 0; i < gather->points->count; i++) {
         const struct tl_shading_layers *layers = &gather->points->layers[i];
-        if (!gather->points->layered[i] || !layers->faceted)
+        if (!gather->points->layered[i] || !layers->faceted || lobe >= layers->gloss.count)
             continue;
         float pdf;
+        const struct tl_brdf *brdf = &layers->gloss.items[lobe];
         vec3s viewer = gather->points->viewer[i];
         vec2s numbers = lobe_numbers(gather, i, sample);
-        vec3s direction = tl_brdf_sample(&layers->brdf, &layers->frame, viewer, numbers.x, numbers.y, &pdf);
+        vec3s direction = tl_brdf_sample(brdf, &layers->frame, viewer, numbers.x, numbers.y, &pdf);
         if (!(pdf > 0) || !(dot_of(gather->points->horizon, i, direction) > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
-        vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
+        vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);
         float sample_pdf = (float)request->strata * sky.pdf + (float)request->lobe_samples * pdf;
         vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, layers->base / sample_pdf));
         if (!is_dark(light))
@@ -421,7 +425,8 @@ static void gather_layers(struct gather *gather)
         gather_transmitted(gather, &gather->request->sky[i]);
     for (int i = 0; i < gather->request->lobe_samples; i++) {
         gather_coats(gather, i);
-        gather_facets(gather, i);
+        for (int lobe = 0; lobe < 1 + TL_THREADS_MAX; lobe++)
+            gather_facets(gather, i, lobe);
     }
 }
 

@@ -22,12 +22,12 @@ static float visibility_from(const struct tl_reference_scene *scene, const struc
 }
 
 /* kd/pi cos + f_r cos below coat and fuzz, plus these, of a point that faces light from `l`. */
-static vec3s reflected(const struct tl_shading_point *point, const struct tl_brdf *brdf,
+static vec3s reflected(const struct tl_shading_point *point, const struct tl_brdf_sum *brdfs,
                        const struct tl_brdf_frame *frame, vec3s l)
 {
     const struct tl_shading_layers *layers = &point->layers;
     float matt = fmaxf(glms_vec3_dot(point->normal, l), 0) / (float)M_PI;
-    vec3s gloss = tl_brdf_gloss(brdf, frame, l, point->viewer);
+    vec3s gloss = tl_brdf_sum_gloss(brdfs, frame, l, point->viewer);
     vec3s sent = glms_vec3_add(glms_vec3_scale(point->albedo, matt), gloss);
     if (!point->layered)
         return sent;
@@ -47,8 +47,8 @@ vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl
     vec3s sum = point->emission;
     if (scene->lamp_count == 0)
         return sum;
-    const struct tl_brdf brdf =
-        tl_brdf_bumped(point->material, point->f0, point->glossiness, point->widening);
+    const struct tl_brdf_sum brdfs =
+        tl_brdf_sum_of(point->material, point->f0, point->albedo, point->glossiness, point->widening);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(point->normal, point->tangent, point->handedness,
                                                           point->side * point->material->gloss.rotation);
     for (size_t i = 0; i < scene->lamp_count; i++) {
@@ -58,7 +58,7 @@ vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl
         if (!faces && !point->layered)
             continue;
         float behind = fmaxf(-glms_vec3_dot(point->normal, light.direction), 0) / (float)M_PI;
-        vec3s sent = faces ? reflected(point, &brdf, &frame, light.direction)
+        vec3s sent = faces ? reflected(point, &brdfs, &frame, light.direction)
                            : glms_vec3_scale(point->layers.transmitted, behind);
         float shown = visibility_from(scene, lamp, faces ? point->point : point->layers.behind, &light);
         (*rays)++;

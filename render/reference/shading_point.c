@@ -278,7 +278,8 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
         set_coat(place, smooth, result);
     layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
     if (layers->faceted) {
-        layers->brdf = tl_brdf_bumped(material, result->f0, result->glossiness, result->widening);
+        layers->gloss =
+            tl_brdf_sum_of(material, result->f0, result->albedo, result->glossiness, result->widening);
         layers->frame = tl_brdf_frame_make(result->normal, result->tangent, result->handedness,
                                            place->side * material->gloss.rotation);
         result->glossy = (vec3s){{0, 0, 0}};

@@ -31,11 +31,11 @@ struct tl_shading_layers {
     float coat;        /* Fresnel reflectance of the coat times its coverage and what fuzz leaves */
     vec3s coat_axis;
     float coat_exponent;
-    bool faceted;        /* gloss is `brdf` times `base` instead of the lobe about `axis` */
+    bool faceted;        /* gloss is `gloss` times `base` instead of the lobe about `axis` */
     float base;          /* what coat and fuzz leave */
     struct tl_fuzz fuzz; /* about `fuzz_normal`; colour 0: none */
     vec3s fuzz_normal;
-    struct tl_brdf brdf;
+    struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame;
 };
 

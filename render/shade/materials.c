@@ -225,6 +225,10 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     materials->openness = fmaxf(materials->openness, material->openness);
     part.is_faceted = material->gloss.model != TL_REFLECT_PHONG;
     part.fan_count = fan;
+    for (int i = 0; i < material->thread_count; i++) {
+        part.thread_squares[i][0] = material->threads[i].width_weft * material->threads[i].width_weft;
+        part.thread_squares[i][1] = material->threads[i].width_warp * material->threads[i].width_warp;
+    }
     if (material->gloss.model == TL_REFLECT_WARD) {
         const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
         part.ward_squares[0] = brdf.gloss.width_weft * brdf.gloss.width_weft;

@@ -34,16 +34,17 @@ struct tl_shade_part {
     float uv_metres;              /* of a UV unit; read with yarns */
     const tl_borders *borders;    /* NULL: nothing is sewn; with the profiles of seams and hems: */
     const struct tl_construction_tables *construction;
-    float turn_cosine, turn_sine;   /* of gloss.rotation */
-    bool has_maps;                  /* UV is read */
-    bool has_bumps;                 /* the tangent is read */
-    bool is_glossy;                 /* something is reflected */
-    bool transmits;                 /* light comes through from the other side */
-    bool has_fuzz;                  /* fibres stand on it */
-    bool is_faceted;                /* the gloss is not one cosine lobe: */
-    float ward_squares[2];          /* squared widths of Ward's facets without maps and bumps */
-    int fan_count;                  /* lobes at most that stand for them */
-    const struct tl_fan_table *fan; /* of other facets than Ward's */
+    float turn_cosine, turn_sine;            /* of gloss.rotation */
+    bool has_maps;                           /* UV is read */
+    bool has_bumps;                          /* the tangent is read */
+    bool is_glossy;                          /* something is reflected */
+    bool transmits;                          /* light comes through from the other side */
+    bool has_fuzz;                           /* fibres stand on it */
+    bool is_faceted;                         /* the gloss is not one cosine lobe: */
+    float ward_squares[2];                   /* squared widths of Ward's facets without maps and bumps */
+    float thread_squares[TL_THREADS_MAX][2]; /* ... of each system of threads */
+    int fan_count;                           /* lobes at most that stand for them */
+    const struct tl_fan_table *fan;          /* of other facets than Ward's */
 };
 
 struct tl_shade_image;

@@ -130,6 +130,7 @@ struct gloss_lanes {
     float tangent[3][TL_LANES], bitangent[3][TL_LANES], normal[3][TL_LANES]; /* the frame of the threads */
     float viewer[3][TL_LANES];                                               /* in it */
     float square[2][TL_LANES];                                               /* of Ward's widths */
+    float thread_square[TL_THREADS_MAX][2][TL_LANES]; /* ... of each system of threads */
 };
 
 /* Schlick's factor of what is missing from F0 to its greatest value. */
@@ -180,9 +181,35 @@ TL_INLINE void find_frames(const struct tl_pixel_lanes *lanes, struct gloss_lane
         tl_lane_store(gloss->tangent, i, frame.tangent);
         tl_lane_store(gloss->bitangent, i, frame.bitangent);
         tl_lane_store(gloss->normal, i, frame.normal);
-        gloss->square[0][i] = tl_facet_square(look->part->ward_squares[0], cc * along_u + ss * along_v);
-        gloss->square[1][i] = tl_facet_square(look->part->ward_squares[1], ss * along_u + cc * along_v);
+        const float weft = cc * along_u + ss * along_v, warp = ss * along_u + cc * along_v;
+        gloss->square[0][i] = tl_facet_square(look->part->ward_squares[0], weft);
+        gloss->square[1][i] = tl_facet_square(look->part->ward_squares[1], warp);
+        for (int k = 0; k < look->part->material->thread_count; k++) {
+            gloss->thread_square[k][0][i] = tl_facet_square(look->part->thread_squares[k][0], weft);
+            gloss->thread_square[k][1][i] = tl_facet_square(look->part->thread_squares[k][1], warp);
+        }
     }
+}
+
+/* Schlick's two summands of what a lobe reflects: `plain`, and `away` times (1 - t)^5. */
+struct reflected {
+    tl_quad plain, away;
+};
+
+TL_INLINE struct reflected of_surface(const struct tl_look_lanes *look, int lane)
+{
+    return (struct reflected){look->f0[lane], schlick(look->f0[lane], 1) - look->f0[lane]};
+}
+
+/* The colour of threads times 1 - F (tl_brdf_sum_of). */
+TL_INLINE struct reflected of_thread(const struct tl_look_lanes *look, int thread, int lane)
+{
+    const tl_quad one = {1, 1, 1, 1}, zero = {0, 0, 0, 0};
+    tl_quad colour = look->diffuse[lane] * tl_pixel_quad(look->part->material->threads[thread].ratio);
+    for (int c = 0; c < 3; c++)
+        colour[c] = tl_minf(tl_maxf(colour[c], zero[c]), one[c]);
+    const struct reflected f = of_surface(look, lane);
+    return (struct reflected){colour * (one - f.plain), zero - colour * f.away};
 }
 
 /* The lobes of a fan. */
@@ -225,15 +252,17 @@ TL_INLINE tl_quad divide_or_zero(tl_quad a, tl_quad b)
     return a / safe;
 }
 
-TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+/* `thread` < 0: of the surface. */
+TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss, int thread,
                         struct lobe_lanes *lobes)
 {
+    static const struct tl_gloss bounded = {.model = TL_REFLECT_WARD, .ward = TL_WARD_BOUNDED};
     const struct tl_look_lanes *look = &lanes->look;
     struct tl_ward_lanes ward;
     const float least = 1e-6f; /* of a cosine: the light of pixels below the surface is not used */
-    ward.gloss = &look->part->material->gloss;
+    ward.gloss = thread < 0 ? &look->part->material->gloss : &bounded;
     memcpy(ward.viewer, gloss->viewer, sizeof ward.viewer);
-    memcpy(ward.square, gloss->square, sizeof ward.square);
+    memcpy(ward.square, thread < 0 ? gloss->square : gloss->thread_square[thread], sizeof ward.square);
     for (int i = 0; i < TL_LANES; i++)
         ward.viewer[2][i] = tl_maxf(ward.viewer[2][i], least);
     tl_ward_fit(&ward, look->part->fan_count, look->count);
@@ -242,11 +271,11 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
     for (int i = 0; i < TL_LANES; i++)
         lobes->log_exponent[i] = tl_log2(ward.exponent[i]);
     for (int i = 0; i < look->count; i++) {
-        const tl_quad f0 = look->f0[i], missing = schlick(f0, 1) - f0;
-        const tl_quad scale = divide_or_zero(f0 * ward.albedo[0][i] + missing * ward.albedo[1][i],
-                                             f0 * ward.sum[0][i] + missing * ward.sum[1][i]);
+        const struct reflected f = thread < 0 ? of_surface(look, i) : of_thread(look, thread, i);
+        const tl_quad scale = divide_or_zero(f.plain * ward.albedo[0][i] + f.away * ward.albedo[1][i],
+                                             f.plain * ward.sum[0][i] + f.away * ward.sum[1][i]);
         for (int k = 0; k < ward.count; k++)
-            lobes->weight[k][i] = scale * (f0 * ward.plain[k][i] + missing * ward.away[k][i]);
+            lobes->weight[k][i] = scale * (f.plain * ward.plain[k][i] + f.away * ward.away[k][i]);
     }
 }
 
@@ -262,28 +291,38 @@ TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss
 }
 
 /* The exact light of the lobes of a fan. */
+TL_INLINE void add_fan(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                       const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
+{
+    const int count = lanes->look.count;
+    struct blend_lanes blends;
+    struct pair_lanes pairs[TL_LOBE_FIT_MAX];
+    choose_maps(scene, lobes->log_exponent, count, &blends);
+    for (int k = 0; k < lobes->count; k++)
+        place_lobe(scene, gloss, lobes->local[k], &blends, &pairs[k]);
+    for (int i = 0; i < count; i++) {
+        tl_quad sum = {0, 0, 0, 0};
+        for (int k = 0; k < lobes->count; k++)
+            sum += fetch_pair(&blends, i, &pairs[k]) * lobes->weight[k][i];
+        if (gloss->viewer[2][i] > 0)
+            light[i] += sum * lanes->glossy_ratio[i];
+    }
+}
+
 TL_INLINE void add_facets(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                           struct gloss_lanes *gloss, tl_quad light[TL_LANES])
 {
-    const int count = lanes->look.count;
-    assert(count > 0); /* what idle lanes hold is the first one's */
+    assert(lanes->look.count > 0); /* what idle lanes hold is the first one's */
     struct lobe_lanes lobes;
-    struct blend_lanes blends;
-    struct pair_lanes pairs[TL_LOBE_FIT_MAX];
     find_frames(lanes, gloss);
     if (lanes->look.part->fan)
         fetch_fan(lanes, gloss, &lobes);
     else
-        fit_ward(lanes, gloss, &lobes);
-    choose_maps(scene, lobes.log_exponent, count, &blends);
-    for (int k = 0; k < lobes.count; k++)
-        place_lobe(scene, gloss, lobes.local[k], &blends, &pairs[k]);
-    for (int i = 0; i < count; i++) {
-        tl_quad sum = {0, 0, 0, 0};
-        for (int k = 0; k < lobes.count; k++)
-            sum += fetch_pair(&blends, i, &pairs[k]) * lobes.weight[k][i];
-        if (gloss->viewer[2][i] > 0)
-            light[i] += sum * lanes->glossy_ratio[i];
+        fit_ward(lanes, gloss, -1, &lobes);
+    add_fan(scene, lanes, gloss, &lobes, light);
+    for (int k = 0; k < lanes->look.part->material->thread_count; k++) {
+        fit_ward(lanes, gloss, k, &lobes);
+        add_fan(scene, lanes, gloss, &lobes, light);
     }
 }
 
@@ -320,18 +359,19 @@ static bool is_plain_ward(const struct tl_gloss *model)
     return model->model == TL_REFLECT_WARD && model->fresnel == TL_FRESNEL_SCHLICK;
 }
 
-/* tl_brdf_gloss_under_disc of Ward's facets. */
-TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+/* tl_brdf_gloss_under_disc of Ward's facets. `thread` < 0: of the surface. */
+TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss, int thread,
                         const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
 {
     const float wider = sun->radius * sun->radius / 8;
-    const bool is_bounded = lanes->look.part->material->gloss.ward == TL_WARD_BOUNDED;
+    const float(*square_of)[TL_LANES] = thread < 0 ? gloss->square : gloss->thread_square[thread];
+    const bool is_bounded = thread >= 0 || lanes->look.part->material->gloss.ward == TL_WARD_BOUNDED;
     float lobe[TL_LANES], share[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(gloss->normal, i);
         vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
         float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
-        float u = gloss->square[0][i] + wider, v = gloss->square[1][i] + wider;
+        float u = square_of[0][i] + wider, v = square_of[1][i] + wider;
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
               y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
         float square = glms_vec3_dot(sum, sum); /* 4 cos^2 t */
@@ -342,8 +382,11 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         lobe[i] = is_seen ? value : 0;
         share[i] = schlick_share(0.5f * sqrtf(square));
     }
-    for (int i = 0; i < lanes->look.count; i++)
-        lit[i] += lobe[i] * schlick(lanes->look.f0[i], share[i]);
+    for (int i = 0; i < lanes->look.count; i++) {
+        const struct reflected f =
+            thread < 0 ? of_surface(&lanes->look, i) : of_thread(&lanes->look, thread, i);
+        lit[i] += lobe[i] * (f.plain + f.away * share[i]);
+    }
 }
 
 /* Of other facets than Ward's: one by one, where the sun is seen. */
@@ -408,11 +451,13 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
     for (int i = 0; i < look->count; i++)
         lit[i] = look->diffuse[i] * lobe[i];
     if (part->is_faceted && is_plain_ward(&part->material->gloss))
-        add_ward(lanes, gloss, item, direction, lit);
+        add_ward(lanes, gloss, -1, item, direction, lit);
     else if (part->is_faceted)
         add_brdf(lanes, gloss, item, direction, seen, lit);
     else if (part->is_glossy)
         add_mirrored(lanes, gloss, item, direction, lit);
+    for (int k = 0; k < part->material->thread_count; k++)
+        add_ward(lanes, gloss, k, item, direction, lit);
     for (int i = 0; i < look->count; i++)
         if (seen[i] > 0)
             light[i] += seen[i] * tl_pixel_quad(item->power) * lit[i];

@@ -36,6 +36,7 @@ foreach(name
     pem/slices
     env/sun
     brdf/tables
+    brdf/threads
     light/terms
     trace/trace
     )

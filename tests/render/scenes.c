@@ -302,14 +302,15 @@ void test_scene_open_lamplit(struct test_scene *scene, struct test_shape shape, 
 /* `point` lies on the triangle; that of `shaded` is the origin of its rays, on the smooth surface. */
 static vec3s light_of(const struct tl_shading_point *shaded, vec3s point, const struct tl_lamp *lamp)
 {
-    const struct tl_brdf brdf =
-        tl_brdf_bumped(shaded->material, shaded->f0, shaded->glossiness, shaded->widening);
+    const struct tl_brdf_sum brdfs =
+        tl_brdf_sum_of(shaded->material, shaded->f0, shaded->albedo, shaded->glossiness, shaded->widening);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(shaded->normal, shaded->tangent, shaded->handedness,
                                                           shaded->side * shaded->material->gloss.rotation);
     bool is_point = lamp->kind == TL_LAMP_POINT;
     vec3s to_lamp = is_point ? glms_vec3_sub(lamp->position, point) : lamp->direction;
     float fall = is_point ? 1 / glms_vec3_norm2(to_lamp) : 1;
-    vec3s l = glms_vec3_normalize(to_lamp), gloss = tl_brdf_gloss(&brdf, &frame, l, shaded->viewer), sent;
+    vec3s l = glms_vec3_normalize(to_lamp), gloss = tl_brdf_sum_gloss(&brdfs, &frame, l, shaded->viewer),
+          sent;
     float cosine = fmaxf(glms_vec3_dot(shaded->normal, l), 0);
     float ramp = fminf(fmaxf(32 * glms_vec3_dot(shaded->horizon, l), 0), 1);
     for (int c = 0; c < 3; c++)

@@ -40,6 +40,9 @@ static void equals_the_cpu(void **state)
             gloss->width_weft = variant == 0 ? 0 : 0.3f;
             gloss->width_warp = variant == 0 ? 0 : 0.12f;
             gloss->rotation = 0.4f * (float)variant;
+            scene.shapes[0].material.thread_count = gloss->model == TL_REFLECT_PHONG ? 0 : variant % 3;
+            scene.shapes[0].material.threads[0] = (struct tl_thread){{{0.4f, 1, 2}}, 0.45f, 0.12f};
+            scene.shapes[0].material.threads[1] = (struct tl_thread){{{1, 0.2f, 0}}, 0.2f, 0.5f};
             test_scene_refresh(&scene);
             tl_image expected = test_scene_evaluate(&scene);
             struct test_difference off = test_scene_error(&scene, device->renderer, &expected);

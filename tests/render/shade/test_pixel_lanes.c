@@ -223,23 +223,29 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     if (!is_faceted) {
         *light = glms_vec3_mul(point->glossy, exact_light(one, point->axis, point->exponent));
     } else {
-        struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-        int count = fan ? tl_fan_table_look_up(fan, &point->layers.frame, point->viewer, point->f0,
-                                               point->glossiness, lobes)
-                        : tl_lobe_fit_make(&point->layers.brdf, &point->layers.frame, point->viewer,
-                                           one->materials->parts[part].fan_count, lobes);
-        for (int k = 0; k < count; k++)
-            *light = glms_vec3_add(*light, glms_vec3_mul(lobes[k].weight, exact_light(one, lobes[k].direction,
-                                                                                      lobes[k].exponent)));
+        for (int g = 0; g < point->layers.gloss.count; g++) {
+            struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
+            int count = g == 0 && fan
+                            ? tl_fan_table_look_up(fan, &point->layers.frame, point->viewer, point->f0,
+                                                   point->glossiness, lobes)
+                            : tl_lobe_fit_make(&point->layers.gloss.items[g], &point->layers.frame,
+                                               point->viewer, one->materials->parts[part].fan_count, lobes);
+            for (int k = 0; k < count; k++)
+                *light = glms_vec3_add(
+                    *light,
+                    glms_vec3_mul(lobes[k].weight, exact_light(one, lobes[k].direction, lobes[k].exponent)));
+        }
     }
     for (int i = 0; i < 2; i++) {
         const struct tl_sun *sun = &one->scene->suns.items[i];
         vec3s direction = tl_turn_direction(sun->direction, one->yaw);
         float broad = lobe_broadened_exponent(point->exponent, sun->radius * GLM_SQRT1_2f);
-        suns[i] = is_faceted ? tl_brdf_gloss_under_disc(&point->layers.brdf, &point->layers.frame, direction,
-                                                        point->viewer, sun->radius)
-                             : glms_vec3_scale(point->glossy,
-                                               lobe_cosine(broad, glms_vec3_dot(direction, point->axis)));
+        suns[i] = glms_vec3_scale(point->glossy, lobe_cosine(broad, glms_vec3_dot(direction, point->axis)));
+        for (int g = 0; is_faceted && g < point->layers.gloss.count; g++)
+            suns[i] =
+                glms_vec3_add(g == 0 ? glms_vec3_zero() : suns[i],
+                              tl_brdf_gloss_under_disc(&point->layers.gloss.items[g], &point->layers.frame,
+                                                       direction, point->viewer, sun->radius));
     }
 }
 
@@ -360,6 +366,23 @@ static void be_satin_with_maps(struct lanes_scene *scene)
     cloth->specular_map = (struct tl_map){.image = &scene->colour, .transform = {.scale = {2, 1}}};
 }
 
+/* Shot silk: both systems of threads, of other colours. */
+static void be_shot(struct lanes_scene *scene)
+{
+    be_satin_with_maps(scene);
+    tl_material *cloth = &scene->shapes[1].material;
+    cloth->thread_count = 2;
+    cloth->threads[0] = (struct tl_thread){{{0.5f, 2, 1}}, 0.45f, 0.12f};
+    cloth->threads[1] = (struct tl_thread){{{1.5f, 0.1f, 0}}, 0.15f, 0.4f};
+}
+
+static void be_threads_under_facets(struct lanes_scene *scene)
+{
+    be_shot(scene);
+    scene->shapes[1].material.gloss.model = TL_REFLECT_TORRANCE_SPARROW;
+    scene->shapes[1].material.thread_count = 1;
+}
+
 static void be_torrance_sparrow(struct lanes_scene *scene)
 {
     be_satin(scene);
@@ -426,6 +449,8 @@ static const struct lanes_case cases[] = {
     {"satin", be_satin, TL_DETAIL_MINIFY_LEAN, 0, false},
     {"satin, turned, from below", be_satin, TL_DETAIL_MINIFY_LEAN, 1, true},
     {"satin with maps", be_satin_with_maps, TL_DETAIL_MINIFY_TOKSVIG, 0.4f, false},
+    {"shot silk", be_shot, TL_DETAIL_MINIFY_LEAN, 0.4f, false},
+    {"threads under facets", be_threads_under_facets, TL_DETAIL_MINIFY_LEAN, 0, false},
     {"torrance-sparrow", be_torrance_sparrow, TL_DETAIL_MINIFY_NONE, 0, false},
     {"woven satin", be_woven, TL_DETAIL_MINIFY_LEAN, 0, false},
     {"woven satin, from below", be_woven, TL_DETAIL_MINIFY_NONE, 0, true},
