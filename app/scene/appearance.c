@@ -143,6 +143,22 @@ static void set_construction(const struct tl_construction_params *params, tl_mat
         material->construction = tl_construction_of(params);
 }
 
+/* Thread that is chosen to match the cloth follows it into another colour, as light or dark beside it as
+ * before. One of another hue, as on denim, is a contrast that the maker wants, and stays. */
+#define MATCHING_RATIO 2.0f /* of the channels' ratios to the cloth's, largest to smallest */
+static void match_stitches(const float cloth[3], const float dyed[3], tl_material *material)
+{
+    const vec3s thread = material->construction.thread;
+    float least = INFINITY, most = 0;
+    for (int c = 0; c < 3; c++) {
+        const float ratio = (thread.raw[c] + 1e-3f) / (cloth[c] + 1e-3f);
+        least = fminf(least, ratio);
+        most = fmaxf(most, ratio);
+    }
+    for (int c = 0; c < 3 && most < MATCHING_RATIO * least; c++)
+        material->construction.thread.raw[c] = fminf(thread.raw[c] / fmaxf(cloth[c], 1e-3f) * dyed[c], 1);
+}
+
 /* The weave of a fabric; NULL when it has none. */
 static bool take_weave(struct tl_appearance *appearance, const struct tl_weave_params *params,
                        const struct tl_fabric_pictures **out, tl_error *error)
@@ -256,6 +272,8 @@ static bool finish(struct tl_appearance *appearance, const struct tl_settings *s
         made.diffuse = even_colour(&making->params);
     set_back(&making->params, &made);
     set_construction(&settings->construction, &made);
+    if (making->is_changed)
+        match_stitches(settings->material.diffuse, making->params.diffuse, &made);
     *out = made;
     return true;
 }

@@ -96,8 +96,13 @@ static void set_anisotropy(const struct tl_fabric_surface *surface, struct tl_ma
 {
     float aspect = sqrtf(1 - 0.9f * clamped(surface->anisotropy, 1)),
           width = surface->roughness * surface->roughness;
-    if (!(surface->anisotropy > 0))
+    if (!(surface->anisotropy > 0)) { /* GGX, whose width follows the pictures' glossiness */
+        const struct tl_gloss gloss = tl_gloss_from_roughness(surface->roughness, true);
+        material->model = gloss.model;
+        material->facets = gloss.facets;
+        material->masking = gloss.masking;
         return;
+    }
     material->model = TL_REFLECT_WARD;
     material->ward = TL_WARD_BOUNDED;
     material->width_weft = clamped(width / aspect, 1);

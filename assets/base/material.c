@@ -70,6 +70,23 @@ void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6]
     rows[5] = transform->offset[1];
 }
 
+bool tl_gloss_has_tails(const struct tl_gloss *gloss)
+{
+    return gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GGX;
+}
+
+struct tl_gloss tl_gloss_from_roughness(float roughness, bool varies)
+{
+    struct tl_gloss gloss = {.index = tl_material_default("").gloss.index};
+    if (!(roughness >= TL_GGX_SMOOTHEST))
+        return gloss;
+    gloss.model = TL_REFLECT_TORRANCE_SPARROW;
+    gloss.facets = TL_FACETS_GGX;
+    gloss.masking = TL_MASKING_SMITH;
+    gloss.width_weft = gloss.width_warp = varies ? 0 : fminf(roughness, 1) * fminf(roughness, 1);
+    return gloss;
+}
+
 float tl_glossiness_from_roughness(float roughness)
 {
     float alpha = roughness * roughness;

@@ -277,7 +277,8 @@ void tell_what_is_left_out(const tl_material &from, bool metal, const char *path
 {
     std::string left;
     const std::pair<bool, const char *> parts[] = {
-        {from.gloss.model != TL_REFLECT_PHONG && !is_stretched(from), "its reflectance model"},
+        {from.gloss.model != TL_REFLECT_PHONG && !is_stretched(from) && !tl_gloss_has_tails(&from.gloss),
+         "its reflectance model"},
         {from.thread_count > 0, "the bands of light from inside its threads"},
         {from.openness > 0 && from.alpha_cutoff > 0, "its openness beside its mask"},
         {metal && glms_vec3_max(from.transmission) > 0, "transmission of a metal"},
@@ -335,7 +336,11 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
             std::fmin(static_cast<double>(channel) / scattered_back, 1));
     to.pbrMetallicRoughness.baseColorFactor.push_back(1);
     to.pbrMetallicRoughness.metallicFactor = metal ? 1 : 0;
-    to.pbrMetallicRoughness.roughnessFactor = from.gloss_map.image ? 1 : roughness_of(from.glossiness);
+    const bool is_wide = tl_gloss_has_tails(&from.gloss) && from.gloss.width_weft > 0;
+    to.pbrMetallicRoughness.roughnessFactor = from.gloss_map.image ? 1
+                                              : is_wide
+                                                  ? std::sqrt(static_cast<double>(from.gloss.width_weft))
+                                                  : roughness_of(from.glossiness);
     to.normalTexture.scale = static_cast<double>(from.normal_scale);
     to.occlusionTexture.strength = static_cast<double>(from.occlusion_strength);
     to.doubleSided = from.double_sided;

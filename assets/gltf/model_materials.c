@@ -81,6 +81,9 @@ static tl_material read_material(struct texture_reader *textures, const struct g
                                    .roughness = roughness * (packed->image ? packed->roughness_mean : 1),
                                    .roughness_varies = packed->roughness_varies,
                                    .to = &to};
+    const float index_of_file = to.gloss.index;
+    to.gloss = tl_gloss_from_roughness(build.roughness, packed->image != NULL);
+    to.gloss.index = index_of_file;
     vec3s f0 = model_dielectric_f0(&build);
     for (int i = 0; i < 3; i++) {
         build.base[i] = unit(from->base_colour[i], 1);

@@ -120,6 +120,10 @@ float tl_brdf_facets(const struct tl_brdf *brdf, float tangent_squared)
         float fall = expf(-tangent_squared / w2);
         return fall > 0 ? fall * rise * rise / (4 * w2) : 0;
     }
+    if (brdf->gloss.facets == TL_FACETS_GGX) {
+        float quotient = (1 + tangent_squared) / (w2 + tangent_squared);
+        return quotient * quotient * w2 / 4;
+    }
     float d = atanf(sqrtf(tangent_squared));
     return expf(-d * d / w2) / (4 * w2 * gaussian_volume(w2));
 }
@@ -134,9 +138,17 @@ static float smith_lambda(float width, float cosine)
     return fmaxf((expf(-k * k) / (k * sqrtf(PI)) - erfcf(k)) / 2, 0);
 }
 
+static float ggx_lambda(float width, float cosine)
+{
+    float tangent_squared = fmaxf(1 - cosine * cosine, 0) / fmaxf(cosine * cosine, 1e-12f);
+    return (sqrtf(1 + width * width * tangent_squared) - 1) / 2;
+}
+
 float tl_brdf_smith(const struct tl_brdf *brdf, float cos_a, float cos_b)
 {
     float width = brdf->gloss.width_weft;
+    if (brdf->gloss.facets == TL_FACETS_GGX)
+        return 1 / (1 + ggx_lambda(width, cos_a) + ggx_lambda(width, cos_b));
     return 1 / (1 + smith_lambda(width, cos_a) + smith_lambda(width, cos_b));
 }
 

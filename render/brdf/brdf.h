@@ -15,9 +15,11 @@
  *     BANKS             F c(s) (sin(t,l) sin(t,v) - (t.l)(t.v))^s cos a        [op. cit., 3.2]
  *
  * D has width w = w_u. The integral of D cos d over h is pi/4, so that a white surface reflects all incident
- * light: GAUSSIAN exp(-(d/w)^2) / (4 w^2 P(w^2)), BECKMANN exp(-(tan d/w)^2) / (4 w^2 cos^4 d). G is
- * SMITH's for Beckmann's slopes, heights correlated: 1 / (1 + L(a) + L(b)), L(x) = (exp(-k^2)/(k sqrt pi) -
- * erfc k)/2, k = 1/(w tan x); or of V_GROOVES: min(1, 2 cos d min(cos a, cos b)/cos t). Reciprocal.
+ * light: GAUSSIAN exp(-(d/w)^2) / (4 w^2 P(w^2)), BECKMANN exp(-(tan d/w)^2) / (4 w^2 cos^4 d), GGX
+ * 1 / (4 w^2 cos^4 d (1 + tan^2 d / w^2)^2) [Walter, Marschner, Li and Torrance 2007, eq. 33], whose w is
+ * glTF's alpha, roughness squared. G is SMITH's, heights correlated: 1 / (1 + L(a) + L(b)), for Beckmann's
+ * slopes L(x) = (exp(-k^2)/(k sqrt pi) - erfc k)/2, k = 1/(w tan x), for GGX L(x) = (sqrt(1 + w^2 tan^2 x) -
+ * 1)/2 [Heitz 2014, eq. 72]; or of V_GROOVES: min(1, 2 cos d min(cos a, cos b)/cos t). Reciprocal.
  *
  * BANKS is not a physical model. (sin sin - cos cos) is the cosine of l with the nearest mirror direction of
  * a thread along t. c(s) = Gamma(s/2 + 2) / (2 sqrt(pi) Gamma(s/2 + 3/2)) is the factor for which a white

@@ -12,6 +12,8 @@
  * quadrature; this keeps light that is the same from everywhere. The part of a lobe above the horizon is
  * scaled up for the part that lies below it.
  *
+ * GGX facets have slopes that are no Gaussian but close to a sum of three: one lobe stands for each.
+ *
  * tests/render/brdf/test_lobe_fit.c prints the errors. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_LOBE_FIT_H
 #define TOILE_RENDER_BRDF_LOBE_FIT_H

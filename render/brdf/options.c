@@ -2,7 +2,7 @@
 
 static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
                                           "ward",  "banks",       NULL};
-static const char *const facets_names[] = {"gaussian", "beckmann", NULL};
+static const char *const facets_names[] = {"gaussian", "beckmann", "ggx", NULL};
 static const char *const masking_names[] = {"smith", "v_grooves", NULL};
 static const char *const ward_names[] = {"published", "bounded", NULL};
 static const char *const on_print_names[] = {"replace", "tint", "keep", NULL};
@@ -39,8 +39,10 @@ static const struct tl_option material_rows[] = {
         material_params, glossiness, AFFECTS, 0, 1, "",
         "0: reflects in all directions, 1: a mirror; the exponent of the lobe is 1 / (1 - glossiness)"),
     TL_OPTION_ENUM(material_params, model, AFFECTS, model_names, "reflectance model of the glossy lobe"),
-    TL_OPTION_ENUM(material_params, facets, AFFECTS, facets_names,
-                   "torrance_sparrow: distribution of the slopes of facets"),
+    TL_OPTION_ENUM(
+        material_params, facets, AFFECTS, facets_names,
+        "torrance_sparrow: distribution of the slopes of facets; ggx is that of glTF and U3M, with "
+        "width_weft the square of their roughness"),
     TL_OPTION_ENUM(material_params, masking, AFFECTS, masking_names,
                    "torrance_sparrow: masking and shadowing of facets by one another"),
     TL_OPTION_ENUM(

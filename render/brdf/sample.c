@@ -24,8 +24,8 @@ static float gaussian_share(float width)
 }
 
 /* Samples a half vector, in the frame, by inverting the cumulative distribution of each model. Slopes are
- * Gaussian for Ward and Beckmann facets; the angle is Gaussian for Gaussian facets; Blinn-Phong is a power of
- * the cosine. */
+ * Gaussian for Ward and Beckmann facets, and follow a distribution with long tails for GGX; the angle is
+ * Gaussian for Gaussian facets; Blinn-Phong is a power of the cosine. */
 static vec3s sample_half_vector(const struct tl_brdf *brdf, float u1, float u2)
 {
     const struct tl_gloss *gloss = &brdf->gloss;
@@ -40,7 +40,8 @@ static vec3s sample_half_vector(const struct tl_brdf *brdf, float u1, float u2)
         x = sinf(angle) * c, y = sinf(angle) * s, z = cosf(angle);
     } else {
         bool round = gloss->model == TL_REFLECT_TORRANCE_SPARROW;
-        float slope = sqrtf(-log1pf(-u1));
+        bool is_ggx = round && gloss->facets == TL_FACETS_GGX;
+        float slope = sqrtf(is_ggx ? u1 / (1 - u1) : -log1pf(-u1));
         x = gloss->width_weft * slope * c, y = (round ? gloss->width_weft : gloss->width_warp) * slope * s;
         z = 1 / sqrtf(1 + x * x + y * y);
         x *= z, y *= z;
@@ -66,7 +67,9 @@ static float half_vector_pdf(const struct tl_brdf *brdf, vec3s h)
         return spread * expf(-angle * angle / (u * u)) / (PI * u * u * gaussian_share(u));
     }
     float v = gloss->model == TL_REFLECT_TORRANCE_SPARROW ? u : gloss->width_warp;
-    float x = h.x / (u * h.z), y = h.y / (v * h.z), fall = expf(-(x * x + y * y));
+    float x = h.x / (u * h.z), y = h.y / (v * h.z), square = 1 + x * x + y * y, fall = expf(1 - square);
+    if (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GGX)
+        fall = 1 / (square * square);
     return fall > 0 ? fall / (PI * u * v * h.z * h.z * h.z) : 0;
 }
 

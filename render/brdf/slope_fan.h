@@ -24,6 +24,30 @@ TL_INLINE float tl_fan_step(int count)
     return count <= 3 ? 1.7320508f : count <= 5 ? 1.05f : 0.76f;
 }
 
+/* The larger and the smaller eigenvalue of J S J^T, and the slope of one standard deviation along the axis of
+ * the larger one. */
+struct tl_slope_axes {
+    float broad, narrow, slope_x, slope_y;
+};
+
+/* `weft`, `warp`: standard deviations of the slopes along x and y; (x, y, z): the viewer.
+ *
+ * The eigenvalues of J S J^T are those of S^(1/2) J^T J S^(1/2), where J^T J = 4 (v_t v_t^T + c^2 I) with the
+ * tangential part v_t and the cosine c of the view direction: a facet turns light by twice its own angle in
+ * the plane of incidence, and by 2 c times that angle across it. The eigenvector of the larger eigenvalue,
+ * times S^(1/2), is the slope of one standard deviation along the broad axis. */
+TL_INLINE struct tl_slope_axes tl_slope_axes_of(float weft, float warp, float x, float y, float z)
+{
+    float c = tl_maxf(z, TL_FAN_MIN_COSINE);
+    float a = 4 * weft * weft * (x * x + c * c), b = 4 * weft * warp * x * y;
+    float d = 4 * warp * warp * (y * y + c * c);
+    float mean = (a + d) / 2, half = (a - d) / 2, off = sqrtf(half * half + b * b);
+    float twice = half / tl_maxf(off, 1e-20f); /* cosine of twice the angle of the broad axis */
+    float cosine = sqrtf(tl_maxf((1 + twice) / 2, 0)), sine = sqrtf(tl_maxf((1 - twice) / 2, 0));
+    return (struct tl_slope_axes){mean + off, tl_maxf(mean - off, 0), weft * cosine,
+                                  warp * (b < 0 ? -sine : sine)};
+}
+
 /* The lobes towards one viewer: `count` of them, an odd number, so that one lies at the peak. Lobe k stands
  * for the slope (k - count / 2) * (slope_x, slope_y), which lies `step` times as many standard deviations of
  * the spread from the peak; the factor that makes room for the lobes' own width is applied to the slope. */
@@ -33,23 +57,12 @@ struct tl_slope_fan {
     float step, slope_x, slope_y;
 };
 
-/* `weft`, `warp`: standard deviations of the slopes along x and y; (x, y, z): the viewer.
- *
- * The eigenvalues of J S J^T are those of S^(1/2) J^T J S^(1/2), where J^T J = 4 (v_t v_t^T + c^2 I) with the
- * tangential part v_t and the cosine c of the view direction: a facet turns light by twice its own angle in
- * the plane of incidence, and by 2 c times that angle across it. The eigenvector of the larger eigenvalue,
- * times S^(1/2), is the slope of one standard deviation along the broad axis. There are as many lobes as it
- * takes for neighbours to overlap, or else they are widened. */
+/* There are as many lobes as it takes for neighbours to overlap, or else they are widened. */
 TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, float y, float z,
                                               int max_count)
 {
-    float c = tl_maxf(z, TL_FAN_MIN_COSINE);
-    float a = 4 * weft * weft * (x * x + c * c), b = 4 * weft * warp * x * y;
-    float d = 4 * warp * warp * (y * y + c * c);
-    float mean = (a + d) / 2, half = (a - d) / 2, off = sqrtf(half * half + b * b);
-    float broad = mean + off, narrow = tl_maxf(mean - off, 0);
-    float twice = half / tl_maxf(off, 1e-20f); /* cosine of twice the angle of the broad axis */
-    float cosine = sqrtf(tl_maxf((1 + twice) / 2, 0)), sine = sqrtf(tl_maxf((1 - twice) / 2, 0));
+    const struct tl_slope_axes axes = tl_slope_axes_of(weft, warp, x, y, z);
+    float broad = axes.broad, narrow = axes.narrow;
     float apart = TL_FAN_OVERLAP * TL_FAN_OVERLAP * tl_maxf(broad - narrow, 0);
     bool three = (max_count >= 3) & (broad > 1.5f * narrow);
     bool five = three & (max_count >= 5) & (apart * tl_fan_step(3) * tl_fan_step(3) > narrow);
@@ -59,8 +72,7 @@ TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, f
     float shared = tl_maxf(narrow, square / (1 + square) * broad);
     float variance = three ? shared : sqrtf(broad * narrow);
     float extent = step * sqrtf(tl_maxf(1 - variance / tl_maxf(broad, 1e-20f), 0));
-    return (struct tl_slope_fan){count, variance, step, extent * weft * cosine,
-                                 extent * warp * (b < 0 ? -sine : sine)};
+    return (struct tl_slope_fan){count, variance, step, extent * axes.slope_x, extent * axes.slope_y};
 }
 
 /* The squared width of facets by that without maps and bumps, and what these add to it. */

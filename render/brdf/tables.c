@@ -128,7 +128,7 @@ static struct range facets_range(const struct tl_brdf *brdf)
     float width = brdf->gloss.width_weft,
           end = width * sqrtf(LOG_DARK); /* a slope (Beckmann) or an angle (Gaussian) */
     struct range range = cosines(TL_AXIS_N_DOT_H);
-    if (width <= WIDE)
+    if (width <= WIDE && brdf->gloss.facets != TL_FACETS_GGX) /* whose tails end nowhere */
         range.low = brdf->gloss.facets == TL_FACETS_BECKMANN ? 1 / sqrtf(1 + end * end) : cosf(end);
     return range;
 }

@@ -11,7 +11,7 @@ layout(location = 90) uniform vec3 thread_ratios[THREADS]; // of their light to 
 #endif
 
 const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
-const int GAUSSIAN = 0, BECKMANN = 1;
+const int GAUSSIAN = 0, BECKMANN = 1, GGX = 2;
 const int BOUNDED = 1;
 const int SMITH = 0, V_GROOVES = 1;
 const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
@@ -88,6 +88,10 @@ float facets(float tangent2, float width)
         float rise = 1.0 + tangent2, fall = exp(-tangent2 / w2);
         return fall > 0.0 ? fall * rise * rise / (4.0 * w2) : 0.0;
     }
+    if (FACETS == GGX) {
+        float quotient = (1.0 + tangent2) / (w2 + tangent2);
+        return quotient * quotient * w2 / 4.0;
+    }
     float d = arc_tangent(sqrt(tangent2));
     return exp(-d * d / w2) / (4.0 * w2 * gaussian_volume(w2));
 }
@@ -99,6 +103,10 @@ float smith_lambda(float width, float cosine)
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     if (sine <= 0.0)
         return 0.0;
+    if (FACETS == GGX) {
+        float tangent = sine / max(cosine, 1e-6);
+        return 0.5 * (sqrt(1.0 + width * width * tangent * tangent) - 1.0);
+    }
     float k = cosine / (width * sine), t = 1.0 / (1.0 + 0.3275911 * k);
     float scaled =
         t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));

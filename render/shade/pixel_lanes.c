@@ -216,7 +216,8 @@ TL_INLINE struct reflected of_thread(const struct tl_look_lanes *look, int threa
 struct lobe_lanes {
     int count;
     float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* in the frame of the threads, not normalised */
-    float log_exponent[TL_LANES];              /* all lobes of a fan have the same one */
+    bool is_varied; /* lobes have exponents of their own: of GGX; else that of lobe 0 */
+    float log_exponent[TL_LOBE_FIT_MAX][TL_LANES];
     tl_quad weight[TL_LOBE_FIT_MAX][TL_LANES];
 };
 
@@ -227,6 +228,7 @@ TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct gloss_
     struct tl_fan_place places[TL_LANES];
     const size_t middle = (size_t)fan->lobe_count / 2;
     lobes->count = fan->lobe_count;
+    lobes->is_varied = tl_gloss_has_tails(&lanes->look.part->material->gloss);
     for (int i = 0; i < TL_LANES; i++)
         places[i] = tl_fan_place(fan, gloss->viewer[0][i], gloss->viewer[1][i], gloss->viewer[2][i],
                                  lanes->look.glossiness[i]);
@@ -241,8 +243,8 @@ TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct gloss_
             lobes->local[k][1][i] = places[i].side * local[1];
             lobes->local[k][2][i] = local[2];
             lobes->weight[k][i] = shares.low * weight[0] + shares.high * weight[1];
+            lobes->log_exponent[k][i] = lobes->is_varied ? local[3] : nodes[2 * middle][3];
         }
-        lobes->log_exponent[i] = nodes[2 * middle][3];
     }
 }
 
@@ -267,9 +269,10 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         ward.viewer[2][i] = tl_maxf(ward.viewer[2][i], least);
     tl_ward_fit(&ward, look->part->fan_count, look->count);
     lobes->count = ward.count;
+    lobes->is_varied = false;
     memcpy(lobes->local, ward.local, (size_t)ward.count * sizeof ward.local[0]);
     for (int i = 0; i < TL_LANES; i++)
-        lobes->log_exponent[i] = tl_log2(ward.exponent[i]);
+        lobes->log_exponent[0][i] = tl_log2(ward.exponent[i]);
     for (int i = 0; i < look->count; i++) {
         const struct reflected f = thread < 0 ? of_surface(look, i) : of_thread(look, thread, i);
         const tl_quad scale = divide_or_zero(f.plain * ward.albedo[0][i] + f.away * ward.albedo[1][i],
@@ -290,6 +293,22 @@ TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss
     }
 }
 
+/* The exact light of lobes that each have maps of their own. */
+TL_INLINE void add_varied(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                          const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
+{
+    const int count = lanes->look.count;
+    for (int k = 0; k < lobes->count; k++) {
+        struct blend_lanes blends;
+        struct pair_lanes pair;
+        choose_maps(scene, lobes->log_exponent[k], count, &blends);
+        place_lobe(scene, gloss, lobes->local[k], &blends, &pair);
+        for (int i = 0; i < count; i++)
+            if (gloss->viewer[2][i] > 0)
+                light[i] += fetch_pair(&blends, i, &pair) * lobes->weight[k][i] * lanes->glossy_ratio[i];
+    }
+}
+
 /* The exact light of the lobes of a fan. */
 TL_INLINE void add_fan(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                        const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
@@ -297,7 +316,11 @@ TL_INLINE void add_fan(const struct tl_pixel_scene *scene, const struct tl_pixel
     const int count = lanes->look.count;
     struct blend_lanes blends;
     struct pair_lanes pairs[TL_LOBE_FIT_MAX];
-    choose_maps(scene, lobes->log_exponent, count, &blends);
+    if (lobes->is_varied) {
+        add_varied(scene, lanes, gloss, lobes, light);
+        return;
+    }
+    choose_maps(scene, lobes->log_exponent[0], count, &blends);
     for (int k = 0; k < lobes->count; k++)
         place_lobe(scene, gloss, lobes->local[k], &blends, &pairs[k]);
     for (int i = 0; i < count; i++) {

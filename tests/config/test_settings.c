@@ -191,7 +191,8 @@ static void test_refusals(void **state)
            "did you mean dress?");
     refuse(NULL, "scene.fabric=satn",
            "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, "
-           "denim, silk, charmeuse, taffeta, shot_silk, wool, jersey, interlock_tee, rib_knit, ponte, swim_knit, "
+           "denim, silk, charmeuse, taffeta, shot_silk, wool, jersey, interlock_tee, rib_knit, ponte, "
+           "swim_knit, "
            "fleece, velvet, "
            "stretch_denim, trouser_twill, voile, jacket_polyester, tablecloth_polyester or "
            "a file name with its extension: did you mean satin?");

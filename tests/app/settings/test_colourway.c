@@ -69,7 +69,12 @@ static void looks_follow_the_scene(void **state)
     const tl_material *bodice = &appearance.garment.materials[0], *skirt = &appearance.garment.materials[1];
     /* The fabric's, where nothing else is said; its threads share the colour out. */
     assert_near(bodice->diffuse.z, (1 - satin.thread) * 0.07f, 1e-7);
-    assert_near(bodice->specular.z, satin.specular[2] + satin.thread * 0.07f, 1e-7);
+    assert_near(bodice->specular.z, satin.specular[2], 1e-7);
+    assert_int_equal(bodice->thread_count, 1);
+    assert_near(bodice->diffuse.z * (1 + bodice->threads[0].ratio.z), 0.07f, 1e-6);
+    assert_near(tl_material_colour(bodice).z, 0.07f, 1e-6);
+    assert_near(bodice->threads[0].width_warp, satin.thread_along, 0); /* along the warps */
+    assert_near(bodice->threads[0].width_weft, satin.thread_across, 0);
     assert_near(bodice->glossiness, 0.5, 0);
     assert_near(skirt->diffuse.x, 0.2, 1e-7);
     assert_near(skirt->glossiness, 0.25, 0); /* the scene's */
@@ -98,6 +103,33 @@ static void looks_follow_the_scene(void **state)
     tl_appearance_release(&plain);
     tl_garment_release(&same);
     tl_appearance_release(&appearance);
+    tl_garment_release(&dress);
+}
+
+/* Stitches in the cloth's colour are dyed with it; those that contrast with it, as denim's, are not. */
+static void stitches_follow_the_cloth(void **state)
+{
+    (void)state;
+    tl_garment dress;
+    write_scene(
+        "scene: {garment: dress, fabric: satin}\ncolourways: {Blue: {all: {diffuse: [0.05, 0.1, 0.6]}}}\n");
+    struct tl_appearance plain = dress_in("", &dress);
+    const vec3s wine = plain.garment.materials[0].construction.thread;
+    tl_appearance_release(&plain);
+    tl_garment_release(&dress);
+    struct tl_appearance blue = dress_in("Blue", &dress);
+    const vec3s thread = blue.garment.materials[0].construction.thread;
+    assert_near(thread.x, wine.x / settings.material.diffuse[0] * 0.05f, 1e-6);
+    assert_near(thread.z, wine.z / settings.material.diffuse[2] * 0.6f, 1e-6);
+    tl_appearance_release(&blue);
+    tl_garment_release(&dress);
+    write_scene("scene: {garment: dress, fabric: denim}\ncolourways: {Black: {all: {diffuse: [0.02, 0.02, "
+                "0.02]}}}\n");
+    struct tl_appearance black = dress_in("Black", &dress);
+    for (int c = 0; c < 3; c++)
+        assert_near(black.garment.materials[0].construction.thread.raw[c], settings.construction.thread[c],
+                    1e-6);
+    tl_appearance_release(&black);
     tl_garment_release(&dress);
 }
 
@@ -295,6 +327,7 @@ int main(void)
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(looks_follow_the_scene),
+        cmocka_unit_test(stitches_follow_the_cloth),
         cmocka_unit_test(a_files_own_material_is_dyed),
         cmocka_unit_test(refusals_name_file_line_and_field),
         cmocka_unit_test(names_that_nobody_has_are_refused),

@@ -31,7 +31,9 @@ static void equals_the_cpu(void **state)
     for (int model = TL_REFLECT_PHONG; model <= TL_REFLECT_BANKS; model++)
         for (int variant = 0; variant < 4; variant++) {
             gloss->model = model;
-            gloss->facets = variant & 1 ? TL_FACETS_BECKMANN : TL_FACETS_GAUSSIAN;
+            gloss->facets = variant == 1  ? TL_FACETS_GGX
+                            : variant & 1 ? TL_FACETS_BECKMANN
+                                          : TL_FACETS_GAUSSIAN;
             gloss->masking = variant & 2 ? TL_MASKING_V_GROOVES : TL_MASKING_SMITH;
             gloss->ward = variant & 2 ? TL_WARD_BOUNDED : TL_WARD_PUBLISHED;
             gloss->fresnel = variant % 3;

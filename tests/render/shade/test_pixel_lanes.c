@@ -390,6 +390,12 @@ static void be_torrance_sparrow(struct lanes_scene *scene)
     scene->shapes[1].material.gloss.facets = TL_FACETS_BECKMANN;
 }
 
+static void be_ggx(struct lanes_scene *scene)
+{
+    be_torrance_sparrow(scene);
+    scene->shapes[1].material.gloss.facets = TL_FACETS_GGX;
+}
+
 static void be_woven(struct lanes_scene *scene)
 {
     be_satin(scene);
@@ -452,6 +458,7 @@ static const struct lanes_case cases[] = {
     {"shot silk", be_shot, TL_DETAIL_MINIFY_LEAN, 0.4f, false},
     {"threads under facets", be_threads_under_facets, TL_DETAIL_MINIFY_LEAN, 0, false},
     {"torrance-sparrow", be_torrance_sparrow, TL_DETAIL_MINIFY_NONE, 0, false},
+    {"ggx", be_ggx, TL_DETAIL_MINIFY_NONE, 0, false},
     {"woven satin", be_woven, TL_DETAIL_MINIFY_LEAN, 0, false},
     {"woven satin, from below", be_woven, TL_DETAIL_MINIFY_NONE, 0, true},
     {"maps", be_mapped, TL_DETAIL_MINIFY_LEAN, 0, false},
