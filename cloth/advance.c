@@ -134,7 +134,7 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
     tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
     if (cloth->params.self_contact) {
         tl_apart_carry(&cloth->apart, &apart, &cloth->particles);
-        tl_apart_truncate(&cloth->apart, &apart, NULL, &cloth->particles);
+        tl_apart_truncate(&cloth->apart, &apart, cloth->particles.previous, NULL, &cloth->particles);
     }
 }
 
@@ -378,12 +378,66 @@ static void release_caught(tl_cloth *cloth, const tl_collider *collider)
                           &cloth->particles, cloth->contacts.slipped);
 }
 
-/* Cloth that a moving avatar has caught cannot stay both outside of it and on its side of other cloth: it
- * stays outside, and is untangled later. No vertex enters an avatar at rest, so that there nothing is left to
- * pass. */
-static const bool *allowed_to_pass(const tl_cloth *cloth, const tl_collider *collider)
+/* Cloth that a moving avatar has caught may have to go where other cloth is: it pushes that aside, in at most
+ * so many rounds. */
+#define MAKE_WAY_ROUNDS 24
+
+/* Moves what is inside the avatar out, and what is in its way aside. Returns whether some vertices cannot be
+ * outside of the avatar and on their side of other cloth. */
+static bool make_way(tl_cloth *cloth, const struct tl_contact_params *contact, vec3d *from, bool *inside)
 {
-    return collider && tl_collider_travel(collider) > 0 ? cloth->contacts.caught : NULL;
+    struct tl_particles *particles = &cloth->particles;
+    const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
+    bool any = true;
+    for (int round = 0; any && round < MAKE_WAY_ROUNDS; round++) {
+        tl_apart_push(&cloth->apart, &apart, particles);
+        tl_apart_truncate(&cloth->apart, &apart, from, NULL, particles);
+        memcpy(from, particles->x, particles->count * sizeof *from);
+        memset(inside, 0, particles->count * sizeof *inside);
+        any = tl_contacts_lift(&cloth->contacts, contact, particles, inside);
+    }
+    return any;
+}
+
+/* Puts torn cloth where it slips to. Returns whether there is any. */
+static bool let_slip(tl_cloth *cloth, const struct tl_contact_params *contact, const bool *torn,
+                     const vec3d *to, bool *passes)
+{
+    bool any = false;
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        if (torn[i]) {
+            cloth->particles.x[i] = to[i];
+            passes[i] = any = true;
+        }
+    return (any && tl_contacts_lift(&cloth->contacts, contact, &cloth->particles, passes)) || any;
+}
+
+/* Moves cloth outside that a step has left inside the avatar, and keeps it on its side of other cloth. What
+ * cannot be both stays outside, and is untangled later; so is what would tear. */
+static void keep_outside(tl_cloth *cloth, const tl_collider *collider,
+                         const struct tl_contact_params *contact)
+{
+    struct tl_particles *particles = &cloth->particles;
+    size_t count = particles->count;
+    bool moves = tl_collider_travel(collider) > 0, *torn = TL_NEW_ARRAY(bool, count),
+         *passes = TL_NEW_ARRAY(bool, count), pass = false;
+    vec3d *from = TL_NEW_ARRAY(vec3d, count), *to = TL_NEW_ARRAY(vec3d, count);
+    bool tears = moves && tl_caught_tears(&cloth->topology, (const vec2s(*)[3])cloth->rest,
+                                          cloth->shortest_edge, particles->x, torn);
+    memcpy(from, particles->x, count * sizeof *from);
+    release_caught(cloth, collider);
+    tl_contacts_enforce(&cloth->contacts, contact, particles);
+    memcpy(to, particles->x, count * sizeof *to);
+    if (moves && cloth->contacts.caught_count > 0)
+        pass = make_way(cloth, contact, from, passes);
+    if (tears)
+        pass = let_slip(cloth, contact, torn, to, passes) || pass;
+    const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
+    tl_apart_truncate(&cloth->apart, &apart, from, pass ? passes : NULL, particles);
+    free(torn);
+    free(passes);
+    free(from);
+    free(to);
 }
 
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance)
@@ -397,16 +451,17 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct
                                                   .phase_before = (double)step / steps,
                                                   .phase = (step + 1.0) / steps,
                                                   .h = tl_cloth_step_seconds(cloth)};
-        const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact.phase);
         tl_contacts_update(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                            (double)step / steps);
         if (is_tangled(cloth))
             tl_layers_update(&cloth->layers, &cloth->topology, cloth->particles.x);
         run_step(cloth, collider, advance, step);
-        release_caught(cloth, collider);
-        tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
-        if (cloth->params.self_contact)
-            tl_apart_truncate(&cloth->apart, &apart, allowed_to_pass(cloth, collider), &cloth->particles);
+        if (collider && cloth->params.self_contact)
+            keep_outside(cloth, collider, &contact);
+        else {
+            release_caught(cloth, collider);
+            tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
+        }
         tl_particles_damp(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
                           cloth->topology.edge_count, damping);
     }

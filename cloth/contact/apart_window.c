@@ -523,7 +523,7 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
         apart->radius[i] = tl_min(apart->radius[i], (near->reach[i] - apart->off[i]) / stretch);
     find_planes(apart, params, x, stretch, still);
     apart->current = true;
-    apart->rim = apart->stopped = apart->spent = false;
+    apart->rim = apart->stopped = apart->spent = apart->late = false;
     apart->substeps = to ? 1 : 0;
     apart->windows++;
 }

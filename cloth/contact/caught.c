@@ -1,6 +1,7 @@
 #include "cloth/contact/caught.h"
 
 #define CAUGHT_STRETCH (1 + TL_CAUGHT_STRAIN)
+#define TORN_STRETCH   3
 /* Length to which caught edges are shortened, relative to rest. Sweeps propagate it along chains of edges. */
 #define SLIPPED_STRETCH 1.5
 #define SWEEPS          8
@@ -23,6 +24,21 @@ static bool shorten(const uint32_t edge[2], double rest, double limit, struct tl
         particles->v[i] = (vec3d){0};
     }
     return true;
+}
+
+bool tl_caught_tears(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
+                     const vec3d *x, bool *torn)
+{
+    bool tears = false;
+    for (size_t t = 0; t < topology->triangle_count; t++)
+        for (int corner = 0; corner < 3; corner++) {
+            int next = (corner + 1) % 3;
+            uint32_t a = topology->triangles[t][corner], b = topology->triangles[t][next];
+            double length = (double)glms_vec2_distance(rest[t][corner], rest[t][next]);
+            if (length > shortest && vec3d_distance(x[a], x[b]) > TORN_STRETCH * length)
+                torn[a] = torn[b] = tears = true;
+        }
+    return tears;
 }
 
 static bool sweep(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest, double limit,

@@ -215,6 +215,12 @@ static bool move_outside(struct tl_contacts *contacts, size_t i, double thicknes
     return true;
 }
 
+static void mark_caught(struct tl_contacts *contacts, size_t i)
+{
+    contacts->caught_count += !contacts->caught[i];
+    contacts->caught[i] = true;
+}
+
 /* Enforces one particle. With a valid plane of a resting avatar, no old penetration and no second part
  * nearby, the substeps have enforced everything already, and no query is made. */
 static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
@@ -233,9 +239,8 @@ static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_
     bool must_query = travel > 0 || plane_is_lost || contacts->allowed_depth[i] > 0 || contacts->pinched[i];
     if (!cache->near || !must_query)
         return;
-    bool caught = move_outside(contacts, i, step->thickness_m, step->phase, particles) || slipped;
-    contacts->caught_count += caught && !contacts->caught[i];
-    contacts->caught[i] = contacts->caught[i] || caught;
+    if (move_outside(contacts, i, step->thickness_m, step->phase, particles) || slipped)
+        mark_caught(contacts, i);
 }
 
 void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
@@ -244,6 +249,29 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
     for (size_t i = 0; contacts->collider && i < contacts->particle_count; i++)
         enforce_one(contacts, i, step, particles);
     memset(contacts->slipped, 0, contacts->particle_count * sizeof(bool));
+}
+
+bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                      struct tl_particles *particles, bool *lifted)
+{
+    bool any = false;
+    if (!contacts->collider)
+        return false;
+    double travel = tl_collider_travel(contacts->collider);
+    for (size_t i = 0; i < contacts->particle_count; i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        if (!(particles->w[i] > 0) && !particles->driven[i])
+            continue;
+        if (!cache->near && is_stale(cache, travel, step->phase, particles->x[i]))
+            query(contacts->collider, step->thickness_m, step->phase, particles->x[i], cache);
+        if (!cache->near)
+            continue;
+        if (!move_outside(contacts, i, step->thickness_m, step->phase, particles))
+            continue;
+        mark_caught(contacts, i);
+        lifted[i] = any = true;
+    }
+    return any;
 }
 
 /* The ground is the plane y = 0 and does not move. */

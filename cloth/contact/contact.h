@@ -119,6 +119,11 @@ static inline bool tl_contacts_is_pinched(const struct tl_contacts *contacts, si
 void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_params *step,
                          struct tl_particles *particles);
 
+/* Moves particles outside that were moved into the avatar after tl_contacts_enforce of the same step, and
+ * marks them as caught. Returns whether there were any; sets their flags in `lifted` [particle_count]. */
+bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                      struct tl_particles *particles, bool *lifted);
+
 /* Projects a point that moved from `before` to `x` to the outer side of a plane, and applies Coulomb
  * friction. The plane passes at `thickness_m` above the point `surface`, which moved there from
  * `surface_before`.

@@ -31,7 +31,6 @@ void tl_apart_release(struct tl_apart *apart)
     free(apart->base);
     free(apart->radius);
     free(apart->way);
-    free(apart->left);
     free(apart->off);
     free(apart->plane_first);
     free(apart->planes);
@@ -81,7 +80,6 @@ void tl_apart_prepare(struct tl_apart *apart, const struct tl_apart_params *para
                                .base = TL_NEW_ARRAY(vec3d, count),
                                .radius = TL_NEW_ARRAY(double, count),
                                .way = TL_NEW_ARRAY(vec3d, count),
-                               .left = TL_NEW_ARRAY(vec3d, count),
                                .off = TL_NEW_ARRAY(double, count),
                                .plane_first = TL_NEW_ARRAY(uint32_t, count + 1)};
     measure_sizes(params->topology, params->rest, apart->size);
@@ -91,7 +89,7 @@ void tl_apart_prepare(struct tl_apart *apart, const struct tl_apart_params *para
 
 bool tl_apart_is_due(const struct tl_apart *apart, double h)
 {
-    return !apart->current || (apart->rim && apart->substeps >= RIM_SUBSTEPS) ||
+    return !apart->current || apart->late || (apart->rim && apart->substeps >= RIM_SUBSTEPS) ||
            (apart->stopped && apart->substeps >= STOPPED_SUBSTEPS) || apart->time_s + h > apart->longest_s;
 }
 
@@ -135,6 +133,12 @@ void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params
     tl_apart_set_time(apart, apart->time_s + params->h);
     if (!apart->clean)
         tl_untangle_push(&apart->untangle, params->h, particles);
+    tl_apart_push(apart, params, particles);
+}
+
+void tl_apart_push(struct tl_apart *apart, const struct tl_apart_params *params,
+                   struct tl_particles *particles)
+{
     for (size_t i = 0; i < apart->contacts.count; i++)
         solve_contact(apart, &apart->contacts.contacts[i], (struct tl_range){0, 4}, params, particles);
 }
@@ -337,26 +341,23 @@ static struct truncation truncate_widely(struct tl_apart *apart, const struct tl
     return seen;
 }
 
-void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
-                       struct tl_particles *particles)
+void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
+                       const bool *free, struct tl_particles *particles)
 {
     if (!apart->current)
         return;
-    /* Planes have moved in this substep, and what comes after it has moved vertices once more: from where
-     * they were left, so that none is moved back that stayed there. */
-    bool again = apart->spent && apart->substeps == 1;
-    const vec3d *from = again ? apart->left : particles->previous;
     struct truncation seen = {.over = apart->spent};
     if (!apart->spent)
         seen = truncate_all(apart, params, free, particles->x);
-    if (seen.over)
+    bool over = seen.over, sunk;
+    if (over)
         seen = truncate_widely(apart, params, free, from, false, particles->x);
-    if (seen.sunk)
+    sunk = seen.sunk;
+    if (sunk)
         seen = truncate_widely(apart, params, free, from, true, particles->x);
-    if (apart->spent)
-        memcpy(apart->left, particles->x, particles->count * sizeof *particles->x);
+    apart->late = apart->late || ((over || sunk) && from != particles->previous);
     apart->clean = apart->clean && !seen.let_go;
-    apart->current = apart->current && !seen.let_go && !again;
+    apart->current = apart->current && !seen.let_go;
     apart->rim = apart->rim || seen.rim;
     apart->stopped = apart->stopped || seen.stopped;
 }

@@ -90,6 +90,7 @@ struct tl_apart {
     bool current;              /* there is a window */
     bool rim, stopped;         /* a vertex has come near its ball's rim; a plane has stopped one */
     bool spent;                /* its planes have moved, and hold for the present substep only */
+    bool late;                 /* it was made after a substep, for what that has left to do */
     int substeps;              /* of the window so far */
     double time_s;             /* of the window so far */
     double longest_s;          /* that the common motion may be continued */
@@ -101,7 +102,6 @@ struct tl_apart {
     vec3d *base;           /* [vertex] m */
     double *radius;        /* [vertex] m, of the balls */
     vec3d *way;            /* [vertex] m, from base to where the vertex wants to be; 0 unless widened */
-    vec3d *left;           /* [vertex] m, positions after the last truncation by planes that moved */
     double *off;           /* [vertex] m, from the list's base, common motion taken out */
     uint32_t *plane_first; /* [vertex + 1] */
     size_t plane_capacity;
@@ -139,6 +139,10 @@ void tl_apart_renew(struct tl_apart *apart, const struct tl_apart_params *params
 void tl_apart_solve(struct tl_apart *apart, const struct tl_apart_params *params,
                     struct tl_particles *particles);
 
+/* Pushes pairs apart as tl_apart_solve does, once more in the same substep. */
+void tl_apart_push(struct tl_apart *apart, const struct tl_apart_params *params,
+                   struct tl_particles *particles);
+
 /* Carries what lies on cloth that lies on the body, after contact with the body has moved that. */
 void tl_apart_carry(struct tl_apart *apart, const struct tl_apart_params *params,
                     struct tl_particles *particles);
@@ -152,11 +156,12 @@ void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params
 void tl_apart_set_time(struct tl_apart *apart, double time_s);
 
 /* Moves every vertex back that has passed a plane. Where vertices want to leave their balls, or far past a
- * plane, a new window is made first, about this substep's start and as wide as its ways, so that only what
- * would meet within the substep is held back. Where vertices are far past a plane of that too, planes move
- * on with their pairs during the substep (keep_apart.c). If there are `free` ones (NULL: none), these are
- * left where they are, and crossings are searched from then on until there are none. */
-void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const bool *free,
-                       struct tl_particles *particles);
+ * plane, a new window is made first, about the positions `from` and as wide as the ways from there, so that
+ * only what would meet on these ways is held back. Where vertices are far past a plane of that too, planes
+ * move on with their pairs (keep_apart.c). `from` are particles->previous within a substep; after it, the
+ * positions that the last truncation left. If there are `free` ones (NULL: none), these are left where they
+ * are, and crossings are searched from then on until there are none. */
+void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
+                       const bool *free, struct tl_particles *particles);
 
 #endif

@@ -54,6 +54,7 @@ static void undress(struct dressed *d)
 struct worst {
     double deepest, strain;
     size_t caught, caught_frames;
+    size_t crossings, crossed_frames;
 };
 
 /* Moves the avatar to d->pose within a frame. `tolerance`: rounding of the collider's float coordinates. */
@@ -68,6 +69,8 @@ static void step(struct dressed *d, struct worst *worst)
     worst->strain = fmax(worst->strain, report.max_strain);
     worst->caught = report.caught_count > worst->caught ? report.caught_count : worst->caught;
     worst->caught_frames += report.caught_count > 0;
+    worst->crossings = report.crossing_count > worst->crossings ? report.crossing_count : worst->crossings;
+    worst->crossed_frames += report.crossing_count > 0;
     assert_near(report.deepest_m, 0, tolerance);
     assert_true(report.max_strain <
                 5); /* half the strain at which the solver gives up; caught cloth slips at 1.5 */
@@ -75,8 +78,11 @@ static void step(struct dressed *d, struct worst *worst)
 
 static void print_worst(const char *name, int frames, const struct worst *worst)
 {
-    printf("%s: %d frames, deepest %.3g mm, strain %.2f, at most %zu vertices caught, in %zu frames\n", name,
-           frames, 1e3 * worst->deepest, worst->strain, worst->caught, worst->caught_frames);
+    printf(
+        "%s: %d frames, deepest %.3g mm, strain %.2f, at most %zu vertices caught, in %zu frames; %zu pairs "
+        "cross, in %zu frames\n",
+        name, frames, 1e3 * worst->deepest, worst->strain, worst->caught, worst->caught_frames,
+        worst->crossings, worst->crossed_frames);
 }
 
 static void dress_walker(struct dressed *d, float edge_m)
@@ -100,9 +106,12 @@ static void walk(struct dressed *d, int frame)
         d->pose[i] = glms_vec3_lerp(model->mesh.positions[i], d->pose[i], part);
 }
 
+/* Arms that go through the skirt and into the legs leave it no place: a few pairs cross for some frames. When
+ * all caught cloth was let through at once, 196 pairs did, in 5 of the 75 frames. */
 static void test_walking(void **state)
 {
     (void)state;
+    const size_t most_crossings = 40;
     struct dressed d = {0};
     struct worst worst = {0};
     dress_walker(&d, params_defaults().edge_m);
@@ -112,6 +121,7 @@ static void test_walking(void **state)
         step(&d, &worst);
     }
     print_worst("walking", frames, &worst);
+    assert_true(worst.crossings < most_crossings);
     double mean_height = 0;
     for (size_t i = 0; i < d.cloth->particles.count; i++)
         mean_height += d.cloth->particles.x[i].y / (double)d.cloth->particles.count;
@@ -197,6 +207,7 @@ static void check_twisting(const char *garment, const char *avatar)
         }
         printf("%s: ", tl_cloth_solver_names[cases[i].solver]);
         print_worst(garment, frames, &worst);
+        assert_int_equal(worst.crossings, 0);
     }
     undress(&d);
 }

@@ -138,6 +138,8 @@ static int number_of(const char *variable, int usual)
     return wanted ? atoi(wanted) : usual;
 }
 
+/* Sheets press the lowest ones into the ball, which lets none of them through the others: only a body that
+ * moves may. */
 static void test_ball(void **state)
 {
     (void)state;
