@@ -4,6 +4,7 @@
 #include "cloth/build.h"
 #include "cloth/contact/caught.h"
 #include "cloth/drive/hand.h"
+#include "cloth/drive/holds.h"
 #include "cloth/drive/wind.h"
 #include "cloth/measure.h"
 #include "cloth/solvers/verlet.h"
@@ -179,6 +180,10 @@ static void look_around(tl_cloth *cloth, const struct tl_substep *substep)
 
 static void draw_seams(tl_cloth *cloth, const struct tl_substep *substep)
 {
+    const tl_garment *garment = cloth->garment;
+    if (cloth->hanging || tl_seams_are_closing(&cloth->seams))
+        tl_holds_draw(garment->holds, garment->hold_count, cloth->topology.weld, cloth->hanging, substep->h,
+                      &cloth->particles);
     if (cloth->seams.pair_count > 0)
         tl_seams_solve(&cloth->seams, &cloth->particles, substep->h);
 }
@@ -517,7 +522,7 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
     bool ground = collider && tl_collider_has_ground(collider);
     for (size_t i = 0; i < cloth->particles.count && collider && !pushed; i++)
         pushed = cloth->contacts.allowed_depth[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
-    return pushed || cloth->grabbed || cloth->seams.pair_count > 0 ||
+    return pushed || cloth->grabbed || cloth->hanging || cloth->seams.pair_count > 0 ||
            (cloth->params.self_contact && !cloth->apart.clean) || wind[0] != 0 || wind[1] != 0 ||
            wind[2] != 0;
 }

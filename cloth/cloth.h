@@ -78,6 +78,7 @@ struct tl_cloth_report {
         unconverged_steps; /* settle: steps since creation whose solve reached cg_iterations: still bounded */
     size_t shortened_steps; /* settle: steps since creation that were shortened because they gained energy */
     double deepest_m;       /* deepest penetration of the avatar's surface or the ground; 0: none */
+    size_t inside_count;    /* particles inside the avatar or below the ground */
     size_t caught_count;    /* particles caught between parts of the avatar in the last frame: moved back
                                outside,    or slipped past one part, both at the price of strain */
     bool settled;

@@ -71,27 +71,27 @@ static double rms_strain(const tl_cloth *cloth)
     return sqrt(squares / (3.0 * (double)cloth->topology.triangle_count));
 }
 
-/* Depth of a point below the surface if it is larger than `min`, else `min`. The sign at the nearest feature
- * is not enough: where the surface passes through itself, creases are inside out. The winding number, which
- * is expensive, confirms it. */
-static double depth_at(const tl_collider *collider, const double point[3], double min)
+/* Depth of a point below the surface; 0: outside. The sign at the nearest feature is not enough: where the
+ * surface passes through itself, creases are inside out. The winding number, which is expensive, confirms it.
+ */
+static double depth_at(const tl_collider *collider, const double point[3])
 {
     const double reach_m = 0.1;
     struct tl_contact contact;
-    bool behind = tl_collider_query(collider, point, reach_m, &contact) && -contact.distance_m > min;
-    return behind && tl_collider_winding(collider, point) > 0.5 ? -contact.distance_m : min;
+    bool behind = tl_collider_query(collider, point, reach_m, &contact) && contact.distance_m < 0;
+    return behind && tl_collider_winding(collider, point) > 0.5 ? -contact.distance_m : 0;
 }
 
-static double max_depth(const tl_cloth *cloth, const tl_collider *collider)
+static void measure_depths(const tl_cloth *cloth, const tl_collider *collider, struct tl_cloth_report *report)
 {
-    double worst = 0;
     for (size_t i = 0; i < cloth->particles.count; i++) {
         const double point[3] = {cloth->particles.x[i].x, cloth->particles.x[i].y, cloth->particles.x[i].z};
-        worst = depth_at(collider, point, worst);
+        double depth = depth_at(collider, point);
         if (tl_collider_has_ground(collider))
-            worst = fmax(worst, -point[1]);
+            depth = fmax(depth, -point[1]);
+        report->inside_count += depth > 0;
+        report->deepest_m = fmax(report->deepest_m, depth);
     }
-    return worst;
 }
 
 struct tl_energies tl_cloth_energies(const tl_cloth *cloth)
@@ -144,6 +144,6 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     report.piece_count = tl_layers_pieces(&cloth->topology, pieces);
     free(pieces);
     if (collider)
-        report.deepest_m = max_depth(cloth, collider);
+        measure_depths(cloth, collider, &report);
     return report;
 }

@@ -105,6 +105,32 @@ static bool close_seams(tl_cloth *cloth, const tl_collider *collider, const stru
     return good;
 }
 
+/* Seconds for which a garment that is held by its waist hangs from there, until it sits. */
+#define HANG_S 0.5
+
+static bool holds_height(const tl_garment *garment)
+{
+    for (size_t i = 0; i < garment->hold_count; i++)
+        if (garment->holds[i].axis == 1)
+            return true;
+    return false;
+}
+
+static bool hang(tl_cloth *cloth, const tl_collider *collider, const struct tl_cloth_params *params,
+                 tl_error *error)
+{
+    const struct tl_cloth_params now = params_of_phase(params, 0);
+    const struct tl_advance_params advance = advance_params(params, phases[0].drag);
+    bool good = true;
+    cloth->hanging = true;
+    for (double hung_s = 0; good && hung_s < HANG_S; hung_s += 1 / params->frame_rate) {
+        tl_cloth_use_solver(cloth, &now);
+        good = tl_cloth_advance(cloth, collider, &advance, error);
+    }
+    cloth->hanging = false;
+    return good;
+}
+
 bool tl_cloth_sew(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_cloth_params chosen = cloth->params;
@@ -122,7 +148,10 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     double settled_s = tl_seams_are_closing(&cloth->seams) ? frame_s : 0, phase_s = settled_s;
     size_t phase = 0;
     cloth->settled = false;
+    bool is_new = cloth->seams.pair_count > 0 && cloth->seams.elapsed_s == 0;
     bool good = !(params->settle_s > 0) || close_seams(cloth, collider, params, error);
+    if (good && params->settle_s > 0 && is_new && holds_height(cloth->garment))
+        good = hang(cloth, collider, params, error);
     bool tried = false, carried = false;
     struct tl_progress progress = tl_progress_begin("settling the cloth");
     struct stops stops = {0};

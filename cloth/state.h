@@ -34,6 +34,7 @@ struct tl_cloth {
     struct tl_layers layers; /* with params.self_contact */
     struct tl_apart apart;   /* the same */
     struct tl_seams seams;
+    bool hanging; /* settling has just begun: holds of height still draw */
     size_t pin_count;
     struct tl_pin *pins;
     bool grabbed;

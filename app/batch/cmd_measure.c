@@ -89,6 +89,21 @@ static void print_tables(const struct tl_measures *measures)
     }
 }
 
+/* How the cloth came to lie: what a pattern that does not fit shows first. */
+static void print_cloth(const tl_session *session)
+{
+    const struct tl_cloth_report report = tl_session_report(session);
+    if (report.vertex_count == 0)
+        return;
+    printf("cloth, %s: %zu vertices, %zu triangles\n",
+           tl_garment_state_names[tl_session_garment_state(session)], report.vertex_count,
+           report.triangle_count);
+    printf("  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
+           "the ground, %.1f mm deep; %zu pairs of triangles cross\n\n",
+           PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,
+           MM * report.deepest_m, report.crossing_count);
+}
+
 /* ---- CSV ---- */
 
 /* Quotes a name, and doubles the quotes in it [RFC 4180]. */
@@ -180,9 +195,27 @@ static void add_panel(cJSON *panels, const struct tl_panel_measures *panel)
     cJSON_AddItemToArray(panels, item);
 }
 
-static cJSON *describe(const struct tl_measures *measures)
+static void add_cloth(cJSON *object, const tl_session *session)
+{
+    const struct tl_cloth_report report = tl_session_report(session);
+    if (report.vertex_count == 0)
+        return;
+    cJSON *item = cJSON_AddObjectToObject(object, "cloth");
+    cJSON_AddStringToObject(item, "state", tl_garment_state_names[tl_session_garment_state(session)]);
+    cJSON_AddNumberToObject(item, "vertices", (double)report.vertex_count);
+    cJSON_AddNumberToObject(item, "triangles", (double)report.triangle_count);
+    cJSON_AddNumberToObject(item, "open_seams", (double)report.open_seams);
+    cJSON_AddNumberToObject(item, "inside", (double)report.inside_count);
+    cJSON_AddNumberToObject(item, "deepest_mm", MM * report.deepest_m);
+    cJSON_AddNumberToObject(item, "crossings", (double)report.crossing_count);
+    cJSON_AddNumberToObject(item, "rms_strain_percent", PERCENT * report.rms_strain);
+    cJSON_AddNumberToObject(item, "max_strain_percent", PERCENT * report.max_strain);
+}
+
+static cJSON *describe(const tl_session *session, const struct tl_measures *measures)
 {
     cJSON *object = cJSON_CreateObject();
+    add_cloth(object, session);
     cJSON *panels = cJSON_AddArrayToObject(object, "panels");
     for (size_t i = 0; i < measures->panel_count; i++)
         add_panel(panels, &measures->panels[i]);
@@ -243,14 +276,17 @@ static struct tl_measures measure(tl_session *session)
     return measures;
 }
 
-static bool report(const struct tl_measures *measures, const struct tl_arguments *arguments, tl_error *error)
+static bool report(const tl_session *session, const struct tl_measures *measures,
+                   const struct tl_arguments *arguments, tl_error *error)
 {
     if (arguments->output && !write_file(arguments->output, measures, error))
         return false;
-    if (arguments->json)
-        tl_json_print(describe(measures));
-    else
+    if (arguments->json) {
+        tl_json_print(describe(session, measures));
+    } else {
+        print_cloth(session);
         print_tables(measures);
+    }
     return true;
 }
 
@@ -267,7 +303,7 @@ bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
         done = tl_session_go_to(session, arguments->first_frame, error);
     if (done) {
         struct tl_measures measures = measure(session);
-        done = report(&measures, arguments, error);
+        done = report(session, &measures, arguments, error);
         tl_measures_release(&measures);
     }
     tl_session_destroy(&session);

@@ -146,6 +146,7 @@ static struct tl_cache_key key_of(const struct tl_drape_request *request)
     ADD(&key, garment->model.colours, count);
     ADD(&key, garment->seams, garment->seam_count);
     ADD(&key, garment->pins, garment->pin_count);
+    ADD(&key, garment->holds, garment->hold_count);
     tl_cache_key_add(&key, &garment->welds_seams_only, sizeof garment->welds_seams_only);
     if (request->avatar)
         add_mesh(&key, &request->avatar->model.mesh);

@@ -26,5 +26,6 @@ void tl_garment_release(tl_garment *garment)
     free(garment->modelled);
     free(garment->seams);
     free(garment->pins);
+    free(garment->holds);
     *garment = (tl_garment){0};
 }

@@ -11,6 +11,14 @@ struct tl_seam_pair {
     uint32_t a, b;
 }; /* render vertices that sewing pulls together and then welds */
 
+/* A vertex that is drawn to the plane where its coordinate `axis` is `level_m`: one of height (axis 1) for
+ * the first half second of hanging, the others while panels are sewn. Nothing holds it afterwards. */
+struct tl_hold {
+    uint32_t vertex; /* render */
+    int axis, side;  /* side 1 or -1: only from below or from above the level; 0: from both */
+    float level_m;
+};
+
 /* What is the rest shape of a garment from a file (assets/charts/rest.h). */
 enum tl_rest_choice { TL_REST_AUTO, TL_REST_UV, TL_REST_MESH };
 extern const char *const tl_rest_names[]; /* "auto", "uv", "mesh"; NULL-terminated */
@@ -28,7 +36,9 @@ typedef struct tl_garment {
         welds_seams_only; /* what starts at one place is not one for that: panels that hang over each other */
     size_t pin_count;
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
-    bool solid;     /* rigid, not cloth (assets/builtin/specimen.h) */
+    size_t hold_count;
+    struct tl_hold *holds;
+    bool solid; /* rigid, not cloth (assets/builtin/specimen.h) */
 } tl_garment;
 
 /* Replaces the garment's pins by the vertices that its model's file pins; a file without pins changes

@@ -23,7 +23,12 @@
 
 /* One edge of an outline: a Bezier curve or an arc. */
 struct tl_pattern_edge {
-    char *label;           /* "" for none */
+    char *label; /* "" for none */
+    struct tl_pattern_hold {
+        bool is_set;
+        int axis, side;    /* as in struct tl_hold */
+        double level;      /* m */
+    } hold;                /* of its vertices (tl_pattern_hold) */
     struct tl_curve curve; /* a line or a curve of second degree, too; unused in arcs */
     bool is_arc;
     struct tl_point centre;      /* of an arc */

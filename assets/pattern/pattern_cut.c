@@ -231,6 +231,36 @@ static void sew(const struct pattern_cutting *cutting, tl_garment *garment)
     }
 }
 
+/* Where a neck line meets that of the other half, in front and behind, both would draw it to their sides: it
+ * is left free. */
+static bool is_centre(const struct pattern_cutting *cutting, const struct tl_pattern_side *side, bool end)
+{
+    const struct tl_pattern_panel *panel = &cutting->pattern->panels[side->panel];
+    const struct tl_pattern_edge *edge = &panel->edges[(side->edge + (end ? 1 : 0)) % panel->edge_count];
+    struct tl_point at = tl_pattern_edge_start(edge);
+    double x = panel->origin[0] + at.x * panel->across[0] + at.y * panel->up[0];
+    return fabs(x) < cutting->edge_m / 2;
+}
+
+static void hold(const struct pattern_cutting *cutting, tl_garment *garment)
+{
+    const tl_pattern *pattern = cutting->pattern;
+    for (size_t p = 0; p < pattern->panel_count; p++)
+        for (size_t e = 0; e < pattern->panels[p].edge_count; e++) {
+            const struct tl_pattern_hold *rule = &pattern->panels[p].edges[e].hold;
+            const struct tl_pattern_side side = {p, e};
+            size_t count = rule->is_set ? (size_t)*segments_of(cutting, &side) + 1 : 0;
+            garment->holds = tl_resize(garment->holds, garment->hold_count + count, sizeof *garment->holds);
+            for (size_t n = 0; n < count; n++) {
+                bool ends = n == 0 || n + 1 == count;
+                if (rule->side != 0 && ends && is_centre(cutting, &side, n > 0))
+                    continue;
+                garment->holds[garment->hold_count++] = (struct tl_hold){
+                    edge_vertex(cutting, &side, n), rule->axis, rule->side, (float)rule->level};
+            }
+        }
+}
+
 static void make_garment(const struct pattern_cutting *cutting, tl_garment *out)
 {
     tl_mesh *mesh = &out->model.mesh;
@@ -246,6 +276,7 @@ static void make_garment(const struct pattern_cutting *cutting, tl_garment *out)
     lay_out(cutting, out);
     add_parts(cutting, &out->model);
     sew(cutting, out);
+    hold(cutting, out);
 }
 
 bool tl_pattern_cut(const tl_pattern *pattern, float edge_m, tl_garment *out, tl_error *error)

@@ -15,6 +15,10 @@
 #define BELOW_SHOULDER_M 0.05
 /* Of the average body's height (GarmentCode's mean_all: 1.457 of 1.720 m). */
 #define SHOULDER_SHARE 0.847
+#define ARMSCYE_SHARE  0.075
+#define NECK_SHARE     0.11
+/* Neck lines may lie so far inside the neck's own width on either side. */
+#define NECK_EASE_M 0.01
 /* The vertical part of a panel's y axis: less, and it is turned. */
 #define UPRIGHT                0.98
 #define TL_LIMIT_MEASURE_BYTES ((size_t)1 << 20)
@@ -26,8 +30,11 @@ static void take_measure(struct tl_pattern_measures *measures, const char *key, 
     const struct {
         const char *key;
         double *value;
-    } known[] = {
-        {"height", &measures->height}, {"head_l", &measures->head}, {"waist_line", &measures->waist_line}};
+    } known[] = {{"height", &measures->height},
+                 {"head_l", &measures->head},
+                 {"waist_line", &measures->waist_line},
+                 {"armscye_depth", &measures->armscye},
+                 {"neck_w", &measures->neck}};
     char *end;
     double cm = strtod(text, &end);
     for (size_t i = 0; i < TL_COUNT(known); i++)
@@ -102,13 +109,19 @@ bool tl_pattern_measures(const char *body_path, struct tl_pattern_measures *out)
 struct tl_pattern_levels tl_pattern_levels(const struct tl_pattern_measures *measures, const tl_mesh *body)
 {
     struct tl_waist waist;
-    if (measures->height > 0) {
-        double shoulder = measures->height - measures->head;
-        return (struct tl_pattern_levels){shoulder - measures->waist_line, shoulder};
-    }
     struct tl_box box = tl_box_of(body->positions, body->vertex_count);
-    double shoulder = (double)box.lower.y + SHOULDER_SHARE * (double)(box.upper.y - box.lower.y);
-    return (struct tl_pattern_levels){tl_mesh_waist(body, &waist) ? (double)waist.y_m : 0, shoulder};
+    double height = measures->height > 0 ? measures->height : (double)(box.upper.y - box.lower.y);
+    double shoulder = measures->height > 0 ? measures->height - measures->head
+                                           : (double)box.lower.y + SHOULDER_SHARE * height;
+    double armscye = measures->armscye > 0 ? measures->armscye : ARMSCYE_SHARE * height;
+    double neck = measures->neck > 0 ? measures->neck : NECK_SHARE * height;
+    struct tl_pattern_levels levels = {
+        .shoulder = shoulder, .under_arm = shoulder - armscye, .neck = neck / 2 - NECK_EASE_M};
+    if (measures->height > 0)
+        levels.waist = shoulder - measures->waist_line;
+    else if (tl_mesh_waist(body, &waist))
+        levels.waist = (double)waist.y_m;
+    return levels;
 }
 
 /* ---- Panels at the waist ---- */
@@ -242,4 +255,23 @@ bool tl_pattern_raise(tl_pattern *pattern, const struct tl_pattern_levels *level
     }
     free(done);
     return mean.length > 0;
+}
+
+/* ---- Holds ---- */
+
+void tl_pattern_hold(tl_pattern *pattern, const struct tl_pattern_levels *levels)
+{
+    enum { X, Y };
+    const struct {
+        const char *label;
+        struct tl_pattern_hold hold;
+    } known[] = {{TL_PATTERN_AT_WAIST, {levels->waist > 0, Y, 0, levels->waist}},
+                 {TL_PATTERN_STRAPLESS, {true, Y, 0, levels->under_arm}},
+                 {TL_PATTERN_LEFT_COLLAR, {levels->neck > 0, X, 1, levels->neck}},
+                 {TL_PATTERN_RIGHT_COLLAR, {levels->neck > 0, X, -1, -levels->neck}}};
+    for (size_t p = 0; p < pattern->panel_count; p++)
+        for (size_t e = 0; e < pattern->panels[p].edge_count; e++)
+            for (size_t k = 0; k < TL_COUNT(known); k++)
+                if (strcmp(pattern->panels[p].edges[e].label, known[k].label) == 0)
+                    pattern->panels[p].edges[e].hold = known[k].hold;
 }

@@ -13,6 +13,7 @@ static void place(tl_pattern *pattern, const struct tl_pattern_wearer *wearer)
     if (!wearer->mesh)
         return;
     struct tl_pattern_levels levels = tl_pattern_levels(&measures, wearer->mesh);
+    tl_pattern_hold(pattern, &levels);
     if (levels.waist > 0 && tl_pattern_raise(pattern, &levels))
         tl_info("%s: hung at the waist of %s, %.3f m high by %s", pattern->name, wearer->name, levels.waist,
                 known ? "the measures beside it" : "its girths");

@@ -5,6 +5,8 @@ set -u
 
 quick="--set cloth.edge_m=0.05 --set cloth.settle_s=2 --quiet"
 check "a built-in cut is measured" sh -c "$TOILE measure --garment dress $quick -o dress.csv >dress.txt"
+check "how the cloth lies comes first" sh -c "head -1 dress.txt | grep -Eq '^cloth, (at rest|moved, not at rest): [0-9]+ vertices, [0-9]+ triangles$'"
+check "with strain, open seams, what is inside, what crosses" grep -Eq '^  strain [0-9.]+ % rms, [0-9]+ % at most; 0 open pairs of seams; 0 vertices inside .*; 0 pairs of triangles cross$' dress.txt
 check "its panels are listed" grep -Eq '^bodice 1 +[0-9.]+ +[0-9.]+ ' dress.txt
 check "its openings are named" sh -c "for name in neck 'left armhole' 'right armhole' hem; do grep -q \"^\$name  *[0-9]\" dress.txt || exit 1; done"
 check "the hem's height is that of its lowest cloth or above it" sh -c "grep -q '^opening,\"hem\",height,mm,,[4-8][0-9][0-9]\.' dress.csv"

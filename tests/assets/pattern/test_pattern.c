@@ -306,20 +306,68 @@ static void test_panels_at_the_waist_are_raised(void **state)
         tl_pattern_release(&pattern);
     }
     tl_pattern plain = load_curved(NULL, CM);
-    assert_false(tl_pattern_raise(&plain, &(struct tl_pattern_levels){1.05, 1.4}));
+    assert_false(tl_pattern_raise(&plain, &(struct tl_pattern_levels){.waist = 1.05, .shoulder = 1.4}));
     tl_pattern_release(&plain);
+}
+
+/* A square of 20 by 10 cm whose bottom has a label: which vertices are held, where to, and from which side.
+ */
+static void test_labelled_edges_are_held(void **state)
+{
+    (void)state;
+    const struct tl_pattern_levels levels = {1.05, 1.4, 1.27, 0.08};
+    const struct {
+        const char *label;
+        double left; /* cm, where the panel's left edge hangs */
+        struct tl_hold hold;
+        size_t count; /* of the bottom's vertices, 10 cm apart */
+    } cases[] = {{"lower_interface", -10, {0, 1, 0, 1.05f}, 3}, {"strapless_top", -10, {0, 1, 0, 1.27f}, 3},
+                 {"left_collar", 5, {0, 0, 1, 0.08f}, 3},       {"right_collar", -25, {0, 0, -1, -0.08f}, 3},
+                 {"left_collar", 0, {0, 0, 1, 0.08f}, 2},       {"right_collar", -20, {0, 0, -1, -0.08f}, 2},
+                 {"left_armhole", 5, {0, 0, 0, 0}, 0}};
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        char text[1024];
+        tl_error error = {0};
+        tl_pattern pattern;
+        tl_garment garment;
+        snprintf(text, sizeof text,
+                 "\"panels\": {\"front\": {" SQUARE ", \"translation\": [%g, 120, 0], \"edges\": "
+                 "[{\"endpoints\": [0, 1], \"label\": \"%s\"}, {\"endpoints\": [1, 2]}, "
+                 "{\"endpoints\": [2, 3]}, {\"endpoints\": [3, 0]}]}}",
+                 cases[i].left, cases[i].label);
+        assert_ok(tl_pattern_load(write_pattern("held.json", text, CM), &pattern, &error), error);
+        tl_pattern_hold(&pattern, &levels);
+        assert_ok(tl_pattern_cut(&pattern, 0.09f, &garment, &error), error);
+        assert_int_equal(garment.hold_count, cases[i].count);
+        for (size_t k = 0; k < garment.hold_count; k++) {
+            const struct tl_hold *hold = &garment.holds[k];
+            vec3s at = garment.model.mesh.positions[hold->vertex];
+            assert_near(at.y, 1.2, 1e-6);
+            assert_true(hold->side == 0 || fabs((double)at.x) > 0.01);
+            assert_int_equal(hold->axis, cases[i].hold.axis);
+            assert_int_equal(hold->side, cases[i].hold.side);
+            assert_near(hold->level_m, cases[i].hold.level_m, 1e-7);
+        }
+        tl_garment_release(&garment);
+        tl_pattern_release(&pattern);
+    }
 }
 
 static void test_measures_stand_beside_the_body(void **state)
 {
     (void)state;
     struct tl_pattern_measures measures;
-    const char *good = "body:\n  height: 170\n  head_l: 26\n  waist_line: 37.5\n  list: [1, 2]\n";
+    const char *good = "body:\n  height: 170\n  head_l: 26\n  waist_line: 37.5\n  armscye_depth: 14\n"
+                       "  neck_w: 18\n  list: [1, 2]\n";
+    const tl_mesh nobody = {0};
     const char *other = "camera:\n  height: 170\n";
     scratch_write(scratch("body.yaml"), good, strlen(good));
     assert_true(tl_pattern_measures(scratch("body.obj"), &measures));
-    assert_near(tl_pattern_levels(&measures, NULL).waist, 1.065, 1e-12);
-    assert_near(tl_pattern_levels(&measures, NULL).shoulder, 1.44, 1e-12);
+    const struct tl_pattern_levels levels = tl_pattern_levels(&measures, &nobody);
+    assert_near(levels.waist, 1.065, 1e-12);
+    assert_near(levels.shoulder, 1.44, 1e-12);
+    assert_near(levels.under_arm, 1.3, 1e-12);
+    assert_near(levels.neck, 0.08, 1e-12);
     scratch_write(scratch("scene.yaml"), other, strlen(other));
     assert_false(tl_pattern_measures(scratch("scene.obj"), &measures));
     assert_false(tl_pattern_measures(scratch("absent.obj"), &measures));
@@ -500,6 +548,7 @@ int main(void)
         cmocka_unit_test(test_seams_run_against_each_other),
         cmocka_unit_test(test_darts_are_cut_out),
         cmocka_unit_test(test_panels_at_the_waist_are_raised),
+        cmocka_unit_test(test_labelled_edges_are_held),
         cmocka_unit_test(test_measures_stand_beside_the_body),
         cmocka_unit_test(test_broken_files_are_refused_by_their_place),
         cmocka_unit_test(test_a_line_that_is_no_json_is_named),
