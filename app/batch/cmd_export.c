@@ -59,7 +59,7 @@ static bool export_frame(tl_session *session, const struct tl_arguments *argumen
     if (!tl_session_go_to(session, arguments->first_frame, error))
         return false;
     tl_frame frame = tl_session_frame(session);
-    tl_surface surfaces[2]; /* as many as a frame has */
+    tl_surface surfaces[TL_SESSION_SURFACES];
     vec3s *positions = NULL;
     memcpy(surfaces, frame.surfaces, frame.surface_count * sizeof *surfaces);
     frame.surfaces = surfaces;
@@ -123,6 +123,7 @@ bool tl_command_export(const struct tl_arguments *arguments, tl_error *error)
     bool is_glb = tl_path_has_extension(arguments->output, "glb"); /* which also holds a body alone */
     if (!(is_glb ? tl_headless_settings : tl_headless_garment_settings)(arguments, &settings, error))
         return false;
+    settings.scene.pattern = false; /* a picture of the garment, no part of it */
     tl_session *session = tl_session_create(&settings, error);
     bool done = session != NULL;
     if (done && !tl_session_garment(session) && !is_glb)

@@ -104,15 +104,13 @@ struct shot {
     uint64_t motion_revision;
 };
 
-#define SURFACES_MAX 2
-
 struct tl_recording {
     tl_session *session;
     int count;
     size_t surface_count;
-    struct shot (*shots)[SURFACES_MAX]; /* [count] */
-    tl_surface surfaces[SURFACES_MAX];  /* what the last frame asked for shows */
-    double *cloth_cpu_ms;               /* [count] */
+    struct shot (*shots)[TL_SESSION_SURFACES]; /* [count] */
+    tl_surface surfaces[TL_SESSION_SURFACES];  /* what the last frame asked for shows */
+    double *cloth_cpu_ms;                      /* [count] */
 };
 
 static void *copy_array(const void *from, size_t count, size_t size)

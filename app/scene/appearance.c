@@ -465,6 +465,24 @@ bool tl_appearance_is_same(const struct tl_settings *a, const struct tl_settings
            tl_colourways_equal(&a->colourways, &b->colourways);
 }
 
+struct tl_spare_appearance *tl_spare_find(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES],
+                                          const struct tl_settings *settings)
+{
+    for (size_t i = 0; i < TL_SPARE_APPEARANCES; i++)
+        if (spares[i].is_kept && tl_appearance_is_same(&spares[i].made_of, settings))
+            return &spares[i];
+    return NULL;
+}
+
+void tl_spare_add(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES], const struct tl_settings *made_of,
+                  const struct tl_appearance *appearance, uint64_t revision)
+{
+    const size_t last = TL_SPARE_APPEARANCES - 1;
+    tl_appearance_release(&spares[last].appearance);
+    memmove(spares + 1, spares, last * sizeof *spares);
+    spares[0] = (struct tl_spare_appearance){true, *appearance, revision, *made_of};
+}
+
 /* Colourways belong to a garment: another garment keeps its own. What follows from options that are taken
  * (overlay_weave, colourways) is taken with them. */
 void tl_appearance_take(const struct tl_settings *from, struct tl_settings *settings)

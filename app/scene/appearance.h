@@ -34,6 +34,23 @@ void tl_appearance_release(struct tl_appearance *appearance); /* frees and zeroe
 /* True when two settings give the same models the same appearance. */
 bool tl_appearance_is_same(const struct tl_settings *a, const struct tl_settings *b);
 
+/* Appearances that were made and are not shown: the newest first. Comparisons alternate between two. */
+struct tl_spare_appearance {
+    bool is_kept;
+    struct tl_appearance appearance;
+    uint64_t revision;
+    struct tl_settings made_of;
+};
+#define TL_SPARE_APPEARANCES 2
+
+/* The one that these settings would make; NULL: none is kept. */
+struct tl_spare_appearance *tl_spare_find(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES],
+                                          const struct tl_settings *settings);
+
+/* Keeps an appearance, whose contents it takes, in place of the oldest one. */
+void tl_spare_add(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES], const struct tl_settings *made_of,
+                  const struct tl_appearance *appearance, uint64_t revision);
+
 /* Copies into `settings` the options of `from` that may differ between two appearances under comparison:
  * those of materials, and of how they are drawn. Camera, light and cloth stay; so do the colourways of
  * another garment. Pure. */

@@ -3,6 +3,7 @@
 #include "cloth/mesh/topology.h"
 #include "config/memory.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -93,4 +94,44 @@ tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
     surface.parts = dressing->parts;
     surface.motion_revision = moving->motion_revision;
     return surface;
+}
+
+/* Moeller & Trumbore 1997; both sides count. */
+static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m,
+                         float weights[3])
+{
+    vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);
+    vec3s p = glms_vec3_cross(direction, other);
+    float determinant = glms_vec3_dot(side, p);
+    if (determinant == 0)
+        return false;
+    vec3s to_origin = glms_vec3_sub(origin, corners[0]);
+    vec3s q = glms_vec3_cross(to_origin, side);
+    float u = glms_vec3_dot(to_origin, p) / determinant;
+    float v = glms_vec3_dot(direction, q) / determinant;
+    *distance_m = glms_vec3_dot(other, q) / determinant;
+    weights[0] = 1 - u - v;
+    weights[1] = u;
+    weights[2] = v;
+    return u >= 0 && v >= 0 && u + v <= 1 && *distance_m > 0;
+}
+
+bool tl_moving_pick(const struct tl_moving *moving, vec3s origin, vec3s direction, uint32_t *vertex,
+                    float *distance_m)
+{
+    const tl_mesh *mesh = &moving->model->mesh;
+    const vec3s *positions = moving->positions;
+    float nearest = FLT_MAX;
+    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
+        const uint32_t *index = &mesh->indices[i];
+        const vec3s corners[3] = {positions[index[0]], positions[index[1]], positions[index[2]]};
+        float distance, weights[3];
+        if (!hit_triangle(origin, direction, corners, &distance, weights) || distance >= nearest)
+            continue;
+        nearest = distance;
+        int best = weights[1] > weights[0] ? 1 : 0;
+        *vertex = index[weights[2] > weights[best] ? 2 : best];
+    }
+    *distance_m = nearest;
+    return nearest < FLT_MAX;
 }

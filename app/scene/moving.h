@@ -34,6 +34,11 @@ void tl_moving_restart_as_authored(struct tl_moving *moving);
 /* Recomputes normals and tangents after `positions` changed, and raises motion_revision. */
 void tl_moving_update(struct tl_moving *moving);
 
+/* The vertex nearest to where a ray first hits the mesh, from either side, and the distance in units of
+ * `direction`'s length. False: it misses, and *vertex is not set. */
+bool tl_moving_pick(const struct tl_moving *moving, vec3s origin, vec3s direction, uint32_t *vertex,
+                    float *distance_m);
+
 /* The appearance of a moving model: a material for each of the model's, and parts that choose among them. */
 struct tl_dressing {
     tl_material *materials; /* the model's, then at most one for each part */

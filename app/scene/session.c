@@ -1,6 +1,7 @@
 #include "app/scene/session.h"
 
 #include "app/drape/drape.h"
+#include "app/scene/board.h"
 #include "app/scene/camera.h"
 #include "app/scene/load.h"
 #include "app/scene/moving.h"
@@ -17,7 +18,6 @@
 #include "config/memory.h"
 #include "render/inspect/legend.h"
 
-#include <float.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -45,6 +45,7 @@ struct tl_session {
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
+    struct tl_moving board; /* made when first asked for; empty: not yet, or there is no pattern */
 
     struct {
         bool wanted;        /* whatever the image shows */
@@ -61,16 +62,11 @@ struct tl_session {
     struct tl_appearance appearance;
     uint64_t appearance_revision; /* of meshes and materials; the renderer sees another one as new */
     uint64_t appearances_made;    /* the highest revision so far */
-    struct tl_spare_appearance {
-        bool is_kept;
-        struct tl_appearance appearance;
-        uint64_t revision;
-        struct tl_settings made_of;
-    } spares[2]; /* the newest first: comparisons alternate between two */
+    struct tl_spare_appearance spares[TL_SPARE_APPEARANCES];
 
     int frame;
     struct tl_box framed; /* what the camera frames, at frame 0 */
-    tl_surface surfaces[2];
+    tl_surface surfaces[TL_SESSION_SURFACES];
     size_t surface_count;
     struct tl_lamp lamps[2];
 };
@@ -218,19 +214,26 @@ static struct tl_box box_of_moving(const struct tl_moving *moving)
  * it: a head that is cut off looks like a mistake, the foot of a dress form does not. */
 #define FRAMED_WITH_BODY 1.6f
 
+static struct tl_box box_of_both(struct tl_box a, struct tl_box b)
+{
+    return (struct tl_box){glms_vec3_minv(a.lower, b.lower), glms_vec3_maxv(a.upper, b.upper)};
+}
+
+/* Of garment and body. */
+static struct tl_box box_of_scene(const tl_session *session)
+{
+    if (!session->garment || !session->avatar)
+        return box_of_moving(session->garment ? &session->dress : &session->body);
+    return box_of_both(box_of_moving(&session->dress), box_of_moving(&session->body));
+}
+
 /* What the camera frames: the garment, which is what is judged; without one, the body. */
 static void frame_garment(tl_session *session)
 {
-    session->framed = (struct tl_box){0};
-    if (session->avatar)
-        session->framed = box_of_moving(&session->body);
+    struct tl_box all = session->framed = box_of_scene(session);
     if (!session->garment)
         return;
-    struct tl_box garment = box_of_moving(&session->dress), all = garment;
-    if (session->avatar) {
-        all.lower = glms_vec3_minv(all.lower, session->framed.lower);
-        all.upper = glms_vec3_maxv(all.upper, session->framed.upper);
-    }
+    struct tl_box garment = box_of_moving(&session->dress);
     bool with_body = all.upper.y - all.lower.y < FRAMED_WITH_BODY * (garment.upper.y - garment.lower.y);
     session->framed = with_body ? all : garment;
 }
@@ -316,6 +319,7 @@ void tl_session_destroy(tl_session **handle)
     if (!session)
         return;
     tl_moving_release(&session->dress);
+    tl_moving_release(&session->board);
     tl_moving_release(&session->body);
     tl_cloth_destroy(&session->cloth);
     tl_collider_destroy(&session->collider);
@@ -515,25 +519,6 @@ static bool change_in_place(tl_session *session, const struct tl_settings *setti
     return !session->cloth || same_cloth || tl_cloth_set(session->cloth, &fabric, &settings->cloth, error);
 }
 
-static struct tl_spare_appearance *find_spare(tl_session *session, const struct tl_settings *settings)
-{
-    for (size_t i = 0; i < TL_COUNT(session->spares); i++)
-        if (session->spares[i].is_kept && tl_appearance_is_same(&session->spares[i].made_of, settings))
-            return &session->spares[i];
-    return NULL;
-}
-
-/* Keeps an appearance in place of the oldest one. */
-static void add_spare(tl_session *session, const struct tl_settings *made_of,
-                      const struct tl_appearance *appearance, uint64_t revision)
-{
-    struct tl_spare_appearance *spares = session->spares;
-    const size_t last = TL_COUNT(session->spares) - 1;
-    tl_appearance_release(&spares[last].appearance);
-    memmove(spares + 1, spares, last * sizeof *spares);
-    spares[0] = (struct tl_spare_appearance){true, *appearance, revision, *made_of};
-}
-
 /* Exchanges the present appearance for a kept one. */
 static void exchange_appearance(tl_session *session, struct tl_spare_appearance *spare)
 {
@@ -549,10 +534,10 @@ static void exchange_appearance(tl_session *session, struct tl_spare_appearance 
 void tl_session_keep_appearance(tl_session *session, const struct tl_settings *made_of,
                                 struct tl_appearance *made)
 {
-    if (tl_appearance_is_same(&session->settings, made_of) || find_spare(session, made_of))
+    if (tl_appearance_is_same(&session->settings, made_of) || tl_spare_find(session->spares, made_of))
         tl_appearance_release(made);
     else
-        add_spare(session, made_of, made, ++session->appearances_made);
+        tl_spare_add(session->spares, made_of, made, ++session->appearances_made);
     *made = (struct tl_appearance){0};
 }
 
@@ -562,7 +547,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
         return tl_session_restart(session, settings, error);
     struct tl_appearance appearance = {0};
     bool is_new = !tl_appearance_is_same(&session->settings, settings);
-    struct tl_spare_appearance *spare = find_spare(session, settings);
+    struct tl_spare_appearance *spare = tl_spare_find(session->spares, settings);
     if (is_new && !spare && !make_appearance(session, settings, &appearance, error))
         return false;
     if (!change_in_place(session, settings, error)) {
@@ -572,7 +557,7 @@ bool tl_session_apply(tl_session *session, const struct tl_settings *settings, t
     if (is_new && spare) {
         exchange_appearance(session, spare);
     } else if (is_new) {
-        add_spare(session, &session->settings, &session->appearance, session->appearance_revision);
+        tl_spare_add(session->spares, &session->settings, &session->appearance, session->appearance_revision);
         session->appearance = appearance;
         session->appearance_revision = ++session->appearances_made;
     }
@@ -634,6 +619,41 @@ static const tl_borders *borders_of_garment(const tl_session *session)
     return is_shown && borders->border_count > 0 ? borders : NULL;
 }
 
+bool tl_session_has_pattern(const tl_session *session)
+{
+    return session->garment && session->garment->pattern && !session->garment->solid;
+}
+
+/* Whether frames have the pattern board, which is made first. */
+static bool shows_board(tl_session *session)
+{
+    if (!session->settings.scene.pattern || !tl_session_has_pattern(session))
+        return false;
+    if (!session->board.model)
+        tl_board_make(session->garment, box_of_scene(session), &session->board);
+    return session->board.model != NULL;
+}
+
+static struct tl_box box_with_board(tl_session *session)
+{
+    if (!shows_board(session))
+        return session->framed;
+    return box_of_both(box_of_moving(&session->board), session->framed);
+}
+
+/* The garment comes last. */
+static void add_garment(tl_session *session)
+{
+    tl_surface garment = tl_moving_surface(&session->dress, TL_SURFACE_GARMENT, &session->appearance.garment);
+    garment.strains = strains_of_garment(session);
+    garment.crossed = crossed_of_garment(session);
+    garment.has_own_normals = tl_session_garment_state(session) == TL_GARMENT_AUTHORED;
+    garment.borders = borders_of_garment(session);
+    if (shows_board(session))
+        session->surfaces[session->surface_count++] = tl_board_surface(&session->board, &garment);
+    session->surfaces[session->surface_count++] = garment;
+}
+
 tl_frame tl_session_frame(tl_session *session)
 {
     session->surface_count = 0;
@@ -642,18 +662,12 @@ tl_frame tl_session_frame(tl_session *session)
         *body = tl_moving_surface(&session->body, "avatar", &session->appearance.avatar);
         body->has_own_normals = session->tucked != NULL;
     }
-    if (session->garment) {
-        tl_surface *garment = &session->surfaces[session->surface_count++];
-        *garment = tl_moving_surface(&session->dress, TL_SURFACE_GARMENT, &session->appearance.garment);
-        garment->strains = strains_of_garment(session);
-        garment->crossed = crossed_of_garment(session);
-        garment->has_own_normals = tl_session_garment_state(session) == TL_GARMENT_AUTHORED;
-        garment->borders = borders_of_garment(session);
-    }
+    if (session->garment)
+        add_garment(session);
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->appearance_revision;
     const struct tl_image_params *image = &session->settings.image;
-    struct tl_camera camera = tl_camera_frame(&session->settings.camera, session->framed,
+    struct tl_camera camera = tl_camera_frame(&session->settings.camera, box_with_board(session),
                                               (float)image->width / (float)image->height);
     session->lamps[0] = tl_lamp_make(&session->settings.lamp, camera.target);
     session->lamps[1] = tl_lamp_make(&session->settings.fill, camera.target);
@@ -693,46 +707,10 @@ bool tl_session_light_plays(const tl_session *session)
     return session->light.sequence.count > 0;
 }
 
-/* Moeller & Trumbore 1997; both sides count. */
-static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m,
-                         float weights[3])
-{
-    vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);
-    vec3s p = glms_vec3_cross(direction, other);
-    float determinant = glms_vec3_dot(side, p);
-    if (determinant == 0)
-        return false;
-    vec3s to_origin = glms_vec3_sub(origin, corners[0]);
-    vec3s q = glms_vec3_cross(to_origin, side);
-    float u = glms_vec3_dot(to_origin, p) / determinant;
-    float v = glms_vec3_dot(direction, q) / determinant;
-    *distance_m = glms_vec3_dot(other, q) / determinant;
-    weights[0] = 1 - u - v;
-    weights[1] = u;
-    weights[2] = v;
-    return u >= 0 && v >= 0 && u + v <= 1 && *distance_m > 0;
-}
-
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m)
 {
-    if (!session->garment)
-        return false;
-    const tl_mesh *mesh = &session->garment->model.mesh;
-    float nearest = FLT_MAX;
-    for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
-        const uint32_t *index = &mesh->indices[i];
-        const vec3s corners[3] = {session->dress.positions[index[0]], session->dress.positions[index[1]],
-                                  session->dress.positions[index[2]]};
-        float distance, weights[3];
-        if (!hit_triangle(origin, direction, corners, &distance, weights) || distance >= nearest)
-            continue;
-        nearest = distance;
-        int best = weights[1] > weights[0] ? 1 : 0;
-        *vertex = index[weights[2] > weights[best] ? 2 : best];
-    }
-    *distance_m = nearest;
-    return nearest < FLT_MAX;
+    return session->garment && tl_moving_pick(&session->dress, origin, direction, vertex, distance_m);
 }
 
 const char *const tl_garment_state_names[] = {"", "as authored", "sewn, not draped", "at rest",

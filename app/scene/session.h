@@ -154,6 +154,12 @@ bool tl_session_light_plays(const tl_session *session);
  * borrowed until the next call that changes the session. Threads: the session's. */
 size_t tl_session_colourways(const tl_session *session, const char *const **names);
 
+/* Surfaces of a frame at most: avatar, pattern board, garment, in this order. */
+#define TL_SESSION_SURFACES 3
+
+/* Whether scene.pattern can show the garment's pieces. Errors: none. Threads: the session's. */
+bool tl_session_has_pattern(const tl_session *session);
+
 /* The present frame for the renderer. Its camera is that of settings.camera; a distance_m of 0 frames avatar
  * and garment as they are at frame 0.
  * Errors: none.

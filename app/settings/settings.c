@@ -71,6 +71,9 @@ static const struct tl_option scene_rows[] = {
                    drape_names,
                    "how the garment starts: authored: as its file has it; settle: at rest on its avatar; "
                    "auto: files as authored, the rest settled, or only sewn when nobody wears it"),
+    TL_OPTION_BOOL(struct tl_scene_params, pattern, TL_AFFECTS_MATERIALS,
+                   "shows the garment's flat pieces beside it, where its pattern is known: views of strain "
+                   "colour both"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),

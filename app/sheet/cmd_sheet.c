@@ -107,7 +107,7 @@ static void frame_garment(tl_session *session, struct tl_settings *settings)
         before = worn; /* recorded motion may begin with flat panels, whose size says nothing */
     float aspect = (float)settings->image.width / (float)settings->image.height;
     struct tl_box box = worn_box(&before, &worn);
-    if (frame.surface_count > 1)
+    if (tl_session_models(session).avatar)
         add_avatar(&frame.surfaces[0], &box);
     struct tl_camera camera = tl_camera_frame(&settings->camera, box, aspect);
     tl_orbit_take(&settings->camera, &camera);

@@ -349,6 +349,18 @@ void tl_act_light_view(struct tl_review *review, int argument)
     tl_review_next_view(review, TL_VIEW_LIGHT - review->wanted.image.view);
 }
 
+void tl_act_pattern(struct tl_review *review, int argument)
+{
+    bool *shown = &review->wanted.scene.pattern;
+    if (!*shown && !tl_session_has_pattern(review->session)) {
+        tl_review_report(review, "no pattern is known of this garment (toile info tells why)");
+        return;
+    }
+    *shown = !*shown;
+    tl_review_report(review, *shown ? "shows the pattern beside the garment" : "hides the pattern");
+    tl_act_frame_all(review, argument);
+}
+
 void tl_act_read_out(struct tl_review *review, int argument)
 {
     (void)argument;

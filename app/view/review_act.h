@@ -56,6 +56,7 @@ tl_review_action tl_act_move_wipe; /* 1 or -1 steps */
 /* View modes of the image. */
 tl_review_action tl_act_next_view;
 tl_review_action tl_act_light_view;
+tl_review_action tl_act_pattern; /* the flat pieces beside the garment */
 tl_review_action tl_act_read_out;
 
 /* Window. */

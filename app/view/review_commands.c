@@ -74,6 +74,7 @@ const struct tl_review_command tl_review_commands[] = {
     {"show normals, UVs, visibility, strain ...", tl_act_next_view, TL_SECTION_INSPECT,
      .keys = {TO(V, 1), WITH_TO(SHIFT, V, -1)}, .button = "Inspect"},
     {"show light again", tl_act_light_view, TL_SECTION_INSPECT, .keys = {KEY(B)}},
+    {"show the flat pattern beside the garment", tl_act_pattern, TL_SECTION_INSPECT, .keys = {KEY(N)}},
     {"print the values under the pointer", tl_act_read_out, TL_SECTION_INSPECT, .keys = {KEY(I)}},
 
     {"open a file: garment, body, motion, light, scene", tl_act_open, TL_SECTION_WINDOW, .keys = {WITH(CTRL, O)},

@@ -294,6 +294,7 @@ void tl_review_build_panel(struct tl_review *review)
     char status[256], progress[256], left[256] = "", right[256] = "", label[256], moment[64];
     float times[TL_FRAME_TIMES_SHOWN];
     char read_out[512];
+    float marks[TL_REVIEW_MARKS][2];
     struct tl_panel_legend legend;
     tl_review_list_buttons(review, &buttons);
     tl_review_read_out(review, read_out, sizeof read_out);
@@ -311,6 +312,8 @@ void tl_review_build_panel(struct tl_review *review)
         .wipe = {tl_review_wipe_column(review, width), left, right},
         .legend = tl_review_legend(review, &legend) ? &legend : NULL,
         .read_out = read_out,
+        .marks = (const float(*)[2])marks,
+        .mark_count = tl_review_marks(review, marks),
         .progress = tl_review_progress(review, progress, sizeof progress),
         .buttons = buttons.of,
         .button_count = buttons.count,

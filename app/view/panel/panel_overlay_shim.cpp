@@ -177,6 +177,21 @@ void draw_legend(const tl_panel_input &input)
     ImGui::End();
 }
 
+void draw_marks(const tl_panel_input &input)
+{
+    const ImGuiIO &io = ImGui::GetIO();
+    const float radius = 7;
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->PushClipRect(ImVec2(0, 0), ImVec2(view_width(input), io.DisplaySize.y));
+    for (size_t i = 0; i < input.mark_count; i++) {
+        const ImVec2 at(input.marks[i][0] / io.DisplayFramebufferScale.x,
+                        input.marks[i][1] / io.DisplayFramebufferScale.y);
+        list->AddCircle(at, radius, shade, 0, 4);
+        list->AddCircle(at, radius, amber, 0, 2);
+    }
+    list->PopClipRect();
+}
+
 /* Next to the pointer, towards the middle of the view. */
 void draw_read_out(const tl_panel_input &input)
 {
@@ -256,6 +271,7 @@ void tl_panel_place_over_view(const tl_panel_input &input, float x, float y)
 void tl_panel_overlay_draw(const tl_panel_input &input)
 {
     draw_wipe(input);
+    draw_marks(input);
     draw_status(input);
     draw_notice(input);
     draw_legend(input);

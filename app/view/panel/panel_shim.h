@@ -82,6 +82,8 @@ struct tl_panel_input {
     struct tl_panel_timeline timeline;
     const struct tl_panel_legend *legend; /* NULL: none */
     const char *read_out;                 /* lines next to the pointer, or "" */
+    const float (*marks)[2];              /* rings over the view, framebuffer pixels */
+    size_t mark_count;
     const struct tl_panel_button *buttons;
     size_t button_count;
     const char *const *favourites; /* "table.key" of the options at the top */

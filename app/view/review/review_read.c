@@ -1,8 +1,10 @@
 #include "app/view/review/review_read.h"
 
+#include "app/scene/board.h"
 #include "app/view/review/review_wipe.h"
 #include "config/memory.h"
 #include "render/inspect/inspect.h"
+#include "render/scene/view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -39,16 +41,55 @@ static void describe(const struct tl_inspection *found, char *text, size_t size)
              (double)found->uv.y, place, strain, seen);
 }
 
-void tl_review_read_out(const struct tl_review *review, char *text, size_t size)
+static bool inspect_under(const struct tl_review *review, struct tl_inspection *found)
 {
     int width, height;
-    struct tl_inspection found;
-    text[0] = '\0';
     tl_review_size(review, &width, &height);
     int x = (int)review->pointer_x, y = (int)review->pointer_y;
     bool is_over = x >= 0 && y >= 0 && x < width && y < height;
-    if (review->reads_out && is_over && tl_renderer_inspect(renderer_under(review, width), x, y, &found))
+    return is_over && tl_renderer_inspect(renderer_under(review, width), x, y, found);
+}
+
+void tl_review_read_out(const struct tl_review *review, char *text, size_t size)
+{
+    struct tl_inspection found;
+    text[0] = '\0';
+    if (review->reads_out && inspect_under(review, &found))
         describe(&found, text, size);
+}
+
+/* A surface that is made of the garment's triangles. */
+static bool is_of_cloth(const char *surface)
+{
+    return strcmp(surface, TL_SURFACE_GARMENT) == 0 || strcmp(surface, TL_SURFACE_PATTERN) == 0;
+}
+
+size_t tl_review_marks(const struct tl_review *review, float marks[TL_REVIEW_MARKS][2])
+{
+    struct tl_inspection found;
+    int width, height;
+    size_t count = 0;
+    if (!tl_session_settings(review->session)->scene.pattern || !inspect_under(review, &found) ||
+        !is_of_cloth(found.surface))
+        return 0;
+    tl_review_size(review, &width, &height);
+    const tl_frame frame = tl_session_frame(review->session);
+    const struct tl_view view = tl_view_make(&frame.camera, width, height);
+    for (size_t s = 0; s < frame.surface_count && count < TL_REVIEW_MARKS; s++) {
+        const tl_surface *surface = &frame.surfaces[s];
+        if (!is_of_cloth(surface->name) || 3 * (size_t)found.triangle + 2 >= surface->index_count)
+            continue;
+        vec3s point = glms_vec3_zero();
+        for (int k = 0; k < 3; k++)
+            point = glms_vec3_muladds(surface->positions[surface->indices[3 * found.triangle + (uint32_t)k]],
+                                      found.weights[k], point);
+        vec4s clip = glms_mat4_mulv(view.view_projection, glms_vec4(point, 1));
+        if (!(clip.w > 0))
+            continue;
+        marks[count][0] = (float)width * (0.5f + 0.5f * clip.x / clip.w);
+        marks[count++][1] = (float)height * (0.5f - 0.5f * clip.y / clip.w);
+    }
+    return count == TL_REVIEW_MARKS ? count : 0;
 }
 
 bool tl_review_legend(const struct tl_review *review, struct tl_panel_legend *out)

@@ -163,6 +163,51 @@ static void looks_are_made_beside_the_session(void **state)
     tl_session_destroy(&session);
 }
 
+/* The same triangles, flat, in their own size, clear of body and garment; the cloth is not touched. */
+static void the_pattern_hangs_beside_the_garment(void **state)
+{
+    (void)state;
+    tl_session *session = quick_session(NULL);
+    tl_error error = {0};
+    struct tl_settings settings = *tl_session_settings(session);
+    const tl_cloth *cloth = tl_session_cloth(session);
+    uint64_t before = tl_session_frame(session).surfaces[1].topology_revision;
+    float near =
+        glms_vec3_distance(tl_session_frame(session).camera.eye, tl_session_frame(session).camera.target);
+    settings.scene.pattern = true;
+    settings.image.view = TL_VIEW_STRAIN_WEFT;
+    assert_true(tl_session_has_pattern(session));
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_ptr_equal(tl_session_cloth(session), cloth);
+    const tl_frame frame = tl_session_frame(session);
+    assert_int_equal(frame.surface_count, 3);
+    assert_true(frame.surfaces[2].topology_revision > before); /* the renderer uploads it */
+    assert_true(glms_vec3_distance(frame.camera.eye, frame.camera.target) > near);
+    const tl_surface *board = &frame.surfaces[1], *garment = &frame.surfaces[2];
+    assert_string_equal(board->name, "pattern");
+    assert_string_equal(garment->name, "garment");
+    assert_ptr_equal(board->indices, garment->indices);
+    assert_non_null(board->strains);
+    assert_ptr_equal(board->strains, garment->strains);
+    struct tl_box worn = tl_box_of(garment->positions, garment->vertex_count);
+    struct tl_box body = tl_box_of(frame.surfaces[0].positions, frame.surfaces[0].vertex_count);
+    struct tl_box flat = tl_box_of(board->positions, board->vertex_count);
+    assert_true(flat.lower.x > fmaxf(worn.upper.x, body.upper.x));
+    assert_true(flat.lower.y > 0);
+    assert_near(flat.lower.z, flat.upper.z, 0);
+    const vec2s *pattern = tl_session_cut(session)->pattern;
+    for (size_t i = 0; i < board->index_count; i++) {
+        uint32_t a = board->indices[i], b = board->indices[i - i % 3];
+        assert_near(glms_vec3_distance(board->positions[a], board->positions[b]),
+                    glms_vec2_distance(pattern[a], pattern[b]), 1e-5);
+        assert_true(board->normals[a].z > 0.999f);
+    }
+    settings.scene.pattern = false;
+    assert_ok(tl_session_apply(session, &settings, &error), error);
+    assert_int_equal(tl_session_frame(session).surface_count, 2);
+    tl_session_destroy(&session);
+}
+
 static void a_failure_keeps_what_was(void **state)
 {
     (void)state;
@@ -263,6 +308,7 @@ int main(void)
         cmocka_unit_test(a_failure_keeps_what_was),
         cmocka_unit_test(frames_replay_to_the_bit),
         cmocka_unit_test(picking_finds_the_front),
+        cmocka_unit_test(the_pattern_hangs_beside_the_garment),
         cmocka_unit_test(strains_are_told_when_they_are_looked_at),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
