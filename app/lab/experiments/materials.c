@@ -1,5 +1,5 @@
-/* Materials that have a golden alone: a clear coat, fuzz, knits, open cloth that shows what is behind it, a
- * weave of two yarns. */
+/* Materials. The gallery shows what makes cloth of them; a clear coat, fuzz, knits, open cloth that shows
+ * what is behind it and a weave of two yarns have a golden alone. */
 #include "app/lab/experiments/rows_internal.h"
 
 static const struct tl_technique coats[] = {
@@ -25,7 +25,46 @@ static const struct tl_technique weaves[] = {
          "weave.yarn_mm=6", "weave.streaks=0.3")},
 };
 
+#define SATIN                                                                                                \
+    "material.model=ward", "material.ward=bounded", "material.width_weft=0.16", "material.width_warp=0.062", \
+        "material.diffuse=[0.55, 0.045, 0.08]", "material.specular=[0.07, 0.07, 0.07]",                      \
+        "material.thread=0.85"
+#define BANDS "material.thread_along=0.2", "material.thread_across=0.45"
+
+#define DULL "material.thread=0", "material.model=phong", "material.glossiness=0.5"
+
+static const struct tl_technique cloths[] = {
+    {.picture = "threads: one lobe", .id = "A13", SET("material.thread_along=0")},
+    {.picture = "threads: surface and inside", .id = "A13", SET(BANDS)},
+    {.picture = "shot silk",
+     .id = "A13",
+     SET(BANDS, "material.diffuse=[0.03, 0.32, 0.13]", "material.warp_share=0.6",
+         "material.weft_colour=[0.9, 0, 0.15]")},
+    {.picture = "GGX, roughness 0.5",
+     .id = "A13",
+     SET("material.thread=0", "material.model=torrance_sparrow", "material.facets=ggx",
+         "material.width_weft=0.25", "material.specular=[0.3, 0.3, 0.3]")},
+    {.picture = "fuzz", .id = "A13", SET(DULL, "material.fuzz=1", "material.fuzz_colour=[0.9, 0.6, 0.3]")},
+    {.picture = "a rib knit",
+     .id = "A13",
+     SET(DULL, "weave.pattern=rib", "weave.wale_mm=14", "weave.course_mm=11", "weave.yarn_mm=6")},
+};
+
 static const struct tl_experiment experiments[] = {
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "a13",
+     .scene = "gallery",
+     .title = "A13  Threads, fuzz, knits",
+     .text = "Light that has been inside a thread is a coloured band under the white light of its surface; "
+             "in shot "
+             "silk warps and wefts have bands of different colours. Under an environment a few lobes stand "
+             "for each of "
+             "these, shadowed by rays kept at vertices. Reference: ray traced.",
+     .solid = "torus",
+     .base = {"scene.environment=studio", "light.method=pem", SATIN},
+     .reference = {.assignments = {TRACED}},
+     .ids = {"A13"},
+     TECHNIQUES(cloths)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "coat",
      .title = "A clear coat",
