@@ -69,7 +69,9 @@ add_library(toile_light STATIC
   reference/detail.c
   reference/gather.c
   reference/lamps.c
+  reference/lobe_sample.c
   reference/options.c
+  reference/radiance.c
   reference/reference.c
   reference/scene.c
   reference/sky.c

@@ -2,16 +2,12 @@
 
 #include "config/simd.h"
 #include "render/brdf/fuzz.h"
-#include "render/reference/lamps.h"
+#include "render/reference/lobe_sample.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* Numbers of samples for points seen in mirrors: few, because there are many such points. */
-#define REFLECTED_STRATA       64
-#define REFLECTED_LOBE_SAMPLES 1
-#define LOBE_END               40.0f /* a lobe counts as zero below exp(-40) of its peak */
 #define GOLDEN                                                                                               \
     0.61803398874989485 /* of a turn: successive angles are evenly spread for any number of samples */
 
@@ -47,25 +43,6 @@ struct gather {
     size_t rays;
 };
 
-/* K_s for a direction whose cosine with the axis is 1 - `off` [DESIGN 3]. log1p keeps the digits of narrow
- * lobes near the peak. */
-static float lobe_value(float exponent, float off)
-{
-    if (off >= 1 || exponent * off > LOBE_END)
-        return 0;
-    return (exponent + 1) / (2 * (float)M_PI) * expf(exponent * log1pf(-off));
-}
-
-static float dot_of(const float v[3][TL_SHADING_POINTS], int i, vec3s w)
-{
-    return v[0][i] * w.x + v[1][i] * w.y + v[2][i] * w.z;
-}
-
-static vec3s point_of(const struct tl_shading_points *points, int i)
-{
-    return (vec3s){{points->point[0][i], points->point[1][i], points->point[2][i]}};
-}
-
 /* A batch of shadow rays with the radiance that each contributes to its point if it is not occluded. */
 struct ray_batch {
     struct tl_ray_packet packet;
@@ -99,7 +76,7 @@ static void add_ray_from(struct ray_batch *batch, const struct gather *gather, i
 static void add_ray(struct ray_batch *batch, const struct gather *gather, int index, vec3s direction,
                     vec3s light)
 {
-    add_ray_from(batch, gather, index, point_of(gather->points, index), direction, light);
+    add_ray_from(batch, gather, index, tl_shading_lane(gather->points->point, index), direction, light);
 }
 
 static void add_light(struct gather *gather, int index, vec3s light)
@@ -178,7 +155,7 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
     float count = (float)gather->request->lobe_samples;
     vec3s share = {{0, 0, 0}};
     if (layers->coat > 0) {
-        float lobe = lobe_value(layers->coat_exponent, off_axis(layers->coat_axis, direction));
+        float lobe = tl_lobe_value(layers->coat_exponent, off_axis(layers->coat_axis, direction));
         float coat = layers->coat * lobe / (sample_pdf + count * lobe);
         share = (vec3s){{coat, coat, coat}};
     }
@@ -207,8 +184,9 @@ static void gather_transmitted(struct gather *gather, const struct tl_sky_sample
     struct ray_batch batch;
     begin_batch(&batch, true);
     for (int i = 0; i < points->count; i++) {
-        float below = -dot_of(points->normal, i, sky->direction);
-        if (!points->layered[i] || !(below > 0) || !(dot_of(points->horizon, i, sky->direction) < 0))
+        float below = -glms_vec3_dot(tl_shading_lane(points->normal, i), sky->direction);
+        if (!points->layered[i] || !(below > 0) ||
+            !(glms_vec3_dot(tl_shading_lane(points->horizon, i), sky->direction) < 0))
             continue;
         vec3s share = glms_vec3_scale(points->layers[i].transmitted, below / (float)M_PI / sample_pdf);
         vec3s light = finite_product(sky->radiance, share);
@@ -235,7 +213,7 @@ static void gather_stratum(struct gather *gather, const struct tl_sky_sample *sk
         if (gather->diffuse[i] && angles.normal[i] > 0)
             diffuse = angles.normal[i] / (float)M_PI / sample_pdf;
         if (gather->glossy[i]) {
-            float lobe = lobe_value(points->exponent[i], angles.off_axis[i]);
+            float lobe = tl_lobe_value(points->exponent[i], angles.off_axis[i]);
             glossy = lobe / (sample_pdf + (float)gather->request->lobe_samples * lobe);
         }
         vec3s light = weigh(points, i, sky->radiance, diffuse, glossy);
@@ -259,77 +237,12 @@ void tl_gather_sample_sky(const struct tl_sky *sky, int count, int slot, int slo
     }
 }
 
-/* Samples a direction from K_s about the axis. `off` is 1 - its cosine; the distribution of the cosine is (s
- * + 1) cos^s. */
-static vec3s sample_lobe(vec3s axis, float exponent, double height, double turn, float *off)
-{
-    double away = -expm1(log(1 - height) / ((double)exponent + 1));
-    double radius = sqrt(fmax(away * (2 - away), 0)), angle = 2 * M_PI * turn;
-    vec3s aside = fabsf(axis.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}};
-    vec3s a = glms_vec3_normalize(glms_vec3_cross(axis, aside)), b = glms_vec3_cross(axis, a);
-    vec3s w = glms_vec3_scale(axis, (float)(1 - away));
-    w = glms_vec3_add(w, glms_vec3_scale(a, (float)(radius * cos(angle))));
-    w = glms_vec3_add(w, glms_vec3_scale(b, (float)(radius * sin(angle))));
-    *off = (float)away;
-    return glms_vec3_normalize(w);
-}
-
-/* Points that mirrors reflect, and the points that reflect them. */
-struct reflections {
-    struct tl_shading_points points;
-    int owner[TL_SHADING_POINTS];
-    float share[TL_SHADING_POINTS];
-    vec3s lamplight[TL_SHADING_POINTS];
-};
-
-/* Traces a ray from a mirror. It ends in the sky, in the scene, or where the ground fades out in both. */
-static void reflect(struct gather *gather, int i, vec3s direction, vec3s sky_light,
-                    struct reflections *reflections)
-{
-    const struct tl_ray_differential ray = {
-        .origin = point_of(gather->points, i), .direction = direction, .to_m = INFINITY};
-    struct tl_shading_point hit = tl_shading_point_find(gather->scene, &ray);
-    if (hit.layered) /* behind an open sheet a mirror reflects the sky */
-        hit.cover *= 1 - hit.layers.openness;
-    gather->rays++;
-    add_light(gather, i, glms_vec3_scale(sky_light, 1 - hit.cover));
-    if (hit.cover > 0) {
-        int r = reflections->points.count;
-        tl_shading_points_add(&reflections->points, &hit);
-        reflections->owner[r] = i;
-        reflections->share[r] = hit.cover / (float)gather->request->lobe_samples;
-        reflections->lamplight[r] = tl_reference_lamps(gather->scene, &hit, &gather->rays);
-    }
-}
-
-static void light_reflections(struct gather *gather, const struct reflections *reflections)
-{
-    if (reflections->points.count == 0)
-        return;
-    struct tl_sky_sample sky[REFLECTED_STRATA];
-    struct tl_random random = tl_random_begin(gather->random.state, 1);
-    tl_gather_sample_sky(&gather->scene->sky, REFLECTED_STRATA, 0, 1, random, gather->random, sky);
-    const struct tl_gather_request inner = {.scene = gather->scene,
-                                            .strata = REFLECTED_STRATA,
-                                            .sky = sky,
-                                            .lobe_samples = REFLECTED_LOBE_SAMPLES,
-                                            .random = random};
-    float light[3][TL_SHADING_POINTS];
-    gather->rays += tl_gather(&inner, &reflections->points, light);
-    for (int r = 0; r < reflections->points.count; r++)
-        for (int c = 0; c < 3; c++)
-            gather->light[c][reflections->owner[r]] += gather->points->glossy[c][reflections->owner[r]] *
-                                                       reflections->share[r] *
-                                                       (light[c][r] + reflections->lamplight[r].raw[c]);
-}
-
 /* Adds one sample of the cosine lobe of each point. */
 static void gather_lobes(struct gather *gather, int sample)
 {
     const struct tl_shading_points *points = gather->points;
     const struct tl_gather_request *request = gather->request;
     struct ray_batch batch;
-    struct reflections reflections = {0};
     begin_batch(&batch, false);
     for (int i = 0; i < points->count; i++) {
         double height = (sample + tl_random_unit(&gather->random)) / request->lobe_samples;
@@ -337,23 +250,21 @@ static void gather_lobes(struct gather *gather, int sample)
             continue;
         float off;
         double turn = gather->turn[i] + sample * GOLDEN;
-        vec3s axis = {{points->axis[0][i], points->axis[1][i], points->axis[2][i]}};
-        vec3s direction = sample_lobe(axis, points->exponent[i], fmin(height, 1 - DBL_EPSILON), turn, &off);
-        if (!(dot_of(points->horizon, i, direction) > 0))
+        vec3s axis = tl_shading_lane(points->axis, i);
+        vec3s direction =
+            tl_lobe_sample(axis, points->exponent[i], fmin(height, 1 - DBL_EPSILON), turn, &off);
+        if (!(glms_vec3_dot(tl_shading_lane(points->horizon, i), direction) > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
-        float lobe = lobe_value(points->exponent[i], off);
+        float lobe = tl_lobe_value(points->exponent[i], off);
         if (!(lobe > 0))
             continue;
         float glossy = lobe / ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
         vec3s light = weigh(points, i, sky.radiance, 0, glossy);
-        if (request->reflect && points->exponent[i] >= TL_MIRROR_EXPONENT)
-            reflect(gather, i, direction, light, &reflections);
-        else if (!is_dark(light))
+        if (!is_dark(light))
             add_ray(&batch, gather, i, direction, light);
     }
     trace_batch(gather, &batch);
-    light_reflections(gather, &reflections);
 }
 
 /* Two numbers in [0, 1) for sample `sample` of a lobe: stratified height, golden-ratio azimuth. */
@@ -377,10 +288,10 @@ static void gather_coats(struct gather *gather, int sample)
             continue;
         float off;
         vec2s numbers = lobe_numbers(gather, i, sample);
-        vec3s direction =
-            sample_lobe(layers->coat_axis, layers->coat_exponent, (double)numbers.x, (double)numbers.y, &off);
-        float lobe = lobe_value(layers->coat_exponent, off);
-        if (!(dot_of(gather->points->horizon, i, direction) > 0) || !(lobe > 0))
+        vec3s direction = tl_lobe_sample(layers->coat_axis, layers->coat_exponent, (double)numbers.x,
+                                         (double)numbers.y, &off);
+        float lobe = tl_lobe_value(layers->coat_exponent, off);
+        if (!(glms_vec3_dot(tl_shading_lane(gather->points->horizon, i), direction) > 0) || !(lobe > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
         float share =
@@ -407,7 +318,7 @@ static void gather_facets(struct gather *gather, int sample, int lobe)
         vec3s viewer = gather->points->viewer[i];
         vec2s numbers = lobe_numbers(gather, i, sample);
         vec3s direction = tl_brdf_sample(brdf, &layers->frame, viewer, numbers.x, numbers.y, &pdf);
-        if (!(pdf > 0) || !(dot_of(gather->points->horizon, i, direction) > 0))
+        if (!(pdf > 0) || !(glms_vec3_dot(tl_shading_lane(gather->points->horizon, i), direction) > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
         vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);

@@ -1,4 +1,5 @@
-/* Radiance reflected by up to sixteen shading points, by ray tracing with multiple importance sampling:
+/* Light from the environment that up to sixteen shading points reflect, by ray tracing with multiple
+ * importance sampling:
  * directions sampled from the environment, the same for all points, and directions sampled from each glossy
  * lobe of a point, combined by the balance heuristic [Veach 1997, 9.2.2]. Pure; threads: any. */
 #ifndef TOILE_RENDER_REFERENCE_GATHER_H
@@ -22,6 +23,12 @@ struct tl_shading_points {
     vec3s viewer[TL_SHADING_POINTS];
 };
 
+/* A vector of point i. */
+static inline vec3s tl_shading_lane(const float vectors[3][TL_SHADING_POINTS], int i)
+{
+    return (vec3s){{vectors[0][i], vectors[1][i], vectors[2][i]}};
+}
+
 /* Appends a point; there must be fewer than TL_SHADING_POINTS. */
 void tl_shading_points_add(struct tl_shading_points *points, const struct tl_shading_point *point);
 
@@ -35,7 +42,6 @@ struct tl_gather_request {
     int strata;
     const struct tl_sky_sample *sky; /* one sample from each stratum */
     int lobe_samples;                /* number of directions sampled from each lobe */
-    bool reflect;                    /* near mirrors reflect the directly lit scene */
     struct tl_random random;
 };
 

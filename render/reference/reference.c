@@ -3,8 +3,8 @@
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
-#include "render/reference/gather.h"
 #include "render/reference/lamps.h"
+#include "render/reference/radiance.h"
 #include "render/scene/view.h"
 
 #include <float.h>
@@ -139,16 +139,18 @@ static size_t accumulate(const struct reference_drawing *drawing, int replicate,
 {
     const struct tl_reference_params *params = drawing->request->params;
     int side = drawing->request->supersample, samples = side * side;
-    const struct tl_gather_request gather_request = {
-        .scene = drawing->scene,
-        .strata = params->strata,
-        .sky = directions_for(drawing, tile, sample),
-        .lobe_samples = params->lobe_samples,
-        .reflect = drawing->scene->reflect,
-        .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile,
-                                  (uint64_t)sample + (uint64_t)layer * (uint64_t)samples)};
+    const struct tl_radiance_request radiance_request = {
+        .direct = {.scene = drawing->scene,
+                   .strata = params->strata,
+                   .sky = directions_for(drawing, tile, sample),
+                   .lobe_samples = params->lobe_samples,
+                   .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile,
+                                             (uint64_t)sample + (uint64_t)layer * (uint64_t)samples)},
+        .bounces = params->bounces,
+        .bounce_samples = params->bounce_samples,
+        .reflect = drawing->scene->reflect};
     float light[3][TL_SHADING_POINTS];
-    size_t rays = tl_gather(&gather_request, &hits->points, light);
+    size_t rays = tl_radiance(&radiance_request, &hits->points, light);
     for (int i = 0; i < hits->points.count; i++) {
         float *pixel = drawing->replicate + 4 * hits->pixel[i], share = hits->cover[i] / (float)samples;
         for (int c = 0; c < 3; c++)

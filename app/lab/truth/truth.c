@@ -2,8 +2,8 @@
 
 #include "config/memory.h"
 #include "render/inside.h"
-#include "render/reference/gather.h"
 #include "render/reference/lamps.h"
+#include "render/reference/radiance.h"
 
 #include <assert.h>
 #include <math.h>
@@ -130,15 +130,16 @@ static void add_light(const struct tracing *tracing, const struct sample_hits *h
                       struct tile_light *light)
 {
     const struct tl_reference_scene *scene = &tracing->comparison->scene;
-    const struct tl_gather_request request = {
-        .scene = scene,
-        .strata = tracing->effort.strata,
-        .sky = tracing->sky,
-        .lobe_samples = tracing->effort.lobe_samples,
-        .reflect = scene->reflect,
-        .random = tl_random_begin((uint64_t)tracing->tile << 16 | (uint64_t)tracing->replicate, turn)};
+    const struct tl_radiance_request request = {
+        .direct = {.scene = scene,
+                   .strata = tracing->effort.strata,
+                   .sky = tracing->sky,
+                   .lobe_samples = tracing->effort.lobe_samples,
+                   .random =
+                       tl_random_begin((uint64_t)tracing->tile << 16 | (uint64_t)tracing->replicate, turn)},
+        .reflect = scene->reflect};
     float gathered[3][TL_SHADING_POINTS];
-    tl_gather(&request, &hits->points, gathered);
+    tl_radiance(&request, &hits->points, gathered);
     for (int i = 0; i < hits->points.count; i++) {
         double share = tracing->weight * (double)hits->shares[i];
         for (int c = 0; c < 3; c++)

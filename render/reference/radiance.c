@@ -1,0 +1,207 @@
+#include "render/reference/radiance.h"
+
+#include "render/brdf/fuzz.h"
+#include "render/light/options.h"
+#include "render/reference/lamps.h"
+#include "render/reference/lobe_sample.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Samples of the environment at points that paths hit: few, because there are many such points. */
+#define HIT_STRATA       64
+#define HIT_LOBE_SAMPLES 1
+
+/* Points that paths hit, and what each sends on to the point that its path comes from. */
+struct hits {
+    struct tl_shading_points points;
+    int owner[TL_SHADING_POINTS];
+    vec3s weight[TL_SHADING_POINTS];
+    vec3s lamplight[TL_SHADING_POINTS];
+};
+
+struct paths {
+    const struct tl_radiance_request *request;
+    const struct tl_reference_scene *scene;
+    const struct tl_shading_points *points;
+    int samples; /* paths of a lobe */
+    struct tl_random random;
+    float (*light)[TL_SHADING_POINTS];
+    struct hits hits;
+    size_t rays;
+};
+
+static double share_of_sample(struct paths *paths, int sample)
+{
+    return (sample + tl_random_unit(&paths->random)) / paths->samples;
+}
+
+/* Lights the hits and sends their light on. */
+static void light_hits(struct paths *paths)
+{
+    struct hits *hits = &paths->hits;
+    if (hits->points.count == 0)
+        return;
+    struct tl_sky_sample sky[HIT_STRATA];
+    struct tl_random own = {tl_random_bits(&paths->random)};
+    tl_gather_sample_sky(&paths->scene->sky, HIT_STRATA, 0, 1, tl_random_begin(own.state, 1), own, sky);
+    const struct tl_radiance_request inner = {
+        .direct = {.scene = paths->scene,
+                   .strata = HIT_STRATA,
+                   .sky = sky,
+                   .lobe_samples = HIT_LOBE_SAMPLES,
+                   .random = tl_random_begin(own.state, 2)},
+        .bounces = paths->request->bounces > 0 ? paths->request->bounces - 1 : 0,
+        .bounce_samples = 1};
+    float light[3][TL_SHADING_POINTS];
+    paths->rays += tl_radiance(&inner, &hits->points, light);
+    for (int h = 0; h < hits->points.count; h++)
+        for (int c = 0; c < 3; c++) {
+            float *sum = &paths->light[c][hits->owner[h]];
+            float sent = hits->weight[h].raw[c] * (light[c][h] + hits->lamplight[h].raw[c]);
+            *sum = fminf(*sum + (sent > 0 ? sent : 0), FLT_MAX);
+        }
+    hits->points.count = 0;
+    hits->points.any_layered = false;
+}
+
+/* Follows a path from a point to what it hits; through open sheets with what these let through. The last
+ * layer counts as closed, as for rays from the camera. */
+static void follow(struct paths *paths, int owner, vec3s origin, vec3s direction, vec3s weight)
+{
+    struct tl_ray_differential ray = {.origin = origin, .direction = direction, .to_m = INFINITY};
+    for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS && glms_vec3_max(weight) > 0; layer++) {
+        struct tl_shading_point hit = tl_shading_point_find(paths->scene, &ray);
+        paths->rays++;
+        if (!(hit.cover > 0))
+            return;
+        float openness = hit.layered && layer < TL_TRANSPARENCY_LAYERS ? hit.layers.openness : 0;
+        struct hits *hits = &paths->hits;
+        int h = hits->points.count;
+        tl_shading_points_add(&hits->points, &hit);
+        hits->owner[h] = owner;
+        hits->weight[h] = glms_vec3_scale(weight, hit.cover * (1 - openness));
+        hits->lamplight[h] = tl_reference_lamps(paths->scene, &hit, &paths->rays);
+        if (hits->points.count == TL_SHADING_POINTS)
+            light_hits(paths);
+        weight = glms_vec3_scale(weight, openness);
+        ray.from_m = hit.distance_m + paths->scene->offset_m;
+    }
+}
+
+static void follow_above(struct paths *paths, int i, vec3s direction, vec3s weight)
+{
+    if (glms_vec3_dot(tl_shading_lane(paths->points->horizon, i), direction) > 0)
+        follow(paths, i, tl_shading_lane(paths->points->point, i), direction, weight);
+}
+
+/* The diffuse lobe, K_1. */
+static void follow_diffuse(struct paths *paths, int i, int sample)
+{
+    float off;
+    double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
+    vec3s weight = glms_vec3_divs(tl_shading_lane(paths->points->diffuse, i), (float)paths->samples);
+    vec3s direction = tl_lobe_sample(tl_shading_lane(paths->points->normal, i), 1, height, turn, &off);
+    if (glms_vec3_max(weight) > 0)
+        follow_above(paths, i, direction, weight);
+}
+
+static void follow_glossy(struct paths *paths, int i, int sample)
+{
+    float off;
+    double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
+    vec3s weight = glms_vec3_divs(tl_shading_lane(paths->points->glossy, i), (float)paths->samples);
+    if (!(glms_vec3_max(weight) > 0))
+        return;
+    vec3s direction = tl_lobe_sample(tl_shading_lane(paths->points->axis, i), paths->points->exponent[i],
+                                     height, turn, &off);
+    follow_above(paths, i, direction, weight);
+}
+
+static void follow_transmitted(struct paths *paths, int i, int sample)
+{
+    const struct tl_shading_layers *layers = &paths->points->layers[i];
+    float off;
+    double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
+    vec3s behind = glms_vec3_negate(tl_shading_lane(paths->points->normal, i));
+    vec3s direction = tl_lobe_sample(behind, 1, height, turn, &off);
+    vec3s weight = glms_vec3_divs(layers->transmitted, (float)paths->samples);
+    if (glms_vec3_max(weight) > 0 && glms_vec3_dot(tl_shading_lane(paths->points->horizon, i), direction) < 0)
+        follow(paths, i, layers->behind, direction, weight);
+}
+
+static void follow_coat(struct paths *paths, int i, int sample)
+{
+    const struct tl_shading_layers *layers = &paths->points->layers[i];
+    float off, weight = layers->coat / (float)paths->samples;
+    double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
+    if (weight > 0)
+        follow_above(paths, i, tl_lobe_sample(layers->coat_axis, layers->coat_exponent, height, turn, &off),
+                     (vec3s){{weight, weight, weight}});
+}
+
+static void follow_facets(struct paths *paths, int i, int sample)
+{
+    const struct tl_shading_layers *layers = &paths->points->layers[i];
+    const float below_one = 1 - 0x1p-24f;
+    float height = fminf((float)share_of_sample(paths, sample), below_one), pdf;
+    float turn = fminf((float)tl_random_unit(&paths->random), below_one);
+    if (!layers->faceted)
+        return;
+    vec3s viewer = paths->points->viewer[i];
+    vec3s direction = tl_brdf_sample(&layers->brdf, &layers->frame, viewer, height, turn, &pdf);
+    if (!(pdf > 0))
+        return;
+    vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
+    follow_above(paths, i, direction, glms_vec3_scale(gloss, layers->base / pdf / (float)paths->samples));
+}
+
+/* Directions are uniform above the smooth surface, because fuzz does not follow the cosine. */
+static void follow_fuzz(struct paths *paths, int i, int sample)
+{
+    const struct tl_shading_layers *layers = &paths->points->layers[i];
+    float off;
+    double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
+    if (!(glms_vec3_max(layers->fuzz.colour) > 0))
+        return;
+    vec3s direction = tl_lobe_sample(layers->fuzz_normal, 0, height, turn, &off);
+    float fibres = tl_fuzz_value(&layers->fuzz, layers->fuzz_normal, direction, paths->points->viewer[i]);
+    follow_above(paths, i, direction,
+                 glms_vec3_scale(layers->fuzz.colour, fibres * 2 * (float)M_PI / (float)paths->samples));
+}
+
+static void follow_paths(struct paths *paths, int i, int sample)
+{
+    bool all = paths->request->bounces > 0;
+    bool mirror = paths->request->reflect && paths->points->exponent[i] >= TL_MIRROR_EXPONENT;
+    if (all)
+        follow_diffuse(paths, i, sample);
+    if (all || mirror)
+        follow_glossy(paths, i, sample);
+    if (!all || !paths->points->layered[i])
+        return;
+    follow_transmitted(paths, i, sample);
+    follow_coat(paths, i, sample);
+    follow_facets(paths, i, sample);
+    follow_fuzz(paths, i, sample);
+}
+
+size_t tl_radiance(const struct tl_radiance_request *request, const struct tl_shading_points *points,
+                   float light[3][TL_SHADING_POINTS])
+{
+    size_t rays = tl_gather(&request->direct, points, light);
+    if (request->bounces == 0 && !request->reflect)
+        return rays;
+    struct paths paths = {.request = request,
+                          .scene = request->direct.scene,
+                          .points = points,
+                          .samples =
+                              request->bounces > 0 ? request->bounce_samples : request->direct.lobe_samples,
+                          .random = tl_random_begin(request->direct.random.state, 3),
+                          .light = light};
+    for (int sample = 0; sample < paths.samples; sample++)
+        for (int i = 0; i < points->count; i++)
+            follow_paths(&paths, i, sample);
+    light_hits(&paths);
+    return rays + paths.rays;
+}
