@@ -127,6 +127,7 @@ static void release_scene(struct tl_resources *resources)
     tl_mirrors_release(&resources->mirrors);
     tl_trace_destroy(&resources->trace);
     tl_points_destroy(&resources->points);
+    tl_bounce_release(&resources->bounce);
     tl_shadow_maps_destroy(&resources->maps);
 }
 
@@ -200,6 +201,7 @@ void tl_renderer_forget(tl_renderer *renderer)
     renderer->rest = (struct tl_rest){0};
     tl_points_destroy(&renderer->resources.points); /* visibility at points refines earlier values */
     renderer->resources.points = tl_points_create();
+    tl_bounce_release(&renderer->resources.bounce);
     tl_ratios_release(&renderer->resources.ratios); /* half of them are of the frame before */
 }
 
@@ -215,6 +217,7 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     tl_surfaces_use_detail(renderer->resources.surfaces, &renderer->resources.detail);
     tl_points_destroy(&renderer->resources.points);
     renderer->resources.points = tl_points_create();
+    tl_bounce_release(&renderer->resources.bounce);
     tl_ratios_release(&renderer->resources.ratios);
     tl_trace_destroy(&renderer->resources.trace);
     renderer->resources.trace = tl_trace_create(error);

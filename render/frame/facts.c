@@ -208,11 +208,18 @@ static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_setting
                          TL_BIT(TL_SCENE_EXACT);
 }
 
+static tl_bits bounce_facts(const struct tl_light_params *light)
+{
+    bool bounces = light->bounce != TL_BOUNCE_OFF && light->method == TL_METHOD_PEM &&
+                   light->visibility == TL_VISIBILITY_RAYS;
+    return bounces ? TL_BIT(TL_SCENE_BOUNCE) : 0;
+}
+
 static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     tl_bits ratios = ratio_facts(frame, settings);
     if (ratios)
-        return ratios;
+        return ratios | bounce_facts(&settings->light);
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
@@ -240,7 +247,7 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
         facts |= TL_BIT(TL_SCENE_MIRRORS);
     if (rays)
         facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
-    return facts | lamp_facts(frame, light);
+    return facts | lamp_facts(frame, light) | bounce_facts(light);
 }
 
 /* Facts of a frame whose view is not light, except those that follow from its materials. */

@@ -172,6 +172,7 @@ struct tl_light_params tl_input_light(const struct tl_light_params *light)
                                     .visibility = light->visibility,
                                     .composition = light->composition,
                                     .reflect_scene = light->reflect_scene,
+                                    .bounce = light->bounce,
                                     .fan = light->fan,
                                     .depth_bias_m = light->depth_bias_m,
                                     .min_variance = light->min_variance,

@@ -213,10 +213,31 @@
     IO(WRITES_HANDLE, points)                                                                                \
     IO(WRITES, points_are_done)
 
+#define TL_BOUNCE_JOB(IO)                                                                                    \
+    IO(READS, samples)                                                                                       \
+    IO(READS, ids)                                                                                           \
+    IO(AFTER, TL_MADE_TRANSPARENCY)                                                                          \
+    IO(READS, cube)                                                                                          \
+    IO(READS, suns)                                                                                          \
+    IO(READS, exact)                                                                                         \
+    IO(READS_HANDLE, trace)                                                                                  \
+    IO(READS, shapes)                                                                                        \
+    IO(READS, ground_input)                                                                                  \
+    IO(READS, ground)                                                                                        \
+    IO(READS, yaw)                                                                                           \
+    IO(READS, light_options)                                                                                 \
+    IO(READS, scene_round)                                                                                   \
+    IO(SEES, environment)                                                                                    \
+    IO(SEES, moment)                                                                                         \
+    IO(SEES, facts)                                                                                          \
+    IO(WRITES, bounce)
+
 #define TL_RATIOS_JOB(IO)                                                                                    \
     IO(READS, ids)                                                                                           \
     IO(READS, shade_materials)                                                                               \
     IO(READS_HANDLE, points)                                                                                 \
+    IO(READS, bounce)                                                                                        \
+    IO(SEES, facts)                                                                                          \
     IO(READS, lights)                                                                                        \
     IO(SEES, regions_revision)                                                                               \
     IO(SEES, environment)                                                                                    \
@@ -288,6 +309,7 @@
     IO(READS, transparency)                                                                                  \
     IO(READS, mirrors)                                                                                       \
     IO(READS_HANDLE, points)                                                                                 \
+    IO(READS, bounce)                                                                                        \
     IO(READS, lights)                                                                                        \
     IO(READS, exact)                                                                                         \
     IO(READS, suns)                                                                                          \
@@ -472,6 +494,7 @@
     JOB(trace, TL_TRACE_JOB)                                                                                 \
     JOB(mirrors, TL_MIRRORS_JOB)                                                                             \
     JOB(points, TL_POINTS_JOB)                                                                               \
+    JOB(bounce, TL_BOUNCE_JOB)                                                                               \
     JOB(ratios, TL_RATIOS_JOB)                                                                               \
     JOB(sun_pixels, TL_SUN_PIXELS_JOB)                                                                       \
     JOB(shade, TL_SHADE_JOB)                                                                                 \

@@ -70,6 +70,8 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
         return tl_transparency_bytes(&from->transparency);
     case TL_MADE_POINTS:
         return tl_points_bytes(from->points);
+    case TL_MADE_BOUNCE:
+        return tl_bounce_bytes(&from->bounce);
     case TL_MADE_TRACE:
         return tl_trace_bytes(from->trace);
     case TL_MADE_ENVMAP_LOBES:

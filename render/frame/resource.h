@@ -56,6 +56,7 @@ enum tl_resource {
     TL_MADE_MIRRORS,      /* samples that near mirrors reflect */
     TL_MADE_TRACE,        /* the surfaces as a BVH */
     TL_MADE_POINTS,
+    TL_MADE_BOUNCE, /* light that surfaces send on to each other, at vertices */
     TL_MADE_ENVMAP_LOBES,
     TL_MADE_CAPTURE,
     TL_MADE_ENVMAP,
@@ -92,6 +93,7 @@ enum tl_scene_fact {
     TL_SCENE_LAMP_RAYS, /* ... and rays do */
     TL_SCENE_SAMPLES,   /* rays start from what is seen */
     TL_SCENE_COMPOSED,  /* light is composed from visibility by rays */
+    TL_SCENE_BOUNCE,    /* surfaces send light on to each other */
     TL_SCENE_RATIOS,    /* ratios at vertices light the pixels, in one pass */
     TL_SCENE_INSPECT,   /* something else than light is shown */
     TL_SCENE_FACT_COUNT

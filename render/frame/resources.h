@@ -4,6 +4,7 @@
 #ifndef TOILE_RENDER_FRAME_RESOURCES_H
 #define TOILE_RENDER_FRAME_RESOURCES_H
 
+#include "render/bounce/bounce.h"
 #include "render/detail/maps.h"
 #include "render/env/resample.h"
 #include "render/env/sun.h"
@@ -101,6 +102,7 @@ struct tl_surroundings {
     RESOURCE(mirrors, TL_MADE_MIRRORS, struct tl_mirrors)                                                    \
     RESOURCE(trace, TL_MADE_TRACE, tl_trace *)                                                               \
     RESOURCE(points, TL_MADE_POINTS, tl_points *)                                                            \
+    RESOURCE(bounce, TL_MADE_BOUNCE, struct tl_bounce)                                                       \
     RESOURCE(points_are_done, TL_MADE_POINTS, bool) /* another round would change nothing */                 \
     RESOURCE(surroundings, TL_MADE_ENVMAP_LOBES, struct tl_surroundings)                                     \
     RESOURCE(capture, TL_MADE_CAPTURE, struct tl_capture)                                                    \

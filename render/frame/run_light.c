@@ -71,6 +71,37 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
     return true;
 }
 
+/* A still image takes some updates until what rays hit is known itself, then all of its rounds. */
+bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
+{
+    (void)error;
+    enum { FIRST_UPDATES = 3, UPDATES_MOST = 64 };
+    bool at_vertices = *job->facts & TL_BIT(TL_SCENE_RATIOS);
+    struct tl_bounce_request request = {.trace = job->trace,
+                                        .ranges = &job->shapes->ranges,
+                                        .shapes_revision = job->shapes->revision,
+                                        .ground = job->ground_input->is_drawn ? job->ground : NULL,
+                                        .cube = job->cube,
+                                        .cube_revision = job->environment->revision,
+                                        .lobes = job->exact->lobes,
+                                        .suns = job->suns,
+                                        .environment_yaw = *job->yaw,
+                                        .samples = at_vertices ? NULL : job->samples,
+                                        .seen = job->ids->seen,
+                                        .seen_count = job->ids->seen_count,
+                                        .all = job->light_options->bounce == TL_BOUNCE_ALL,
+                                        .moved = *job->scene_round == 0,
+                                        .at_once = job->moment->still};
+    tl_bounce_update(job->bounce, &request);
+    for (int i = 1; i < UPDATES_MOST && request.at_once && !tl_interrupted(); i++) {
+        request.moved = i < FIRST_UPDATES;
+        if (!request.moved && job->bounce->is_done)
+            break;
+        tl_bounce_update(job->bounce, &request);
+    }
+    return true;
+}
+
 static uint64_t light_revision(const struct tl_ratios_job *job)
 {
     const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
@@ -87,6 +118,8 @@ bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
                                               .points = job->points,
                                               .lights = *job->lights,
                                               .lobes = job->exact->lobes,
+                                              .bounce =
+                                                  *job->facts & TL_BIT(TL_SCENE_BOUNCE) ? job->bounce : NULL,
                                               .environment_yaw = *job->yaw,
                                               .eye = job->camera->view.eye,
                                               .params = job->light_options,
@@ -188,16 +221,19 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
     (void)error;
     const struct tl_shapes_input *shapes = job->shapes;
     tl_light_buffer_clear(job->light, job->samples->width, job->samples->height);
-    struct tl_compose_request request = {.samples = job->samples,
-                                         .lights = *job->lights,
-                                         .suns = job->suns,
-                                         .lobes = job->exact->lobes,
-                                         .environment = job->environment->map,
-                                         .environment_yaw = *job->yaw,
-                                         .params = job->light_options,
-                                         .eye = job->camera->view.eye};
-    if (tl_materials_have(shapes->surfaces, shapes->surface_count, tl_material_is_layered))
-        request.ranges = &shapes->ranges;
+    struct tl_compose_request request = {
+        .samples = job->samples,
+        .lights = *job->lights,
+        .suns = job->suns,
+        .lobes = job->exact->lobes,
+        .environment = job->environment->map,
+        .environment_yaw = *job->yaw,
+        .params = job->light_options,
+        .ranges = &shapes->ranges,
+        .any_layered = tl_materials_have(shapes->surfaces, shapes->surface_count, tl_material_is_layered),
+        .eye = job->camera->view.eye};
+    if (*job->facts & TL_BIT(TL_SCENE_BOUNCE))
+        request.bounce = job->bounce;
     if (*job->facts & TL_BIT(TL_SCENE_TRANSPARENCY))
         request.shares = job->transparency->shares;
     if (job->light_options->method != TL_METHOD_UNSHADOWED) {

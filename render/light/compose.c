@@ -478,9 +478,31 @@ static vec3s share_of(vec3s part, vec3s all)
     return share;
 }
 
+/* Adds what other surfaces send through the two lobes. Near mirrors have rays of their own for that. */
+static void add_bounced(const struct tl_bounced *bounced, const struct frame *frame, bool is_mirror,
+                        vec3s light[2])
+{
+    for (int c = 0; c < 3; c++)
+        light[DIFFUSE].raw[c] += bounced->arrives[c];
+    if (!is_mirror)
+        light[GLOSSY] =
+            glms_vec3_add(light[GLOSSY], tl_bounced_in_lobe(bounced, frame->gloss, frame->exponent));
+}
+
+/* What arrives at a sample, in the environment's frame. */
+static struct tl_bounced bounced_at(const struct block *block, const tl_sample *sample)
+{
+    const struct tl_compose_request *request = block->request;
+    if (!request->bounce)
+        return (struct tl_bounced){0};
+    struct tl_bounced bounced = tl_bounced_at(request->bounce, request->ranges, sample);
+    bounced.along = into_environment(block, bounced.along);
+    return bounced;
+}
+
 /* The light of a sample's lobes; under ambient occlusion with the share that the two lobes get. */
 TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const struct lobes *lobes,
-                               vec3s smooth, const struct received *two)
+                               vec3s smooth, const struct received *two, const struct tl_bounced *bounced)
 {
     int method = block->request->params->method;
     bool by_occlusion = method == TL_METHOD_AO || method == TL_METHOD_AO_COLOUR;
@@ -493,7 +515,8 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
         if (!shadowed)
             arriving[k] =
                 tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
-        light = glms_vec3_add(light, glms_vec3_mul(lobe->weight, arriving[k]));
+        vec3s sent = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
+        light = glms_vec3_add(light, glms_vec3_mul(lobe->weight, glms_vec3_add(arriving[k], sent)));
     }
     if (by_occlusion)
         light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));
@@ -512,9 +535,19 @@ static vec3s exact_fibres(const struct block *block, const struct lobes *lobes, 
     return glms_vec3_maxv(light, glms_vec3_zero());
 }
 
+/* Bounced light that fibres send to the viewer, as if it were even: their lobes hold their albedo. */
+static vec3s fibres_bounced(const struct lobes *lobes, const struct tl_bounced *bounced)
+{
+    float albedo = 0;
+    for (int k = 0; k < TL_FUZZ_POWERS; k++)
+        albedo += lobes->fibres.weights[k];
+    return (vec3s){
+        {albedo * bounced->arrives[0], albedo * bounced->arrives[1], albedo * bounced->arrives[2]}};
+}
+
 /* The light of fuzz; under ambient occlusion with the share that the diffuse lobe gets. */
 TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const struct lobes *lobes,
-                                vec3s smooth, const struct received *two)
+                                vec3s smooth, const struct received *two, const struct tl_bounced *bounced)
 {
     const struct tl_compose_request *request = block->request;
     const int method = request->params->method;
@@ -526,6 +559,7 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
         see_fibres(block, index, lobes, smooth, &seen, &all);
         light = glms_vec3_mul(light, share_of(seen, all));
     }
+    light = glms_vec3_add(light, fibres_bounced(lobes, bounced));
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
         const float *visibility = request->sun_visibility[i];
@@ -545,7 +579,7 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
 static const tl_material *rich_material(const struct tl_compose_request *request, size_t index)
 {
     const struct tl_samples *samples = request->samples;
-    if (!request->ranges || index >= samples->primary_count + samples->behind_count)
+    if (!request->any_layered || index >= samples->primary_count + samples->behind_count)
         return NULL;
     const tl_material *material =
         tl_triangle_material(request->ranges, samples->items[index].triangle & ~TL_SAMPLE_BACK);
@@ -602,12 +636,16 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
         received.shadowed[GLOSSY] = perfect_mirror_light(block, mirror, frame.exponent);
     if (by_occlusion)
         replace_by_occlusion(&sums, method, &received);
+    const struct tl_bounced bounced = bounced_at(block, sample);
+    add_bounced(&bounced, &frame, mirror && mirror->ray_count > 0, received.shadowed);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;
     vec3s colour = colour_of(sample, request->params->lobe, arriving);
     if (lobes.count > 0)
-        colour = glms_vec3_add(colour, light_of_lobes(block, index, &lobes, frame.smooth, &received));
+        colour =
+            glms_vec3_add(colour, light_of_lobes(block, index, &lobes, frame.smooth, &received, &bounced));
     if (lobes.has_fuzz)
-        colour = glms_vec3_add(colour, light_of_fibres(block, index, &lobes, frame.smooth, &received));
+        colour =
+            glms_vec3_add(colour, light_of_fibres(block, index, &lobes, frame.smooth, &received, &bounced));
     return glms_vec3_scale(colour, share_of_sample(request, index));
 }
 
@@ -656,7 +694,7 @@ static void look_through(const struct tl_compose_request *request, const vec3s *
 
 /* Seen and whole light of the lobes that stand for a gloss of facets: the ratio of the two. */
 TL_INLINE vec3s ratio_of_lobes(const struct block *block, size_t index, const struct lobes *lobes,
-                               vec3s smooth)
+                               vec3s smooth, const struct tl_bounced *bounced)
 {
     vec3s arriving[LOBES_MAX], seen = {{0, 0, 0}}, all = {{0, 0, 0}};
     see_lobes(block, index, lobes, smooth, arriving);
@@ -664,7 +702,8 @@ TL_INLINE vec3s ratio_of_lobes(const struct block *block, size_t index, const st
         const struct tl_fitted_lobe *lobe = &lobes->items[k];
         vec3s exact =
             tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
-        seen = glms_vec3_add(seen, glms_vec3_mul(lobe->weight, arriving[k]));
+        vec3s sent = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
+        seen = glms_vec3_add(seen, glms_vec3_mul(lobe->weight, glms_vec3_add(arriving[k], sent)));
         all = glms_vec3_add(all, glms_vec3_mul(lobe->weight, exact));
     }
     return share_of(seen, all);
@@ -684,15 +723,17 @@ TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t inde
     vec3s seen[2], all[2];
     receive_shadowed(block, &frame, &sums, kind, seen);
     receive_unshadowed(block, &frame, all);
+    const struct tl_bounced bounced = bounced_at(block, &sample);
+    add_bounced(&bounced, &frame, false, seen);
     struct tl_light_ratio ratio = {.diffuse = share_of(seen[DIFFUSE], all[DIFFUSE])};
-    ratio.glossy = rich && lobes.facets > 0 ? ratio_of_lobes(block, index, &lobes, frame.smooth)
+    ratio.glossy = rich && lobes.facets > 0 ? ratio_of_lobes(block, index, &lobes, frame.smooth, &bounced)
                    : kind.glossy            ? share_of(seen[GLOSSY], all[GLOSSY])
                                             : ratio.diffuse;
     ratio.fuzz = ratio.diffuse;
     if (lobes.has_fuzz) {
         vec3s open, visible;
         see_fibres(block, index, &lobes, frame.smooth, &visible, &open);
-        ratio.fuzz = share_of(visible, open);
+        ratio.fuzz = share_of(glms_vec3_add(visible, fibres_bounced(&lobes, &bounced)), open);
     }
     return ratio;
 }

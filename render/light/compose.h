@@ -16,6 +16,7 @@
 #ifndef TOILE_RENDER_LIGHT_COMPOSE_H
 #define TOILE_RENDER_LIGHT_COMPOSE_H
 
+#include "render/bounce/bounce.h"
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
 #include "render/gbuffer/samples.h"
@@ -38,8 +39,10 @@ struct tl_compose_request {
     const struct tl_mirror *mirrors;   /* by sample; NULL: none */
     float environment_yaw;             /* rad */
     const struct tl_light_params *params;
-    /* Where a material is more than two lobes; `ranges` NULL: none is. */
+    const struct tl_bounce
+        *bounce; /* light from other surfaces, updated for the samples; NULL: none. Needs: */
     const struct tl_triangle_ranges *ranges;
+    bool any_layered; /* a material is more than two lobes */
     vec3s eye;
     const float *shares; /* by sample that the camera sees, in place of its cover (transparency.h); NULL:
                             nothing is seen through */

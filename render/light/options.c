@@ -12,6 +12,7 @@ static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
 static const char *const visibility_names[] = {"vsm", "depth", "rays", NULL};
 static const char *const ratio_at_names[] = {"samples", "vertices", NULL};
+static const char *const bounce_names[] = {"off", "one", "all", NULL};
 static const char *const composition_names[] = {"sum", "difference", "ratio", NULL};
 
 typedef struct tl_light_params light_params;
@@ -63,6 +64,10 @@ static const struct tl_option light_rows[] = {
                     "rays: fraction of the samples, the least certain ones, that trace rays of their own"),
     TL_OPTION_FLOAT(light_params, repair_rest, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, 1, "",
                     "rays: the same fraction at rest, if it is larger; spread over several frames"),
+    TL_OPTION_ENUM(
+        light_params, bounce, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, bounce_names,
+        "rays: light that surfaces send on to each other: off: none; one: light that comes straight "
+        "from the environment; all: light that bounced before, too"),
     TL_OPTION_INT(light_params, fan, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
                   "rays: maximum number of cosine lobes that approximate gloss of another shape; larger: "
                   "more exact, slower"),

@@ -23,6 +23,8 @@ enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
 /* Where the ratio of seen to exact light is computed: for every sample, or at the vertices of the triangles
  * that are seen (render/shade), from where pixels interpolate it. */
 enum tl_ratio_at { TL_RATIO_AT_SAMPLES, TL_RATIO_AT_VERTICES };
+/* Light that surfaces send on to each other (render/bounce), of rays: none, once, or as often as it likes. */
+enum tl_light_bounce { TL_BOUNCE_OFF, TL_BOUNCE_ONE, TL_BOUNCE_ALL };
 enum tl_composition { TL_COMPOSE_SUM, TL_COMPOSE_DIFFERENCE, TL_COMPOSE_RATIO };
 struct tl_light_params { /* table "light" */
     int method;          /* enum tl_method */
@@ -43,6 +45,7 @@ struct tl_light_params { /* table "light" */
     int rays;            /* rays: directions a region and refresh */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
     float repair_rest;   /* ... once nothing moves, when it is more */
+    int bounce;          /* enum tl_light_bounce, of rays */
     int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */

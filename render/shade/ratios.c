@@ -170,7 +170,9 @@ void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_requ
                                          .taps = ratios->taps,
                                          .environment_yaw = request->environment_yaw,
                                          .params = request->params,
+                                         .bounce = request->bounce,
                                          .ranges = request->ranges,
+                                         .any_layered = true,
                                          .eye = request->eye};
     compose.values = tl_points_values(request->points, &compose.stride);
     tl_compose_ratios(&compose, ratios->made);

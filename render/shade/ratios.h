@@ -39,7 +39,8 @@ struct tl_ratios_request {
     const tl_points *points; /* updated for the triangles of `ids` */
     const struct tl_region_lights *lights;
     const struct tl_lobes *lobes;
-    float environment_yaw; /* rad */
+    const struct tl_bounce *bounce; /* updated for the triangles of `ids`; NULL: none */
+    float environment_yaw;          /* rad */
     vec3s eye;
     const struct tl_light_params *params;
     uint64_t light_revision; /* changes with the environment, its yaw and the surfaces' materials */

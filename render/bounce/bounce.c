@@ -1,0 +1,472 @@
+#include "render/bounce/bounce.h"
+
+#include "config/memory.h"
+#include "render/env/exponent.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rays of a vertex in an update; in motion one in SHARES of the wanted vertices is traced in each. At rest
+ * every vertex has ROUNDS updates. */
+#define RAYS   16
+#define SHARES 4
+#define ROUNDS 4
+/* A vertex that was neither seen nor hit for so many updates is traced no more. */
+#define FORGET 32
+/* Texels along a face of the coarse sky: 11 degrees each. */
+#define SKY_SIZE 8
+
+/* ---- Following the scene ---- */
+
+static vec3s mean_colour(const struct tl_map *map, vec3s colour)
+{
+    const tl_image *image = map->image;
+    if (!image || image->type != TL_IMAGE_U8 || image->channels < 3)
+        return colour;
+    const size_t most = 4096, count = (size_t)image->width * (size_t)image->height;
+    const size_t step = count / most + 1;
+    double sums[3] = {0};
+    size_t taken = 0;
+    for (size_t i = 0; i < count; i += step, taken++)
+        for (int c = 0; c < 3; c++)
+            sums[c] += (double)tl_srgb_to_linear(
+                (float)((const uint8_t *)image->texels)[i * (size_t)image->channels + (size_t)c] / 255);
+    for (int c = 0; c < 3 && taken > 0; c++)
+        colour.raw[c] *= (float)(sums[c] / (double)taken);
+    return colour;
+}
+
+/* All light that a surface sends back in even light: matt, and the mean over all directions of Schlick's
+ * reflectance. */
+static vec3s albedo_of(vec3s diffuse, vec3s specular)
+{
+    vec3s albedo;
+    for (int c = 0; c < 3; c++) {
+        float f0 = specular.raw[c];
+        float gloss = f0 > 0 ? f0 + (1 - f0) / 21 : 0;
+        albedo.raw[c] = fminf(diffuse.raw[c] + gloss, 0.98f);
+    }
+    return albedo;
+}
+
+static void follow_materials(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
+{
+    for (size_t s = 0; s < ranges->surface_count; s++) {
+        const tl_surface *surface = ranges->surfaces[s];
+        for (size_t p = 0; p < surface->part_count; p++) {
+            const struct tl_mesh_part *part = &surface->parts[p];
+            const tl_material *material = &surface->materials[part->material];
+            vec3s front = albedo_of(mean_colour(&material->diffuse_map, material->diffuse),
+                                    mean_colour(&material->specular_map, material->specular));
+            vec3s back =
+                material->back.is_given ? albedo_of(material->back.diffuse, material->back.specular) : front;
+            for (size_t i = part->first_index; i < part->first_index + part->index_count; i++) {
+                size_t v = bounce->first_vertex[s] + surface->indices[i];
+                bounce->albedos[2 * v] = front;
+                bounce->albedos[2 * v + 1] = back;
+            }
+        }
+    }
+}
+
+static void free_vertices(struct tl_bounce *bounce)
+{
+    free(bounce->first_vertex);
+    free(bounce->albedos);
+    free(bounce->found);
+    free(bounce->shown);
+    free(bounce->direct);
+    free(bounce->sent);
+    free(bounce->rounds);
+    free(bounce->wanted);
+    free(bounce->weights);
+}
+
+static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_request *request)
+{
+    const struct tl_triangle_ranges *ranges = request->ranges;
+    if (bounce->first_vertex && bounce->shapes_revision == request->shapes_revision)
+        return;
+    free_vertices(bounce);
+    bounce->shapes_revision = request->shapes_revision;
+    bounce->surface_count = ranges->surface_count;
+    bounce->first_vertex = TL_NEW_ARRAY(size_t, ranges->surface_count + 1);
+    for (size_t s = 0; s < ranges->surface_count; s++)
+        bounce->first_vertex[s + 1] = bounce->first_vertex[s] + ranges->surfaces[s]->vertex_count;
+    bounce->vertex_count = bounce->first_vertex[ranges->surface_count];
+    size_t count = 2 * bounce->vertex_count;
+    bounce->albedos = TL_NEW_ARRAY(vec3s, count);
+    bounce->found = TL_NEW_ARRAY(struct tl_bounced, count);
+    bounce->shown = TL_NEW_ARRAY(struct tl_bounced, count);
+    bounce->direct = TL_NEW_ARRAY(vec3s, count);
+    bounce->sent = TL_NEW_ARRAY(vec3s, count);
+    bounce->rounds = TL_NEW_ARRAY(uint16_t, count);
+    bounce->wanted = TL_NEW_ARRAY(uint32_t, count);
+    bounce->weights = TL_NEW_ARRAY(float, count);
+    bounce->update = 0;
+    follow_materials(bounce, ranges);
+}
+
+static void follow_sky(struct tl_bounce *bounce, const struct tl_bounce_request *request)
+{
+    if (bounce->sky.texels && bounce->sky_revision == request->cube_revision)
+        return;
+    const tl_cube *cube = request->cube;
+    tl_cube_release(&bounce->sky);
+    bounce->sky = tl_cube_create(SKY_SIZE);
+    bounce->sky_revision = request->cube_revision;
+    float weights[SKY_SIZE * SKY_SIZE] = {0};
+    for (int y = 0; y < cube->size; y++)
+        for (int x = 0; x < cube->size; x++) {
+            int to = y * SKY_SIZE / cube->size * SKY_SIZE + x * SKY_SIZE / cube->size;
+            float angle = tl_cube_solid_angle(cube->size, x, y);
+            weights[to] += angle;
+            for (int face = 0; face < 6; face++)
+                for (int c = 0; c < 3; c++)
+                    bounce->sky.texels[3 * (face * SKY_SIZE * SKY_SIZE + to) + c] +=
+                        angle * cube->texels[3 * ((face * cube->size + y) * cube->size + x) + c];
+        }
+    for (int i = 0; i < 6 * SKY_SIZE * SKY_SIZE; i++)
+        for (int c = 0; c < 3 && weights[i % (SKY_SIZE * SKY_SIZE)] > 0; c++)
+            bounce->sky.texels[3 * i + c] /= weights[i % (SKY_SIZE * SKY_SIZE)];
+}
+
+/* ---- What is wanted ---- */
+
+static void want(struct tl_bounce *bounce, size_t surface, const uint32_t corners[3], bool back)
+{
+    for (int k = 0; k < 3; k++) /* threads may want one vertex at once: they write the same */
+        __atomic_store_n(&bounce->wanted[2 * (bounce->first_vertex[surface] + corners[k]) + back],
+                         bounce->update, __ATOMIC_RELAXED);
+}
+
+static void want_triangle(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
+                          uint32_t triangle)
+{
+    uint32_t corners[3];
+    size_t surface;
+    tl_triangle_find(ranges, triangle & ~TL_SAMPLE_BACK, corners, &surface);
+    want(bounce, surface, corners, triangle & TL_SAMPLE_BACK);
+}
+
+static void want_seen(struct tl_bounce *bounce, const struct tl_bounce_request *request)
+{
+    const struct tl_samples *samples = request->samples;
+    for (size_t i = 0; samples && i < samples->count; i++)
+        if (i == 0 || samples->items[i].triangle != samples->items[i - 1].triangle)
+            want_triangle(bounce, request->ranges, samples->items[i].triangle);
+    for (size_t i = 0; !samples && i < request->seen_count; i++)
+        want_triangle(bounce, request->ranges, request->seen[i]);
+}
+
+/* ---- Rays ---- */
+
+/* Number i of a sequence that fills the square evenly [Roberts 2018: R2], begun elsewhere for every vertex.
+ */
+static vec2s spread(uint32_t vertex, uint32_t i)
+{
+    uint32_t hash = (vertex + 1) * 0x9e3779b1u;
+    hash = (hash ^ hash >> 15) * 0x85ebca77u;
+    uint32_t x = hash + i * 3242174889u, y = (hash ^ hash >> 13) * 0xc2b2ae3du + i * 2447445414u;
+    return (vec2s){{(float)(x >> 8) / (float)(1 << 24), (float)(y >> 8) / (float)(1 << 24)}};
+}
+
+/* A direction spread by the cosine about the normal, fixed to the surface by its tangent. */
+static vec3s ray_direction(vec3s normal, vec3s tangent, vec2s at)
+{
+    vec3s along = glms_vec3_sub(tangent, glms_vec3_scale(normal, glms_vec3_dot(normal, tangent)));
+    if (!(glms_vec3_norm2(along) > 1e-6f))
+        along = glms_vec3_cross(normal, fabsf(normal.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}});
+    along = glms_vec3_normalize(along);
+    vec3s across = glms_vec3_cross(normal, along);
+    float radius = sqrtf(at.x), angle = 2 * (float)M_PI * at.y;
+    vec3s direction = glms_vec3_scale(normal, sqrtf(fmaxf(1 - at.x, 1e-4f)));
+    direction = glms_vec3_add(direction, glms_vec3_scale(along, radius * cosf(angle)));
+    direction = glms_vec3_add(direction, glms_vec3_scale(across, radius * sinf(angle)));
+    return glms_vec3_normalize(direction);
+}
+
+/* Sums over the rays of a vertex. */
+struct gathered {
+    int count; /* rays whose end is known */
+    vec3s arrives;
+    float mean;
+    vec3s along;
+    vec3s open, all; /* of the coarse sky */
+};
+
+static vec3s sky_towards(const struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s d)
+{
+    return tl_cube_sample(&bounce->sky, tl_turn_direction(d, -request->environment_yaw));
+}
+
+/* What the corners of a triangle send, between them. False where that is not known yet. */
+static bool sent_from(const struct tl_bounce *bounce, size_t surface, const uint32_t corners[3], bool back,
+                      const float weights[3], vec3s *sent)
+{
+    float known = 0;
+    *sent = (vec3s){{0, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        size_t at = 2 * (bounce->first_vertex[surface] + corners[k]) + back;
+        if (bounce->rounds[at] == 0)
+            continue;
+        known += weights[k];
+        *sent = glms_vec3_add(*sent, glms_vec3_scale(bounce->sent[at], weights[k]));
+    }
+    if (!(known > 0.1f))
+        return false;
+    *sent = glms_vec3_divs(*sent, known);
+    return true;
+}
+
+static void count_hit(struct gathered *sums, vec3s direction, vec3s light)
+{
+    float brightness = (light.x + light.y + light.z) / 3;
+    sums->arrives = glms_vec3_add(sums->arrives, light);
+    sums->along = glms_vec3_add(sums->along, glms_vec3_scale(direction, brightness));
+    sums->mean += brightness;
+}
+
+/* Follows one ray to its end. */
+static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
+                       vec3s direction, struct gathered *sums)
+{
+    vec3s sky = sky_towards(bounce, request, direction), sent;
+    struct tl_trace_hit hit = tl_trace_nearest(request->trace, origin, direction, 0, INFINITY);
+    vec3s point;
+    uint32_t triangle;
+    float weights[3];
+    float cover = 0;
+    sums->all = glms_vec3_add(sums->all, sky);
+    if (hit.surface != TL_TRACE_NONE) {
+        const uint32_t *corners = request->ranges->surfaces[hit.surface]->indices + 3 * (size_t)hit.triangle;
+        const float shares[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+        want(bounce, hit.surface, corners, hit.back);
+        if (!sent_from(bounce, hit.surface, corners, hit.back, shares, &sent))
+            return;
+        cover = 1;
+    } else if (tl_ground_meet(request->ground, origin, direction, &point, &triangle, weights)) {
+        const size_t last = request->ranges->surface_count - 1;
+        const uint32_t *corners = request->ground->indices + 3 * (size_t)triangle;
+        want(bounce, last, corners, false);
+        if (!sent_from(bounce, last, corners, false, weights, &sent))
+            return;
+        cover = tl_ground_cover(request->ground, point.x, point.z);
+    }
+    sums->count++;
+    if (cover > 0)
+        count_hit(sums, direction, glms_vec3_scale(sent, cover));
+    sums->open = glms_vec3_add(sums->open, glms_vec3_scale(sky, 1 - cover));
+}
+
+static vec3s sunlight(const struct tl_bounce_request *request, vec3s origin, vec3s normal)
+{
+    vec3s light = {{0, 0, 0}};
+    for (int i = 0; i < request->suns->count; i++) {
+        const struct tl_sun *sun = &request->suns->items[i];
+        vec3s direction = tl_turn_direction(sun->direction, request->environment_yaw);
+        float cosine = glms_vec3_dot(normal, direction);
+        if (!(cosine > 0) || tl_trace_occluded(request->trace, origin, direction, 0, INFINITY))
+            continue;
+        float open = tl_ground_visibility(request->ground, origin, direction);
+        light = glms_vec3_add(light, glms_vec3_scale(sun->power, open * cosine / (float)M_PI));
+    }
+    return light;
+}
+
+/* Mean m = 1/2 and gradient g of light that arrives from one side of a plane: for cosine-weighted directions
+ * w of brightness L, normalised so that light that is even over the hemisphere is m + g.w with m = 1/2 and g
+ * = 3/4 n, the first two bands of a hemisphere [Ramamoorthi and Hanrahan 2001]. E[L] = 1 and E[L w] = 2/3 n
+ * there. */
+static void set_shape(const struct gathered *sums, vec3s normal, struct tl_bounced *out)
+{
+    out->mean = 0.5f;
+    out->along = sums->mean > 0 ? glms_vec3_scale(sums->along, 0.75f * 1.5f / sums->mean)
+                                : glms_vec3_scale(normal, 0.75f);
+}
+
+static void trace_vertex(struct tl_bounce *bounce, const struct tl_bounce_request *request, size_t surface,
+                         uint32_t vertex, bool back)
+{
+    const tl_surface *from = request->ranges->surfaces[surface];
+    size_t at = 2 * (bounce->first_vertex[surface] + vertex) + back;
+    const vec3s zero = {{0, 0, 0}};
+    vec3s normal = glms_vec3_scale(from->normals[vertex], back ? -1.0f : 1.0f);
+    vec3s tangent =
+        from->tangents
+            ? (vec3s){{from->tangents[vertex].x, from->tangents[vertex].y, from->tangents[vertex].z}}
+            : zero;
+    vec3s origin =
+        glms_vec3_add(from->positions[vertex], glms_vec3_scale(normal, tl_trace_offset(request->trace)));
+    uint32_t round = request->moved ? 0 : bounce->rounds[at];
+    struct gathered sums = {0};
+    for (uint32_t k = 0; k < RAYS; k++)
+        follow_ray(bounce, request, origin,
+                   ray_direction(normal, tangent, spread((uint32_t)at, round * RAYS + k)), &sums);
+    struct tl_bounced now;
+    vec3s direct = tl_lobes_fetch(request->lobes, tl_turn_direction(normal, -request->environment_yaw),
+                                  (struct tl_exponent_blend){.index = 0});
+    float known = sums.count > 0 ? (float)RAYS / (float)sums.count : 0;
+    for (int c = 0; c < 3; c++) {
+        now.arrives[c] = sums.arrives.raw[c] * known / RAYS;
+        float share = sums.all.raw[c] > 0 ? sums.open.raw[c] / sums.all.raw[c] : 1;
+        direct.raw[c] *= share;
+    }
+    set_shape(&sums, normal, &now);
+    direct = glms_vec3_add(direct, sunlight(request, origin, normal));
+    struct tl_bounced *found = &bounce->found[at];
+    float kept = (float)round / (float)(round + 1), added = 1 - kept;
+    for (int c = 0; c < 3; c++)
+        found->arrives[c] = kept * found->arrives[c] + added * now.arrives[c];
+    found->mean = kept * found->mean + added * now.mean;
+    found->along = glms_vec3_add(glms_vec3_scale(found->along, kept), glms_vec3_scale(now.along, added));
+    bounce->direct[at] =
+        glms_vec3_add(glms_vec3_scale(bounce->direct[at], kept), glms_vec3_scale(direct, added));
+}
+
+/* ---- Updates ---- */
+
+struct probe {
+    uint32_t surface, vertex;
+    bool back;
+};
+
+static bool is_due(const struct tl_bounce *bounce, const struct tl_bounce_request *request, size_t at)
+{
+    if (bounce->wanted[at] == 0 || bounce->update - bounce->wanted[at] > FORGET)
+        return false;
+    if (bounce->rounds[at] == 0)
+        return true;
+    return (request->moved || bounce->rounds[at] < ROUNDS) &&
+           (request->at_once || (at / 2 + bounce->update) % SHARES == 0);
+}
+
+/* Lists the vertices that are traced in this update. */
+static size_t list_due(struct tl_bounce *bounce, const struct tl_bounce_request *request, struct probe *due)
+{
+    size_t count = 0, at = 0;
+    bounce->is_done = !request->moved;
+    for (size_t s = 0; s < bounce->surface_count; s++)
+        for (size_t v = 0; v < bounce->first_vertex[s + 1] - bounce->first_vertex[s]; v++)
+            for (int back = 0; back < 2; back++, at++) {
+                if (request->moved && bounce->rounds[at] > 1)
+                    bounce->rounds[at] = 1;
+                bool lacks = bounce->wanted[at] > 0 && bounce->rounds[at] < ROUNDS &&
+                             bounce->update - bounce->wanted[at] <= FORGET;
+                bounce->is_done = bounce->is_done && !lacks;
+                if (is_due(bounce, request, at))
+                    due[count++] = (struct probe){(uint32_t)s, (uint32_t)v, back};
+            }
+    return count;
+}
+
+/* Adds a corner's light to that of the other two. */
+static void lend(struct tl_bounce *bounce, size_t to, size_t from)
+{
+    const struct tl_bounced *light = &bounce->found[from];
+    if (bounce->rounds[from] == 0)
+        return;
+    struct tl_bounced *sum = &bounce->shown[to];
+    for (int c = 0; c < 3; c++)
+        sum->arrives[c] += light->arrives[c];
+    sum->mean += light->mean;
+    sum->along = glms_vec3_add(sum->along, light->along);
+    bounce->weights[to] += 1;
+}
+
+/* Means of each vertex and its neighbours: bounced light varies slowly, the noise of sixteen rays does not.
+ */
+static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
+{
+    const size_t count = 2 * bounce->vertex_count;
+    memset(bounce->shown, 0, count * sizeof *bounce->shown);
+    memset(bounce->weights, 0, count * sizeof *bounce->weights);
+    for (size_t at = 0; at < count; at++)
+        lend(bounce, at, at);
+    for (size_t s = 0; s < bounce->surface_count; s++) {
+        const tl_surface *surface = ranges->surfaces[s];
+        for (size_t i = 0; i + 2 < surface->index_count; i += 3)
+            for (size_t k = 0; k < 6; k++) {
+                size_t first = bounce->first_vertex[s], side = k / 3;
+                size_t a = 2 * (first + surface->indices[i + k % 3]) + side;
+                size_t b = 2 * (first + surface->indices[i + (k + 1) % 3]) + side;
+                lend(bounce, a, b);
+                lend(bounce, b, a);
+            }
+    }
+    for (size_t at = 0; at < count; at++) {
+        float share = bounce->weights[at] > 0 ? 1 / bounce->weights[at] : 0;
+        struct tl_bounced *shown = &bounce->shown[at];
+        for (int c = 0; c < 3; c++)
+            shown->arrives[c] *= share;
+        shown->mean *= share;
+        shown->along = glms_vec3_scale(shown->along, share);
+    }
+}
+
+/* The light that vertices send on from now on. */
+static void send(struct tl_bounce *bounce, const struct tl_bounce_request *request, const struct probe *due,
+                 size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t at = 2 * (bounce->first_vertex[due[i].surface] + due[i].vertex) + due[i].back;
+        bounce->rounds[at] = (uint16_t)(request->moved ? 1 : bounce->rounds[at] + 1);
+        vec3s light = bounce->direct[at];
+        for (int c = 0; request->all && c < 3; c++)
+            light.raw[c] += bounce->found[at].arrives[c];
+        bounce->sent[at] = glms_vec3_mul(bounce->albedos[at], light);
+    }
+}
+
+void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *request)
+{
+    follow_shapes(bounce, request);
+    follow_sky(bounce, request);
+    bounce->update++;
+    want_seen(bounce, request);
+    struct probe *due = TL_NEW_ARRAY(struct probe, 2 * bounce->vertex_count + 1);
+    size_t count = list_due(bounce, request, due);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (size_t i = 0; i < count; i++)
+        trace_vertex(bounce, request, due[i].surface, due[i].vertex, due[i].back);
+    bounce->ray_count = count * RAYS;
+    send(bounce, request, due, count);
+    if (count > 0)
+        smooth(bounce, request->ranges);
+    free(due);
+}
+
+void tl_bounce_release(struct tl_bounce *bounce)
+{
+    free_vertices(bounce);
+    tl_cube_release(&bounce->sky);
+    *bounce = (struct tl_bounce){0};
+}
+
+size_t tl_bounce_bytes(const struct tl_bounce *bounce)
+{
+    return 2 * bounce->vertex_count *
+               (3 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint16_t) + sizeof(uint32_t) +
+                sizeof(float)) +
+           (bounce->surface_count + 1) * sizeof(size_t);
+}
+
+struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
+                                const tl_sample *sample)
+{
+    uint32_t corners[3];
+    size_t surface;
+    struct tl_bounced light = {0};
+    tl_triangle_find(ranges, sample->triangle & ~TL_SAMPLE_BACK, corners, &surface);
+    for (int k = 0; k < 3; k++) {
+        size_t at =
+            2 * (bounce->first_vertex[surface] + corners[k]) + (sample->triangle & TL_SAMPLE_BACK ? 1 : 0);
+        const struct tl_bounced *corner = &bounce->shown[at];
+        for (int c = 0; c < 3; c++)
+            light.arrives[c] += sample->weights[k] * corner->arrives[c];
+        light.mean += sample->weights[k] * corner->mean;
+        light.along = glms_vec3_add(light.along, glms_vec3_scale(corner->along, sample->weights[k]));
+    }
+    return light;
+}

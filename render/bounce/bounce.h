@@ -1,0 +1,90 @@
+/* Light that surfaces send on to each other, kept at vertices.
+ *
+ * Rays from a vertex, spread by the cosine, are followed to what they hit. The vertex keeps what arrives by
+ * them: its mean, E_b / pi, which is what the diffuse lobe takes; and, for glossy lobes, how that light lies
+ * about the vertex: a mean over the sphere and a gradient (the first two bands of spherical harmonics), in
+ * one number, of the mean's colour. What is hit sends on what its own vertices received when they were traced
+ * last: light of the environment and suns, and, if all bounces are wanted, bounced light, so that bounces add
+ * up from update to update. Its reflectance is that of a matt surface with the material's mean colour, gloss
+ * included.
+ *
+ *     environment at a hit = E(n, 1) sum of L over rays that meet nothing / sum of L over all rays
+ *
+ * with a coarse L: exact where nothing is hidden (the ratio of render/light/compose.h, of one region a ray).
+ *
+ * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
+ * is traced in each update, in directions that are fixed to the surface, so that nothing flickers; at rest
+ * further directions are averaged in until all have had their rounds. Open cloth counts as closed, and what a
+ * surface lets through is not sent on.
+ *
+ * World space, metres. Lifetime: a plain struct that starts as {0} and owns its arrays. Threads: one call at
+ * a time; OpenMP inside; results do not depend on the number of threads. */
+#ifndef TOILE_RENDER_BOUNCE_BOUNCE_H
+#define TOILE_RENDER_BOUNCE_BOUNCE_H
+
+#include "render/env/lobes.h"
+#include "render/env/sun.h"
+#include "render/gbuffer/samples.h"
+#include "render/surfaces/ground.h"
+#include "render/trace/trace.h"
+
+/* Bounced light at a vertex seen from one side. */
+struct tl_bounced {
+    float arrives[3]; /* E_b / pi */
+    float mean;       /* over the sphere, as a share of `arrives` */
+    vec3s along;      /* gradient, as a share of `arrives` */
+};
+
+struct tl_bounce {
+    size_t surface_count, vertex_count;
+    size_t *first_vertex; /* [surface_count + 1] */
+    uint64_t shapes_revision;
+    uint32_t update;          /* counts updates, from 1 */
+    vec3s *albedos;           /* [2 vertex_count]: front, back */
+    struct tl_bounced *found; /* ...: mean of the vertex's own rays */
+    struct tl_bounced *shown; /* ...: mean with its neighbours' */
+    vec3s *direct;            /* ...: E / pi of the environment and suns */
+    vec3s *sent;              /* ...: radiance, as of the last update */
+    uint16_t *rounds;         /* ...: in `found`; 0: nothing is known */
+    uint32_t *wanted;         /* ...: update in which it was last seen or hit; 0: never */
+    float *weights;           /* ...: of the neighbours, while `shown` is made */
+    uint64_t sky_revision;    /* of what `sky` was made from */
+    tl_cube sky;              /* coarse */
+    size_t ray_count;         /* of the last update */
+    bool is_done;             /* all wanted vertices have had their rounds */
+};
+
+struct tl_bounce_request {
+    const tl_trace *trace;
+    const struct tl_triangle_ranges *ranges; /* of the traced surfaces, then the ground if there is one */
+    uint64_t shapes_revision;                /* changes when vertex numbers or materials do */
+    const struct tl_ground *ground;          /* NULL: none */
+    const tl_cube *cube;                     /* without the suns */
+    uint64_t cube_revision;
+    const struct tl_lobes *lobes; /* of the cube; with exponent 1 */
+    const struct tl_suns *suns;
+    float environment_yaw; /* rad */
+    const uint32_t *seen;  /* [seen_count]: global triangles and TL_SAMPLE_BACK that the camera sees */
+    size_t seen_count;
+    const struct tl_samples *samples; /* in place of `seen`, or NULL */
+    bool all;                         /* hits send on what bounced to them, too */
+    bool moved;                       /* something else than the camera changed since the last update */
+    bool at_once;                     /* every wanted vertex is traced, however long that takes */
+};
+
+void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *request);
+void tl_bounce_release(struct tl_bounce *bounce);
+size_t tl_bounce_bytes(const struct tl_bounce *bounce);
+
+/* What arrives at a sample, between the vertices of its triangle. */
+struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
+                                const tl_sample *sample);
+/* Bounced light through the cosine lobe of exponent s about a unit direction. */
+static inline vec3s tl_bounced_in_lobe(const struct tl_bounced *bounced, vec3s direction, float exponent)
+{
+    float share = bounced->mean + (exponent + 1) / (exponent + 2) * glms_vec3_dot(bounced->along, direction);
+    share = share > 0 ? share : 0;
+    return (vec3s){{bounced->arrives[0] * share, bounced->arrives[1] * share, bounced->arrives[2] * share}};
+}
+
+#endif
