@@ -1,5 +1,6 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
+  bounce/bounce.c
   brdf/angles.c
   brdf/brdf.c
   brdf/coat.c

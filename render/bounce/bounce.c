@@ -10,8 +10,10 @@
 /* Rays of a vertex in an update; in motion one in SHARES of the wanted vertices is traced in each. At rest
  * every vertex has ROUNDS updates. */
 #define RAYS   16
-#define SHARES 4
+#define SHARES 8
 #define ROUNDS 4
+/* Updates of a new scene before its first: until what rays hit is known itself. */
+#define FIRST_UPDATES 4
 /* A vertex that was neither seen nor hit for so many updates is traced no more. */
 #define FORGET 32
 /* Texels along a face of the coarse sky: 11 degrees each. */
@@ -61,10 +63,12 @@ static void follow_materials(struct tl_bounce *bounce, const struct tl_triangle_
                                     mean_colour(&material->specular_map, material->specular));
             vec3s back =
                 material->back.is_given ? albedo_of(material->back.diffuse, material->back.specular) : front;
+            vec3s emission = mean_colour(&material->emission_map, material->emission);
             for (size_t i = part->first_index; i < part->first_index + part->index_count; i++) {
                 size_t v = bounce->first_vertex[s] + surface->indices[i];
                 bounce->albedos[2 * v] = front;
                 bounce->albedos[2 * v + 1] = back;
+                bounce->emissions[2 * v] = bounce->emissions[2 * v + 1] = emission;
             }
         }
     }
@@ -74,6 +78,7 @@ static void free_vertices(struct tl_bounce *bounce)
 {
     free(bounce->first_vertex);
     free(bounce->albedos);
+    free(bounce->emissions);
     free(bounce->found);
     free(bounce->shown);
     free(bounce->direct);
@@ -97,6 +102,7 @@ static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_reque
     bounce->vertex_count = bounce->first_vertex[ranges->surface_count];
     size_t count = 2 * bounce->vertex_count;
     bounce->albedos = TL_NEW_ARRAY(vec3s, count);
+    bounce->emissions = TL_NEW_ARRAY(vec3s, count);
     bounce->found = TL_NEW_ARRAY(struct tl_bounced, count);
     bounce->shown = TL_NEW_ARRAY(struct tl_bounced, count);
     bounce->direct = TL_NEW_ARRAY(vec3s, count);
@@ -275,6 +281,27 @@ static vec3s sunlight(const struct tl_bounce_request *request, vec3s origin, vec
     return light;
 }
 
+/* As tl_lamp_at has it (render/local). */
+static vec3s lamplight(const struct tl_bounce_request *request, vec3s origin, vec3s normal)
+{
+    vec3s light = {{0, 0, 0}};
+    for (size_t i = 0; i < request->lamp_count; i++) {
+        const struct tl_lamp *lamp = &request->lamps[i];
+        bool is_point = lamp->kind == TL_LAMP_POINT;
+        vec3s to = is_point ? glms_vec3_sub(lamp->position, origin) : lamp->direction;
+        float distance = fmaxf(glms_vec3_norm(to), 1e-3f);
+        vec3s direction = glms_vec3_divs(to, distance);
+        float cosine = glms_vec3_dot(normal, direction), reach = is_point ? distance : INFINITY;
+        if (lamp->kind == TL_LAMP_NONE || !(cosine > 0) ||
+            tl_trace_occluded(request->trace, origin, direction, 0, reach))
+            continue;
+        float open = is_point ? 1 : tl_ground_visibility(request->ground, origin, direction);
+        float share = open * cosine / (float)M_PI / (is_point ? distance * distance : 1);
+        light = glms_vec3_add(light, glms_vec3_scale(lamp->irradiance, share));
+    }
+    return light;
+}
+
 /* Mean m = 1/2 and gradient g of light that arrives from one side of a plane: for cosine-weighted directions
  * w of brightness L, normalised so that light that is even over the hemisphere is m + g.w with m = 1/2 and g
  * = 3/4 n, the first two bands of a hemisphere [Ramamoorthi and Hanrahan 2001]. E[L] = 1 and E[L w] = 2/3 n
@@ -315,6 +342,7 @@ static void trace_vertex(struct tl_bounce *bounce, const struct tl_bounce_reques
     }
     set_shape(&sums, normal, &now);
     direct = glms_vec3_add(direct, sunlight(request, origin, normal));
+    direct = glms_vec3_add(direct, lamplight(request, origin, normal));
     struct tl_bounced *found = &bounce->found[at];
     float kept = (float)round / (float)(round + 1), added = 1 - kept;
     for (int c = 0; c < 3; c++)
@@ -415,14 +443,12 @@ static void send(struct tl_bounce *bounce, const struct tl_bounce_request *reque
         vec3s light = bounce->direct[at];
         for (int c = 0; request->all && c < 3; c++)
             light.raw[c] += bounce->found[at].arrives[c];
-        bounce->sent[at] = glms_vec3_mul(bounce->albedos[at], light);
+        bounce->sent[at] = glms_vec3_muladd(bounce->albedos[at], light, bounce->emissions[at]);
     }
 }
 
-void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *request)
+static void update(struct tl_bounce *bounce, const struct tl_bounce_request *request)
 {
-    follow_shapes(bounce, request);
-    follow_sky(bounce, request);
     bounce->update++;
     want_seen(bounce, request);
     struct probe *due = TL_NEW_ARRAY(struct probe, 2 * bounce->vertex_count + 1);
@@ -437,6 +463,17 @@ void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *
     free(due);
 }
 
+void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *request)
+{
+    follow_shapes(bounce, request);
+    follow_sky(bounce, request);
+    struct tl_bounce_request first = *request;
+    first.moved = first.at_once = true;
+    while (bounce->update < FIRST_UPDATES)
+        update(bounce, &first);
+    update(bounce, request);
+}
+
 void tl_bounce_release(struct tl_bounce *bounce)
 {
     free_vertices(bounce);
@@ -447,7 +484,7 @@ void tl_bounce_release(struct tl_bounce *bounce)
 size_t tl_bounce_bytes(const struct tl_bounce *bounce)
 {
     return 2 * bounce->vertex_count *
-               (3 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint16_t) + sizeof(uint32_t) +
+               (4 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint16_t) + sizeof(uint32_t) +
                 sizeof(float)) +
            (bounce->surface_count + 1) * sizeof(size_t);
 }

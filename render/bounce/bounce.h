@@ -4,9 +4,9 @@
  * them: its mean, E_b / pi, which is what the diffuse lobe takes; and, for glossy lobes, how that light lies
  * about the vertex: a mean over the sphere and a gradient (the first two bands of spherical harmonics), in
  * one number, of the mean's colour. What is hit sends on what its own vertices received when they were traced
- * last: light of the environment and suns, and, if all bounces are wanted, bounced light, so that bounces add
- * up from update to update. Its reflectance is that of a matt surface with the material's mean colour, gloss
- * included.
+ * last: light of the environment, suns and lamps, what it emits, and, if all bounces are wanted, bounced
+ * light, so that bounces add up from update to update. Its reflectance is that of a matt surface with the
+ * material's mean colour, gloss included.
  *
  *     environment at a hit = E(n, 1) sum of L over rays that meet nothing / sum of L over all rays
  *
@@ -25,6 +25,7 @@
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
 #include "render/gbuffer/samples.h"
+#include "render/scene/lamp.h"
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
 
@@ -40,10 +41,11 @@ struct tl_bounce {
     size_t *first_vertex; /* [surface_count + 1] */
     uint64_t shapes_revision;
     uint32_t update;          /* counts updates, from 1 */
+    vec3s *emissions;         /* [2 vertex_count]: front, back: radiance */
     vec3s *albedos;           /* [2 vertex_count]: front, back */
     struct tl_bounced *found; /* ...: mean of the vertex's own rays */
     struct tl_bounced *shown; /* ...: mean with its neighbours' */
-    vec3s *direct;            /* ...: E / pi of the environment and suns */
+    vec3s *direct;            /* ...: E / pi of the environment, suns and lamps */
     vec3s *sent;              /* ...: radiance, as of the last update */
     uint16_t *rounds;         /* ...: in `found`; 0: nothing is known */
     uint32_t *wanted;         /* ...: update in which it was last seen or hit; 0: never */
@@ -63,6 +65,8 @@ struct tl_bounce_request {
     uint64_t cube_revision;
     const struct tl_lobes *lobes; /* of the cube; with exponent 1 */
     const struct tl_suns *suns;
+    const struct tl_lamp *lamps; /* [lamp_count] */
+    size_t lamp_count;
     float environment_yaw; /* rad */
     const uint32_t *seen;  /* [seen_count]: global triangles and TL_SAMPLE_BACK that the camera sees */
     size_t seen_count;

@@ -219,6 +219,7 @@
     IO(AFTER, TL_MADE_TRANSPARENCY)                                                                          \
     IO(READS, cube)                                                                                          \
     IO(READS, suns)                                                                                          \
+    IO(READS, lamps)                                                                                         \
     IO(READS, exact)                                                                                         \
     IO(READS_HANDLE, trace)                                                                                  \
     IO(READS, shapes)                                                                                        \

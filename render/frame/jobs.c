@@ -174,7 +174,7 @@ const tl_job tl_frame_jobs[] = {
      IO(bounce, TL_BOUNCE_JOB),
      .requires_scene = TL_BIT(TL_SCENE_BOUNCE),
      .levels = LEVELS_ONE,
-     .work = tl_points_work},
+     .work = tl_bounce_work},
     {.name = "ratios",
      .what = "ratio of seen to exact light, at vertices",
      IO(ratios, TL_RATIOS_JOB),

@@ -71,11 +71,11 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
     return true;
 }
 
-/* A still image takes some updates until what rays hit is known itself, then all of its rounds. */
+/* A still image takes all its rounds. */
 bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
 {
     (void)error;
-    enum { FIRST_UPDATES = 3, UPDATES_MOST = 64 };
+    enum { ROUNDS_MOST = 64 };
     bool at_vertices = *job->facts & TL_BIT(TL_SCENE_RATIOS);
     struct tl_bounce_request request = {.trace = job->trace,
                                         .ranges = &job->shapes->ranges,
@@ -85,6 +85,8 @@ bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
                                         .cube_revision = job->environment->revision,
                                         .lobes = job->exact->lobes,
                                         .suns = job->suns,
+                                        .lamps = job->lamps->items,
+                                        .lamp_count = job->lamps->count,
                                         .environment_yaw = *job->yaw,
                                         .samples = at_vertices ? NULL : job->samples,
                                         .seen = job->ids->seen,
@@ -93,12 +95,9 @@ bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
                                         .moved = *job->scene_round == 0,
                                         .at_once = job->moment->still};
     tl_bounce_update(job->bounce, &request);
-    for (int i = 1; i < UPDATES_MOST && request.at_once && !tl_interrupted(); i++) {
-        request.moved = i < FIRST_UPDATES;
-        if (!request.moved && job->bounce->is_done)
-            break;
+    request.moved = false;
+    for (int i = 0; i < ROUNDS_MOST && request.at_once && !job->bounce->is_done && !tl_interrupted(); i++)
         tl_bounce_update(job->bounce, &request);
-    }
     return true;
 }
 
@@ -106,6 +105,7 @@ static uint64_t light_revision(const struct tl_ratios_job *job)
 {
     const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
     uint64_t hash = tl_hash(TL_HASH_START, parts, sizeof parts);
+    hash = tl_hash(hash, &job->light_options->bounce, sizeof job->light_options->bounce);
     return tl_hash(hash, job->yaw, sizeof *job->yaw);
 }
 

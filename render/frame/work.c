@@ -181,6 +181,12 @@ struct tl_work tl_points_work(const void *context)
         {1e-4 * sizes->triangles, samples, 2e-4 * sizes->points, 8e-5 * sizes->points * sizes->refreshed}};
 }
 
+struct tl_work tl_bounce_work(const void *context)
+{
+    const struct tl_work_sizes *sizes = context;
+    return (struct tl_work){{3e-5 * sizes->triangles, 5e-4 * sizes->points}};
+}
+
 struct tl_work tl_compose_work(const void *context)
 {
     const struct tl_work_sizes *sizes = context;

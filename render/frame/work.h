@@ -42,6 +42,7 @@ struct tl_work tl_sun_pixels_work(const void *context);
 struct tl_work tl_shade_work(const void *context);
 struct tl_work tl_trace_work(const void *context);
 struct tl_work tl_points_work(const void *context);
+struct tl_work tl_bounce_work(const void *context);
 struct tl_work tl_compose_work(const void *context);
 struct tl_work tl_inspect_work(const void *context);
 struct tl_work tl_passes_work(const void *context); /* light */

@@ -11,7 +11,7 @@ enum tl_terminator { TL_TERMINATOR_SMOOTH, TL_TERMINATOR_GEOMETRIC };
 struct tl_reference_params { /* table "reference" */
     int strata;              /* directions a replicate takes from the environment */
     int lobe_samples;        /* ... from the glossy lobe */
-    int bounces;             /* surfaces by way of which light reaches a point, at most */
+    int bounces;             /* for light that bounces as often as it likes */
     int bounce_samples;      /* paths a replicate sends from each lobe */
     int replicates;
     int terminator; /* enum tl_terminator */

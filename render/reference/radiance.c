@@ -13,7 +13,7 @@
 #define HIT_LOBE_SAMPLES 1
 
 /* Points that paths hit, and what each sends on to the point that its path comes from. */
-struct hits {
+struct path_hits {
     struct tl_shading_points points;
     int owner[TL_SHADING_POINTS];
     vec3s weight[TL_SHADING_POINTS];
@@ -27,7 +27,7 @@ struct paths {
     int samples; /* paths of a lobe */
     struct tl_random random;
     float (*light)[TL_SHADING_POINTS];
-    struct hits hits;
+    struct path_hits hits;
     size_t rays;
 };
 
@@ -39,7 +39,7 @@ static double share_of_sample(struct paths *paths, int sample)
 /* Lights the hits and sends their light on. */
 static void light_hits(struct paths *paths)
 {
-    struct hits *hits = &paths->hits;
+    struct path_hits *hits = &paths->hits;
     if (hits->points.count == 0)
         return;
     struct tl_sky_sample sky[HIT_STRATA];
@@ -76,7 +76,7 @@ static void follow(struct paths *paths, int owner, vec3s origin, vec3s direction
         if (!(hit.cover > 0))
             return;
         float openness = hit.layered && layer < TL_TRANSPARENCY_LAYERS ? hit.layers.openness : 0;
-        struct hits *hits = &paths->hits;
+        struct path_hits *hits = &paths->hits;
         int h = hits->points.count;
         tl_shading_points_add(&hits->points, &hit);
         hits->owner[h] = owner;

@@ -15,6 +15,7 @@ struct tl_reference_request {
     const struct tl_detail_params *detail;
     int lobe;           /* enum tl_lobe (render/light/options.h) */
     bool reflect_scene; /* near mirrors see the lit scene; false: black */
+    int bounces;        /* how often light is sent on by surfaces before the one that is seen */
     int width, height;  /* pixels */
     int supersample;    /* samples a pixel side */
 };

@@ -28,6 +28,7 @@ struct comparison {
     struct tl_view view;
     int width, height, side; /* pixels; samples along one of them */
     int tiles_x, tiles_y;
+    int bounces;                /* of light, in the reference */
     const tl_material *garment; /* materials of the last surface */
     size_t garment_materials;
 };
@@ -137,6 +138,8 @@ static void add_light(const struct tracing *tracing, const struct sample_hits *h
                    .lobe_samples = tracing->effort.lobe_samples,
                    .random =
                        tl_random_begin((uint64_t)tracing->tile << 16 | (uint64_t)tracing->replicate, turn)},
+        .bounces = tracing->comparison->bounces,
+        .bounce_samples = tracing->effort.lobe_samples,
         .reflect = scene->reflect};
     float gathered[3][TL_SHADING_POINTS];
     tl_radiance(&request, &hits->points, gathered);
@@ -434,7 +437,8 @@ bool tl_truth_compare(const tl_frame *frame, const struct tl_render_settings *se
                                     .height = image->height,
                                     .side = settings->image.supersample,
                                     .tiles_x = (image->width + TILE - 1) / TILE,
-                                    .tiles_y = (image->height + TILE - 1) / TILE};
+                                    .tiles_y = (image->height + TILE - 1) / TILE,
+                                    .bounces = request.bounces};
     *out = (struct tl_truth){0};
     find_garment(frame, &comparison);
     if (!tl_reference_scene_make(&request, &comparison.scene, error))

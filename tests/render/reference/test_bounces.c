@@ -48,6 +48,7 @@ static tl_image draw(struct test_scene *scene, int bounces, struct tl_reference_
     tl_error error = {0};
     tl_image image;
     test_scene_refresh(scene);
+    scene->settings.light.bounce = bounces == 0 ? TL_BOUNCE_OFF : TL_BOUNCE_ALL;
     scene->settings.reference.bounces = bounces;
     const struct tl_reference_request request =
         tl_frame_reference_request(&scene->frame, &scene->settings, NULL);
