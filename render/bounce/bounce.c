@@ -196,9 +196,7 @@ static vec3s ray_direction(vec3s normal, vec3s tangent, vec2s at)
 /* Sums over the rays of a vertex. */
 struct gathered {
     int count; /* rays whose end is known */
-    vec3s arrives;
-    float mean;
-    vec3s along;
+    struct tl_bounced light;
     vec3s open, all; /* of the coarse sky */
 };
 
@@ -226,12 +224,21 @@ static bool sent_from(const struct tl_bounce *bounce, size_t surface, const uint
     return true;
 }
 
-static void count_hit(struct gathered *sums, vec3s direction, vec3s light)
+/* Adds light of a direction to the sums of a vertex: of directions that are spread by the cosine, even light
+ * has the mean direction 2/3 n, and the gradient 3/4 n. */
+static void count_hit(struct tl_bounced *sum, vec3s direction, vec3s light)
 {
-    float brightness = (light.x + light.y + light.z) / 3;
-    sums->arrives = glms_vec3_add(sums->arrives, light);
-    sums->along = glms_vec3_add(sums->along, glms_vec3_scale(direction, brightness));
-    sums->mean += brightness;
+    sum->arrives = glms_vec3_add(sum->arrives, light);
+    for (int c = 0; c < 3; c++)
+        sum->along[c] = glms_vec3_muladds(direction, 0.75f * 1.5f * light.raw[c], sum->along[c]);
+}
+
+/* sum += share * light. */
+static void add_bounced(struct tl_bounced *sum, const struct tl_bounced *light, float share)
+{
+    sum->arrives = glms_vec3_muladds(light->arrives, share, sum->arrives);
+    for (int c = 0; c < 3; c++)
+        sum->along[c] = glms_vec3_muladds(light->along[c], share, sum->along[c]);
 }
 
 /* Follows one ray to its end. */
@@ -262,7 +269,7 @@ static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request 
     }
     sums->count++;
     if (cover > 0)
-        count_hit(sums, direction, glms_vec3_scale(sent, cover));
+        count_hit(&sums->light, direction, glms_vec3_scale(sent, cover));
     sums->open = glms_vec3_add(sums->open, glms_vec3_scale(sky, 1 - cover));
 }
 
@@ -302,17 +309,6 @@ static vec3s lamplight(const struct tl_bounce_request *request, vec3s origin, ve
     return light;
 }
 
-/* Mean m = 1/2 and gradient g of light that arrives from one side of a plane: for cosine-weighted directions
- * w of brightness L, normalised so that light that is even over the hemisphere is m + g.w with m = 1/2 and g
- * = 3/4 n, the first two bands of a hemisphere [Ramamoorthi and Hanrahan 2001]. E[L] = 1 and E[L w] = 2/3 n
- * there. */
-static void set_shape(const struct gathered *sums, vec3s normal, struct tl_bounced *out)
-{
-    out->mean = 0.5f;
-    out->along = sums->mean > 0 ? glms_vec3_scale(sums->along, 0.75f * 1.5f / sums->mean)
-                                : glms_vec3_scale(normal, 0.75f);
-}
-
 static void trace_vertex(struct tl_bounce *bounce, const struct tl_bounce_request *request, size_t surface,
                          uint32_t vertex, bool back)
 {
@@ -331,24 +327,17 @@ static void trace_vertex(struct tl_bounce *bounce, const struct tl_bounce_reques
     for (uint32_t k = 0; k < RAYS; k++)
         follow_ray(bounce, request, origin,
                    ray_direction(normal, tangent, spread((uint32_t)at, round * RAYS + k)), &sums);
-    struct tl_bounced now;
     vec3s direct = tl_lobes_fetch(request->lobes, tl_turn_direction(normal, -request->environment_yaw),
                                   (struct tl_exponent_blend){.index = 0});
-    float known = sums.count > 0 ? (float)RAYS / (float)sums.count : 0;
-    for (int c = 0; c < 3; c++) {
-        now.arrives[c] = sums.arrives.raw[c] * known / RAYS;
-        float share = sums.all.raw[c] > 0 ? sums.open.raw[c] / sums.all.raw[c] : 1;
-        direct.raw[c] *= share;
-    }
-    set_shape(&sums, normal, &now);
+    for (int c = 0; c < 3; c++)
+        direct.raw[c] *= sums.all.raw[c] > 0 ? sums.open.raw[c] / sums.all.raw[c] : 1;
     direct = glms_vec3_add(direct, sunlight(request, origin, normal));
     direct = glms_vec3_add(direct, lamplight(request, origin, normal));
-    struct tl_bounced *found = &bounce->found[at];
-    float kept = (float)round / (float)(round + 1), added = 1 - kept;
-    for (int c = 0; c < 3; c++)
-        found->arrives[c] = kept * found->arrives[c] + added * now.arrives[c];
-    found->mean = kept * found->mean + added * now.mean;
-    found->along = glms_vec3_add(glms_vec3_scale(found->along, kept), glms_vec3_scale(now.along, added));
+    const float kept = (float)round / (float)(round + 1), added = 1 - kept;
+    struct tl_bounced now = {0};
+    add_bounced(&now, &bounce->found[at], kept);
+    add_bounced(&now, &sums.light, sums.count > 0 ? added / (float)sums.count : 0);
+    bounce->found[at] = now;
     bounce->direct[at] =
         glms_vec3_add(glms_vec3_scale(bounce->direct[at], kept), glms_vec3_scale(direct, added));
 }
@@ -389,17 +378,12 @@ static size_t list_due(struct tl_bounce *bounce, const struct tl_bounce_request 
     return count;
 }
 
-/* Adds a corner's light to that of the other two. */
+/* Adds a corner's light to that of another. */
 static void lend(struct tl_bounce *bounce, size_t to, size_t from)
 {
-    const struct tl_bounced *light = &bounce->found[from];
     if (bounce->rounds[from] == 0)
         return;
-    struct tl_bounced *sum = &bounce->shown[to];
-    for (int c = 0; c < 3; c++)
-        sum->arrives[c] += light->arrives[c];
-    sum->mean += light->mean;
-    sum->along = glms_vec3_add(sum->along, light->along);
+    add_bounced(&bounce->shown[to], &bounce->found[from], 1);
     bounce->weights[to] += 1;
 }
 
@@ -424,12 +408,10 @@ static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ra
             }
     }
     for (size_t at = 0; at < count; at++) {
-        float share = bounce->weights[at] > 0 ? 1 / bounce->weights[at] : 0;
-        struct tl_bounced *shown = &bounce->shown[at];
-        for (int c = 0; c < 3; c++)
-            shown->arrives[c] *= share;
-        shown->mean *= share;
-        shown->along = glms_vec3_scale(shown->along, share);
+        struct tl_bounced mean = {0};
+        if (bounce->weights[at] > 0)
+            add_bounced(&mean, &bounce->shown[at], 1 / bounce->weights[at]);
+        bounce->shown[at] = mean;
     }
 }
 
@@ -441,8 +423,8 @@ static void send(struct tl_bounce *bounce, const struct tl_bounce_request *reque
         size_t at = 2 * (bounce->first_vertex[due[i].surface] + due[i].vertex) + due[i].back;
         bounce->rounds[at] = (uint16_t)(request->moved ? 1 : bounce->rounds[at] + 1);
         vec3s light = bounce->direct[at];
-        for (int c = 0; request->all && c < 3; c++)
-            light.raw[c] += bounce->found[at].arrives[c];
+        if (request->all)
+            light = glms_vec3_add(light, bounce->found[at].arrives);
         bounce->sent[at] = glms_vec3_muladd(bounce->albedos[at], light, bounce->emissions[at]);
     }
 }
@@ -499,11 +481,7 @@ struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_
     for (int k = 0; k < 3; k++) {
         size_t at =
             2 * (bounce->first_vertex[surface] + corners[k]) + (sample->triangle & TL_SAMPLE_BACK ? 1 : 0);
-        const struct tl_bounced *corner = &bounce->shown[at];
-        for (int c = 0; c < 3; c++)
-            light.arrives[c] += sample->weights[k] * corner->arrives[c];
-        light.mean += sample->weights[k] * corner->mean;
-        light.along = glms_vec3_add(light.along, glms_vec3_scale(corner->along, sample->weights[k]));
+        add_bounced(&light, &bounce->shown[at], sample->weights[k]);
     }
     return light;
 }

@@ -31,9 +31,8 @@
 
 /* Bounced light at a vertex seen from one side. */
 struct tl_bounced {
-    float arrives[3]; /* E_b / pi */
-    float mean;       /* over the sphere, as a share of `arrives` */
-    vec3s along;      /* gradient, as a share of `arrives` */
+    vec3s arrives;  /* E_b / pi */
+    vec3s along[3]; /* gradient about the vertex, by channel */
 };
 
 struct tl_bounce {
@@ -83,12 +82,18 @@ size_t tl_bounce_bytes(const struct tl_bounce *bounce);
 /* What arrives at a sample, between the vertices of its triangle. */
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                                 const tl_sample *sample);
-/* Bounced light through the cosine lobe of exponent s about a unit direction. */
+/* Bounced light through the cosine lobe of exponent s about a unit direction: light that is even over the
+ * hemisphere of n is 1/2 + 3/4 n.w in the first two bands [Ramamoorthi and Hanrahan 2001], and a lobe keeps
+ * (s + 1) / (s + 2) of the second. */
 static inline vec3s tl_bounced_in_lobe(const struct tl_bounced *bounced, vec3s direction, float exponent)
 {
-    float share = bounced->mean + (exponent + 1) / (exponent + 2) * glms_vec3_dot(bounced->along, direction);
-    share = share > 0 ? share : 0;
-    return (vec3s){{bounced->arrives[0] * share, bounced->arrives[1] * share, bounced->arrives[2] * share}};
+    const float kept = (exponent + 1) / (exponent + 2);
+    vec3s light;
+    for (int c = 0; c < 3; c++) {
+        float value = 0.5f * bounced->arrives.raw[c] + kept * glms_vec3_dot(bounced->along[c], direction);
+        light.raw[c] = value > 0 ? value : 0;
+    }
+    return light;
 }
 
 #endif

@@ -482,8 +482,7 @@ static vec3s share_of(vec3s part, vec3s all)
 static void add_bounced(const struct tl_bounced *bounced, const struct frame *frame, bool is_mirror,
                         vec3s light[2])
 {
-    for (int c = 0; c < 3; c++)
-        light[DIFFUSE].raw[c] += bounced->arrives[c];
+    light[DIFFUSE] = glms_vec3_add(light[DIFFUSE], bounced->arrives);
     if (!is_mirror)
         light[GLOSSY] =
             glms_vec3_add(light[GLOSSY], tl_bounced_in_lobe(bounced, frame->gloss, frame->exponent));
@@ -496,7 +495,8 @@ static struct tl_bounced bounced_at(const struct block *block, const tl_sample *
     if (!request->bounce)
         return (struct tl_bounced){0};
     struct tl_bounced bounced = tl_bounced_at(request->bounce, request->ranges, sample);
-    bounced.along = into_environment(block, bounced.along);
+    for (int c = 0; c < 3; c++)
+        bounced.along[c] = into_environment(block, bounced.along[c]);
     return bounced;
 }
 
@@ -541,8 +541,7 @@ static vec3s fibres_bounced(const struct lobes *lobes, const struct tl_bounced *
     float albedo = 0;
     for (int k = 0; k < TL_FUZZ_POWERS; k++)
         albedo += lobes->fibres.weights[k];
-    return (vec3s){
-        {albedo * bounced->arrives[0], albedo * bounced->arrives[1], albedo * bounced->arrives[2]}};
+    return glms_vec3_scale(bounced->arrives, albedo);
 }
 
 /* The light of fuzz; under ambient occlusion with the share that the diffuse lobe gets. */

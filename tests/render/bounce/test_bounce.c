@@ -73,7 +73,9 @@ static void scene_free(struct test_scene *scene)
     free(scene);
 }
 
-/* Three quarters of what is missing without bounces is there with them; of the mean, nine tenths. */
+/* Of the mean that is missing without bounces, 85 % is there with them in a matt sheet. In a glossy one,
+ * whose lobes look along the sheet at the wall, half: two bands do not hold a narrow light near the horizon.
+ */
 static void test_against_reference(void **state)
 {
     struct test_device *device = *state;
@@ -98,10 +100,10 @@ static void test_against_reference(void **state)
                     double truth = mean_of(&exact, c), lacking = truth - mean_of(&off, c);
                     double wrong = mean_of(&on, c) - truth;
                     printf(" %+.2f (%+.2f)", 100 * wrong / truth, -100 * lacking / truth);
-                    assert_true(fabs(wrong) < 0.15 * lacking);
+                    assert_true(fabs(wrong) < (glossinesses[g] > 0 ? 0.5 : 0.15) * lacking);
                 }
                 printf(" %%\n");
-                assert_true(with < 0.4 * without);
+                assert_true(with < (glossinesses[g] > 0 ? 0.5 : 0.3) * without);
                 tl_image_release(&off);
                 tl_image_release(&on);
             }
