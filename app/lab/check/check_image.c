@@ -15,34 +15,57 @@ static void place_pixel(struct tl_finding *finding, const tl_image *image, size_
     tl_finding_pixel(finding, (int)(pixel % width), (int)(pixel / width));
 }
 
-void tl_measure_pixels(const struct tl_checked *checked, struct tl_finding *finding)
+static void measure_pixels(const tl_image *image, struct tl_finding *finding)
 {
     size_t bad = 0, first = 0;
-    const float *values = tl_image_floats(checked->image);
-    for (size_t i = 0; i < 4 * pixel_count(checked->image); i++)
+    const float *values = tl_image_floats(image);
+    for (size_t i = 0; i < 4 * pixel_count(image); i++)
         if (!isfinite(values[i]) && bad++ == 0)
             first = i / 4;
-    tl_finding_add(finding, (double)bad);
-    if (bad > 0)
-        place_pixel(finding, checked->image, first);
+    if (tl_finding_add(finding, (double)bad) && bad > 0)
+        place_pixel(finding, image, first);
+}
+
+static void measure_coverage(const tl_image *image, struct tl_finding *finding)
+{
+    const float *values = tl_image_floats(image);
+    for (size_t i = 0; i < pixel_count(image); i++) {
+        double alpha = (double)values[4 * i + 3];
+        if (tl_finding_add(finding, alpha < 0 ? -alpha : alpha > 1 ? alpha - 1 : 0 * alpha))
+            place_pixel(finding, image, i);
+    }
+}
+
+static void measure_negative(const tl_image *image, struct tl_finding *finding)
+{
+    const float *values = tl_image_floats(image);
+    for (size_t i = 0; i < 4 * pixel_count(image); i++)
+        if (i % 4 != 3 && tl_finding_add(finding, values[i] < 0 ? -(double)values[i] : 0))
+            place_pixel(finding, image, i / 4);
+}
+
+/* What every image must be, as it is kept and as budgets draw it. */
+static void measure_both(const struct tl_checked *checked, struct tl_finding *finding,
+                         void (*measure)(const tl_image *image, struct tl_finding *finding))
+{
+    measure(checked->image, finding);
+    if (checked->in_motion)
+        measure(checked->in_motion, finding);
+}
+
+void tl_measure_pixels(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    measure_both(checked, finding, measure_pixels);
 }
 
 void tl_measure_coverage(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    const float *values = tl_image_floats(checked->image);
-    for (size_t i = 0; i < pixel_count(checked->image); i++) {
-        double alpha = (double)values[4 * i + 3];
-        if (tl_finding_add(finding, alpha < 0 ? -alpha : alpha > 1 ? alpha - 1 : 0 * alpha))
-            place_pixel(finding, checked->image, i);
-    }
+    measure_both(checked, finding, measure_coverage);
 }
 
 void tl_measure_negative(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    const float *values = tl_image_floats(checked->image);
-    for (size_t i = 0; i < 4 * pixel_count(checked->image); i++)
-        if (i % 4 != 3 && tl_finding_add(finding, values[i] < 0 ? -(double)values[i] : 0))
-            place_pixel(finding, checked->image, i / 4);
+    measure_both(checked, finding, measure_negative);
 }
 
 /* sqrt(mean (a - b)^2) / mean b over the covered pixels and their channels, as render/metrics/compare.h has

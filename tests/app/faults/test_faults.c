@@ -15,6 +15,7 @@ static const struct {
     const char *name, *arguments;
 } runs[] = {
     {"rays", ""},
+    {"skirt", "--garment skirt --set camera.pitch_deg=-30"}, /* its inside is seen */
     {"turned", "--set scene.environment_yaw_deg=50"},
     {"paper", "--preset paper"},
     {"turned_maps", "--preset paper --set scene.environment_yaw_deg=50"},

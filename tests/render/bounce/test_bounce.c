@@ -22,7 +22,7 @@ static tl_image reference_of(struct test_scene *scene)
         tl_frame_reference_request(&scene->frame, &scene->settings, NULL);
     assert_ok(tl_reference_draw(&request, &image, &report, &error), error);
     printf("reference: standard error %.2f %%\n", 100 * report.standard_error);
-    assert_true(report.standard_error < 0.025);
+    assert_true(report.standard_error < 0.03);
     return image;
 }
 
@@ -56,7 +56,7 @@ static struct test_scene *fold_scene(float glossiness)
     test_scene_open(scene, test_environment(64, 32, test_daylight), (vec3s){{0.7f, 1.1f, 1.3f}},
                     (vec3s){{0, 0.1f, 0}}, 40, SIZE, SIZE);
     tl_material *sheet = test_scene_add(scene, test_sheet(0.1f, 0.5f, 0.12f, 2, 48));
-    sheet->diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
+    sheet->diffuse = (vec3s){{0.6f, 0.6f, 0.6f}};
     sheet->specular = glossiness > 0 ? (vec3s){{0.3f, 0.3f, 0.3f}} : (vec3s){{0, 0, 0}};
     sheet->glossiness = glossiness;
     scene->frame.still = true;
@@ -100,7 +100,7 @@ static void test_against_reference(void **state)
                     double truth = mean_of(&exact, c), lacking = truth - mean_of(&off, c);
                     double wrong = mean_of(&on, c) - truth;
                     printf(" %+.2f (%+.2f)", 100 * wrong / truth, -100 * lacking / truth);
-                    assert_true(fabs(wrong) < (glossinesses[g] > 0 ? 0.5 : 0.15) * lacking);
+                    assert_true(fabs(wrong) < (glossinesses[g] > 0 ? 0.35 : 0.2) * lacking);
                 }
                 printf(" %%\n");
                 assert_true(with < (glossinesses[g] > 0 ? 0.5 : 0.3) * without);
