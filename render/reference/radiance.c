@@ -8,7 +8,7 @@
 #include <float.h>
 #include <math.h>
 
-/* Samples of the environment at points that paths hit: few, because there are many such points. */
+/* Samples of the environment at points that paths hit, at most: few, because there are many such points. */
 #define HIT_STRATA       64
 #define HIT_LOBE_SAMPLES 1
 
@@ -43,11 +43,13 @@ static void light_hits(struct paths *paths)
     if (hits->points.count == 0)
         return;
     struct tl_sky_sample sky[HIT_STRATA];
+    const int strata =
+        paths->request->direct.strata < HIT_STRATA ? paths->request->direct.strata : HIT_STRATA;
     struct tl_random own = {tl_random_bits(&paths->random)};
-    tl_gather_sample_sky(&paths->scene->sky, HIT_STRATA, 0, 1, tl_random_begin(own.state, 1), own, sky);
+    tl_gather_sample_sky(&paths->scene->sky, strata, 0, 1, tl_random_begin(own.state, 1), own, sky);
     const struct tl_radiance_request inner = {
         .direct = {.scene = paths->scene,
-                   .strata = HIT_STRATA,
+                   .strata = strata,
                    .sky = sky,
                    .lobe_samples = HIT_LOBE_SAMPLES,
                    .random = tl_random_begin(own.state, 2)},
