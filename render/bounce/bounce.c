@@ -59,7 +59,7 @@ static void follow_materials(struct tl_bounce *bounce, const struct tl_triangle_
         for (size_t p = 0; p < surface->part_count; p++) {
             const struct tl_mesh_part *part = &surface->parts[p];
             const tl_material *material = &surface->materials[part->material];
-            vec3s front = albedo_of(mean_colour(&material->diffuse_map, material->diffuse),
+            vec3s front = albedo_of(mean_colour(&material->diffuse_map, tl_material_colour(material)),
                                     mean_colour(&material->specular_map, material->specular));
             vec3s back =
                 material->back.is_given ? albedo_of(material->back.diffuse, material->back.specular) : front;

@@ -142,19 +142,21 @@ static void follow_coat(struct paths *paths, int i, int sample)
                      (vec3s){{weight, weight, weight}});
 }
 
-static void follow_facets(struct paths *paths, int i, int sample)
+/* Each lobe of the gloss by directions of its own. */
+static void follow_facets(struct paths *paths, int i, int sample, int lobe)
 {
     const struct tl_shading_layers *layers = &paths->points->layers[i];
     const float below_one = 1 - 0x1p-24f;
     float height = fminf((float)share_of_sample(paths, sample), below_one), pdf;
     float turn = fminf((float)tl_random_unit(&paths->random), below_one);
-    if (!layers->faceted)
+    if (!layers->faceted || lobe >= layers->gloss.count)
         return;
+    const struct tl_brdf *brdf = &layers->gloss.items[lobe];
     vec3s viewer = paths->points->viewer[i];
-    vec3s direction = tl_brdf_sample(&layers->brdf, &layers->frame, viewer, height, turn, &pdf);
+    vec3s direction = tl_brdf_sample(brdf, &layers->frame, viewer, height, turn, &pdf);
     if (!(pdf > 0))
         return;
-    vec3s gloss = tl_brdf_gloss(&layers->brdf, &layers->frame, direction, viewer);
+    vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);
     follow_above(paths, i, direction, glms_vec3_scale(gloss, layers->base / pdf / (float)paths->samples));
 }
 
@@ -184,7 +186,8 @@ static void follow_paths(struct paths *paths, int i, int sample)
         return;
     follow_transmitted(paths, i, sample);
     follow_coat(paths, i, sample);
-    follow_facets(paths, i, sample);
+    for (int lobe = 0; lobe < 1 + TL_THREADS_MAX; lobe++)
+        follow_facets(paths, i, sample, lobe);
     follow_fuzz(paths, i, sample);
 }
 

@@ -66,6 +66,7 @@ static struct tl_render_settings settings_of(const char *const *assignments, siz
     settings.image.height = HEIGHT;
     settings.image.supersample = 1;
     settings.image.ground = false;
+    settings.light.bounce = TL_BOUNCE_OFF; /* the ordinary extreme reflects more light than it receives */
     return tl_settings_render(&settings);
 }
 
