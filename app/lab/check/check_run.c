@@ -115,6 +115,7 @@ static bool draw_white(struct check_run *run, const tl_frame *frame, tl_image im
     lit.environment = &auxiliary->light;
     lit.environment_revision = 1;
     lit.lamp_count = 0;
+    settings.light.bounce = TL_BOUNCE_OFF; /* shadows alone can only take light away */
     settings.image.view = TL_VIEW_LIGHT;
     show_samples(&settings.image);
     if (!draw_with(&auxiliary->white_shadowed, run, &lit, &settings, &images[WHITE_SHADOWED], error))

@@ -14,9 +14,10 @@ for threads in 1 3; do
     check "its frames are the same at $threads threads" [ "$(hash_of clean.json)" = "$(hash_of again.json)" ]
 done
 
-# Rubber instead of cloth: a skirt hangs down to twice its length from its waist, which is pinned.
+# Rubber instead of cloth: a skirt hangs down to twice its length from its waist, which is pinned. On the floor its few
+# vertices are too far apart for light that bounces, which another row would name first.
 status=0
-$TOILE check $quick --garment skirt --frames 1 --keep kept --set fabric.stretch_warp=0.28 --set fabric.stretch_weft=0.28 \
+$TOILE check $quick --garment skirt --frames 1 --keep kept --set light.bounce=off --set fabric.stretch_warp=0.28 --set fabric.stretch_weft=0.28 \
     --set cloth.pin_above_m=1 --set cloth.strain_limit=0 --set cloth.self_contact=false --set cloth.settle_s=1.5 >table.txt 2>message.txt || status=$?
 check "what breaks is named, and fails" sh -c "[ $status = 1 ] && grep -q 'cloth.strain breaks at frame 0' message.txt &&
     grep -Eq '^cloth.strain +FAIL' table.txt && grep -q 'toile view kept/scene.yaml' message.txt"
