@@ -468,7 +468,7 @@ size_t tl_bounce_bytes(const struct tl_bounce *bounce)
     return 2 * bounce->vertex_count *
                (4 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint16_t) + sizeof(uint32_t) +
                 sizeof(float)) +
-           (bounce->surface_count + 1) * sizeof(size_t);
+           (bounce->first_vertex ? (bounce->surface_count + 1) * sizeof(size_t) : 0);
 }
 
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,

@@ -34,8 +34,7 @@ struct lobes {
     struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame;
     vec3s viewer;
-    float base;    /* what coat and fuzz leave */
-    bool is_ratio; /* only their seen share is wanted: fewer lobes show it */
+    float base; /* what coat and fuzz leave */
     bool has_fuzz;
     struct tl_fuzz fuzz;
     struct tl_fuzz_lobes fibres; /* of fuzz; about the smooth normal */
@@ -310,11 +309,9 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
     float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
     lobes->facets = 0;
-    const bool few = lobes->is_ratio && lobes->gloss.count > 1;
     for (int i = 0; i < lobes->gloss.count; i++)
-        lobes->facets +=
-            tl_lobe_fit_make(&lobes->gloss.items[i], &lobes->frame, lobes->viewer,
-                             few ? (i == 0 ? 1 : 3) : request->params->fan, &lobes->items[lobes->facets]);
+        lobes->facets += tl_lobe_fit_make(&lobes->gloss.items[i], &lobes->frame, lobes->viewer,
+                                          request->params->fan, &lobes->items[lobes->facets]);
     for (int k = 0; k < lobes->facets; k++)
         lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
     lobes->count = lobes->facets;
@@ -713,7 +710,7 @@ TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t inde
     const struct tl_compose_request *request = block->request;
     tl_sample sample = request->samples->items[index];
     const tl_material *rich = rich_material(request, index);
-    struct lobes lobes = {.is_ratio = true};
+    struct lobes lobes = {0};
     if (rich)
         part_lobes(block, rich, &sample, &lobes);
     struct frame frame = frame_of(block, &sample);

@@ -224,8 +224,7 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     materials->have_fuzz |= part.has_fuzz;
     materials->openness = fmaxf(materials->openness, material->openness);
     part.is_faceted = material->gloss.model != TL_REFLECT_PHONG;
-    /* Threads have fans beside the surface's, and in motion all of them take the time of about one. */
-    part.fan_count = material->thread_count > 0 && fan > 3 ? 3 : fan;
+    part.fan_count = fan;
     for (int i = 0; i < material->thread_count; i++) {
         part.thread_squares[i][0] = material->threads[i].width_weft * material->threads[i].width_weft;
         part.thread_squares[i][1] = material->threads[i].width_warp * material->threads[i].width_warp;
