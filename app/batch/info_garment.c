@@ -39,24 +39,16 @@ static void describe_rest(cJSON *object, const tl_model *model)
     tl_charts_release(&charts);
 }
 
-/* Lengths of the openings in mm. A file that stands along Z is turned as it will be: names depend on it. */
+/* Lengths of the openings in mm. */
 static void describe_openings(cJSON *object, const tl_model *model)
 {
-    const struct tl_placing placing = {.z_up = model->units.z_up, .scale = 1};
-    const tl_garment garment = {.model = *model};
-    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
-    vec3s *positions = TL_NEW_ARRAY(vec3s, model->mesh.vertex_count);
-    for (size_t i = 0; i < model->mesh.vertex_count; i++)
-        positions[i] = tl_placing_point(&placing, model->mesh.positions[i]);
-    struct tl_openings openings = tl_sewn_openings(&garment, positions, weld);
+    struct tl_openings openings = tl_sewn_openings_of_model(model);
     cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
     for (size_t i = 0; i < openings.count && i < MOST_OPENINGS; i++)
         cJSON_AddNumberToObject(lengths, openings.items[i].name, 1e3 * openings.items[i].length);
     if (openings.count > MOST_OPENINGS)
         add_count(object, "openings_not_listed", openings.count - MOST_OPENINGS);
     tl_openings_release(&openings);
-    free(positions);
-    free(weld);
 }
 
 /* Lengths of the openings as they are cut, in mm: the panels hang apart. */

@@ -1,5 +1,6 @@
 #include "app/fit/sewn.h"
 
+#include "assets/base/placing.h"
 #include "assets/connect/sets.h"
 #include "cloth/mesh/topology.h"
 #include "config/memory.h"
@@ -47,6 +48,31 @@ struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *posi
     free(places);
     tl_topology_release(&topology);
     return openings;
+}
+
+struct tl_openings tl_sewn_openings_of_model(const tl_model *model)
+{
+    size_t count = model->mesh.vertex_count;
+    const struct tl_placing placing = {.z_up = model->units.z_up, .scale = 1};
+    const tl_garment garment = {.model = *model};
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, count);
+    vec3s *positions = TL_NEW_ARRAY(vec3s, count);
+    for (size_t i = 0; i < count; i++)
+        positions[i] = tl_placing_point(&placing, model->mesh.positions[i]);
+    struct tl_openings openings = tl_sewn_openings(&garment, positions, weld);
+    free(positions);
+    free(weld);
+    return openings;
+}
+
+bool tl_sewn_is_worn(const tl_model *model)
+{
+    if (model->rig || model->clip_count > 0)
+        return false;
+    struct tl_openings openings = tl_sewn_openings_of_model(model);
+    bool is_worn = tl_openings_named(&openings, "neck") || tl_openings_named(&openings, "waist");
+    tl_openings_release(&openings);
+    return is_worn;
 }
 
 static void add_pins(const struct tl_opening *opening, const uint32_t *weld, tl_garment *garment)

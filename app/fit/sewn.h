@@ -11,6 +11,14 @@
  * receives the sewn vertex of each render vertex, which the openings count by. */
 struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *positions, uint32_t *weld);
 
+/* As tl_sewn_openings, of a file's model; one that stands along Z is turned as it will be: names depend on
+ * it. */
+struct tl_openings tl_sewn_openings_of_model(const tl_model *model);
+
+/* Whether a model has the shape of something worn: an opening that is a neck or a waist. Bodies are closed
+ * there; what a rig or a clip moves is a figure. */
+bool tl_sewn_is_worn(const tl_model *model);
+
 /* Pins the openings that `names` lists, with commas between them, in addition to the garment's own pins; "":
  * none.
  *

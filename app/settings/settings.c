@@ -1,6 +1,7 @@
 #include "app/settings/settings.h"
-#include "app/settings/layers.h"
 
+#include "app/fit/sewn.h"
+#include "app/settings/layers.h"
 #include "assets/base/units.h"
 #include "assets/garment.h"
 #include "assets/model.h"
@@ -219,7 +220,21 @@ static bool wear_model(const struct tl_binding *all, const char *path, tl_error 
     return !is_worn || tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
 }
 
-/* A pattern, or panels with stitches, in place of a scene are worn by the body that the options name. */
+/* Whether a file holds a model of something worn. False for one that cannot be read: the session reports why.
+ */
+static bool is_worn(const char *path)
+{
+    tl_model model;
+    tl_error error;
+    if (!tl_model_is_file(path) || !tl_model_load(path, &model, &error))
+        return false;
+    bool worn = tl_sewn_is_worn(&model);
+    tl_model_release(&model);
+    return worn;
+}
+
+/* A pattern, panels with stitches, or a garment in place of a scene are worn by the body that the options
+ * name. */
 static bool apply_garment(const struct tl_binding *all, const char *path, tl_error *error)
 {
     return tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
@@ -256,12 +271,17 @@ static bool apply_scene(const struct tl_binding *all, const char *name, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.colourways", name, "SCENE", NULL, error);
 }
 
+bool tl_settings_is_scene(const char *name)
+{
+    return !tl_model_is_file(name) && !tl_pattern_is_file(name) && !tl_point_cache_is_file(name);
+}
+
 /* The two topmost layers. */
 static bool apply_source(const struct tl_binding *all, const struct tl_settings_source *source,
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool is_cut = tl_pattern_is_file(scene) || tl_garment_has_stitches(scene);
+    bool is_cut = tl_pattern_is_file(scene) || tl_garment_has_stitches(scene) || is_worn(scene);
     bool is_model = !is_cut && tl_model_is_file(scene);
     bool applied = tl_point_cache_is_file(scene) ? apply_motion(all, scene, error)
                    : is_cut                      ? apply_garment(all, scene, error)

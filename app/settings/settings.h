@@ -97,6 +97,9 @@ struct tl_settings_source {
     const char *const *assignments; /* "table.key=value", later ones win */
     size_t assignment_count;
 };
+/* Whether a name in place of a scene is one: built in, or YAML; else it is a model, a pattern or a motion.
+ * Pure. */
+bool tl_settings_is_scene(const char *name);
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
 
 /* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */

@@ -107,8 +107,9 @@ static bool run(struct tl_review *review, int max_frames, tl_error *error)
 static bool needs_draft(const struct tl_review *review)
 {
     const struct tl_arguments *arguments = review->arguments;
-    if (arguments->positional_count > 0 || !tl_gpu_is_software(review->gpu))
-        return false; /* the scene decides its quality */
+    bool has_scene = arguments->positional_count > 0 && tl_settings_is_scene(arguments->positionals[0]);
+    if (has_scene || !tl_gpu_is_software(review->gpu))
+        return false; /* the scene decides its quality; a garment's file has none */
     for (size_t i = 0; i < arguments->assignment_count; i++)
         if (strncmp(arguments->assignments[i], "scene.preset", 12) == 0 ||
             strncmp(arguments->assignments[i], "light.", 6) == 0)

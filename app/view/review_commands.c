@@ -77,7 +77,7 @@ const struct tl_review_command tl_review_commands[] = {
     {"show the flat pattern beside the garment", tl_act_pattern, TL_SECTION_INSPECT, .keys = {KEY(N)}},
     {"print the values under the pointer", tl_act_read_out, TL_SECTION_INSPECT, .keys = {KEY(I)}},
 
-    {"open a file: garment, body, motion, light, scene", tl_act_open, TL_SECTION_WINDOW, .keys = {WITH(CTRL, O)},
+    {"open a file, as if it were dropped", tl_act_open, TL_SECTION_WINDOW, .keys = {WITH(CTRL, O)},
      .button = "Open"},
     {"open a garment again: the last ten", tl_act_recent, TL_SECTION_WINDOW, .keys = {WITH(CTRL, R)}},
     {"undo the last edit", tl_act_undo, TL_SECTION_WINDOW, .keys = {WITH(CTRL, Z)}, .repeats = true, .button = "Undo"},
@@ -94,18 +94,19 @@ const struct tl_review_command tl_review_commands[] = {
 const size_t tl_review_command_count = TL_COUNT(tl_review_commands);
 
 const struct tl_review_gesture tl_review_gestures[] = {
-    {TL_SECTION_CLOTH, "Ctrl + drag", "pull the cloth"},
-    {TL_SECTION_CLOTH, "Ctrl + Shift + drag", "move a garment's file; right drag: turn it;"},
-    {TL_SECTION_CLOTH, "Ctrl + Shift + wheel", "size it"},
+    {TL_SECTION_CLOTH, "Ctrl+drag", "pull the cloth"},
+    {TL_SECTION_CLOTH, "Ctrl+Shift+drag", "move a garment; right drag: turn it"},
+    {TL_SECTION_CLOTH, "Ctrl+Shift+wheel", "size it"},
     {TL_SECTION_CAMERA, "drag", "turn about the figure"},
     {TL_SECTION_CAMERA, "right drag", "move the figure"},
     {TL_SECTION_CAMERA, "wheel", "nearer, farther"},
     {TL_SECTION_CAMERA, "double click", "look closely at that point"},
-    {TL_SECTION_LIGHT, "Shift + drag", "turn the environment"},
+    {TL_SECTION_LIGHT, "Shift+drag", "turn the environment"},
     {TL_SECTION_COMPARE, "drag the line", "move it"},
-    {TL_SECTION_WINDOW, "drop a file", ".glb .gltf .obj .ply .stl .off: model; .pc2 .mdd: motion;"},
-    {TL_SECTION_WINDOW, "", ".json: sewing pattern;"},
-    {TL_SECTION_WINDOW, "", ".exr .hdr: light; .yaml: scene, fabric, preset"},
+    {TL_SECTION_WINDOW, "drop a file", "garment, body: .glb .gltf .obj .ply .stl .off"},
+    {TL_SECTION_WINDOW, "", "pattern: .json; motion: .pc2 .mdd"},
+    {TL_SECTION_WINDOW, "", "light: .exr .hdr; fabric: .u3m .u3ma, folder"},
+    {TL_SECTION_WINDOW, "", "scene, fabric, preset: .yaml"},
 };
 const size_t tl_review_gesture_count = TL_COUNT(tl_review_gestures);
 /* clang-format on */

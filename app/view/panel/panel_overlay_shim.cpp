@@ -13,6 +13,7 @@ const int overlay_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInp
                           ImGuiWindowFlags_NoSavedSettings;
 const ImU32 light = IM_COL32(235, 235, 235, 255), dim = IM_COL32(130, 130, 130, 255),
             amber = IM_COL32(240, 180, 80, 255), shade = IM_COL32(0, 0, 0, 150);
+const float margin = 10; /* between overlays and the view's edges */
 
 float view_width(const tl_panel_input &input)
 {
@@ -92,12 +93,12 @@ void draw_progress(const tl_panel_input &input)
 
 void draw_label(const char *text, float x, float y, float aligned)
 {
-    const float margin = 5;
+    const float border = 5;
     const ImVec2 size = ImGui::CalcTextSize(text);
     const ImVec2 corner(x - aligned * size.x, y);
     ImDrawList *list = ImGui::GetBackgroundDrawList();
-    list->AddRectFilled(ImVec2(corner.x - margin, corner.y - margin),
-                        ImVec2(corner.x + size.x + margin, corner.y + size.y + margin), shade, 3);
+    list->AddRectFilled(ImVec2(corner.x - border, corner.y - border),
+                        ImVec2(corner.x + size.x + border, corner.y + size.y + border), shade, 3);
     list->AddText(corner, light, text);
 }
 
@@ -239,18 +240,46 @@ void draw_help_rows(const char *name, const tl_panel_line *help, size_t count)
     ImGui::EndTable();
 }
 
+ImVec2 size_of_rows(const tl_panel_line *help, size_t count)
+{
+    const ImGuiStyle &style = ImGui::GetStyle();
+    float left = 0, right = 0, height = 0;
+    for (size_t i = 0; i < count; i++) {
+        left = std::max(left, ImGui::CalcTextSize(help[i].cells[0]).x);
+        right = std::max(right, ImGui::CalcTextSize(help[i].cells[1]).x);
+        height += ImGui::GetTextLineHeight() + 2 * style.CellPadding.y;
+        if (!help[i].cells[1][0] && i > 0)
+            height += style.ItemSpacing.y;
+    }
+    return ImVec2(left + right + 4 * style.CellPadding.x, height);
+}
+
+/* The share of its size at which the help fits between the view's edges. */
+float scale_of_help(const tl_panel_input &input, size_t middle, float gap)
+{
+    const ImVec2 left = size_of_rows(input.help, middle),
+                 right = size_of_rows(input.help + middle, input.help_count - middle),
+                 padding = ImGui::GetStyle().WindowPadding;
+    const float width = left.x + gap + right.x, height = std::max(left.y, right.y);
+    const float room_x = view_width(input) - 2 * (margin + padding.x),
+                room_y = ImGui::GetIO().DisplaySize.y - 2 * (margin + padding.y);
+    return std::min(1.0f, std::min(room_x / width, room_y / height));
+}
+
 void draw_help(const tl_panel_input &input)
 {
     if (input.help_count == 0)
         return;
+    const size_t middle = middle_of(input.help, input.help_count);
+    const float gap = 2 * ImGui::GetFontSize(), scale = scale_of_help(input, middle, gap);
     tl_panel_place_over_view(input, 0.5f, 0.5f);
     ImGui::SetNextWindowBgAlpha(0.92f);
     ImGui::Begin("help", nullptr, overlay_flags);
-    const size_t middle = middle_of(input.help, input.help_count);
+    ImGui::SetWindowFontScale(scale);
     ImGui::BeginGroup();
     draw_help_rows("left", input.help, middle);
     ImGui::EndGroup();
-    ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+    ImGui::SameLine(0, scale * gap);
     ImGui::BeginGroup();
     draw_help_rows("right", input.help + middle, input.help_count - middle);
     ImGui::EndGroup();
@@ -261,7 +290,6 @@ void draw_help(const tl_panel_input &input)
 
 void tl_panel_place_over_view(const tl_panel_input &input, float x, float y)
 {
-    const float margin = 10;
     const ImGuiIO &io = ImGui::GetIO();
     const float place_x = margin + x * (view_width(input) - 2 * margin);
     const float place_y = margin + y * (io.DisplaySize.y - 2 * margin);

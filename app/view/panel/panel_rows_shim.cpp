@@ -10,6 +10,7 @@ extern "C" {
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <strings.h>
 
 namespace
 {
@@ -171,6 +172,23 @@ bool edit_vector(const tl_binding &binding, const tl_option &row)
            keep_three(binding, row, value);
 }
 
+/* Covers a path that is not being typed by the file's name, of which the field would show the folders. */
+void show_file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash || !slash[1] || ImGui::IsItemActive())
+        return;
+    const ImVec2 lower = ImGui::GetItemRectMin(), upper = ImGui::GetItemRectMax(),
+                 padding = ImGui::GetStyle().FramePadding;
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    list->PushClipRect(lower, upper, true);
+    list->AddRectFilled(lower, upper, ImGui::GetColorU32(ImGuiCol_WindowBg));
+    list->AddRectFilled(lower, upper, ImGui::GetColorU32(ImGuiCol_FrameBg), ImGui::GetStyle().FrameRounding);
+    list->AddText(ImVec2(lower.x + padding.x, lower.y + padding.y), ImGui::GetColorU32(ImGuiCol_Text),
+                  slash + 1);
+    list->PopClipRect();
+}
+
 bool edit_text(const tl_binding &binding, const tl_option &row)
 {
     char *field = field_of(binding, row);
@@ -178,6 +196,7 @@ bool edit_text(const tl_binding &binding, const tl_option &row)
         ImGui::SetNextItemWidth(-ImGui::GetFrameHeight());
     ImGui::InputText("##value", field, TL_STRING_SIZE);
     bool edited = ImGui::IsItemDeactivatedAfterEdit(); /* a value is taken when typing has ended */
+    show_file_name(field);
     if (!row.choices)
         return edited;
     ImGui::SameLine(0, 0);
@@ -214,6 +233,21 @@ bool edit(const tl_binding &binding, const tl_option &row)
     }
     return edit_text(binding, row);
 }
+
+/* An option's name as a label: spaces for underscores, without the unit, which its widget shows. */
+struct label {
+    explicit label(const tl_option &row)
+    {
+        snprintf(text, sizeof text, "%s", row.name);
+        char *last = strrchr(text, '_');
+        if (last && last[1] && strncasecmp(last + 1, row.unit, strlen(last + 1)) == 0)
+            *last = '\0';
+        for (char *at = text; *at; at++)
+            if (*at == '_')
+                *at = ' ';
+    }
+    char text[64];
+};
 
 void explain(const tl_binding &binding, const tl_option &row)
 {
@@ -264,15 +298,16 @@ void tl_panel_rows_end(void)
 bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row)
 {
     const bool is_changed = tl_panel_row_changed(binding, row);
+    const label name(*row);
     ImGui::PushID(binding->table->name);
     ImGui::PushID(row->name);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     if (is_changed)
-        ImGui::TextColored(changed_colour, "%s", row->name);
+        ImGui::TextColored(changed_colour, "%s", name.text);
     else
-        ImGui::TextUnformatted(row->name);
+        ImGui::TextUnformatted(name.text);
     bool explained = ImGui::IsItemHovered();
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-FLT_MIN);

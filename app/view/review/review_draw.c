@@ -27,8 +27,11 @@ static const char *base_name(const char *path)
 static void update_title(struct tl_review *review)
 {
     const struct tl_scene_params *scene = &review->good.scene;
-    char *title = tl_format("toile \u2014 %s, %s, %s", base_name(scene->garment), base_name(scene->fabric),
-                            base_name(scene->environment));
+    bool is_body = strcmp(scene->garment, "none") == 0;
+    bool is_plain = strcmp(scene->fabric, "none") == 0; /* the file's own materials */
+    char *title = tl_format(
+        "toile \u2014 %s, %s%s%s", base_name(is_body ? tl_settings_avatar(scene) : scene->garment),
+        is_plain ? "" : base_name(scene->fabric), is_plain ? "" : ", ", base_name(scene->environment));
     if (!review->title || strcmp(title, review->title) != 0)
         tl_window_set_title(review->window, title);
     free(review->title);

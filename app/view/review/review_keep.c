@@ -52,9 +52,7 @@ bool tl_review_restore_state(struct tl_review *review)
     const char *scene = arguments->positional_count > 0 ? arguments->positionals[0] : NULL;
     review->params = *(const struct tl_window_params *)tl_window_options.defaults;
     review->scene_file =
-        scene && tl_option_is_file_name(scene) && !tl_model_is_file(scene) && !tl_pattern_is_file(scene)
-            ? tl_copy_string(scene)
-            : NULL;
+        scene && tl_option_is_file_name(scene) && tl_settings_is_scene(scene) ? tl_copy_string(scene) : NULL;
     review->state_folder = arguments->fresh ? NULL : tl_state_folder();
     if (!review->state_folder)
         return false;

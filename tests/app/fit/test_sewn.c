@@ -1,11 +1,16 @@
 /* Openings of garments whose seams are not closed yet, and pins by their names. */
 #include "app/fit/sewn.h"
 #include "app/scene/session.h"
+#include "app/settings/settings.h"
 #include "assets/garment.h"
+#include "assets/model.h"
 #include "assets/pattern/pattern_worn.h"
 #include "config/memory.h"
 #include "tests/testing.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static tl_garment cut(const char *name)
@@ -125,9 +130,86 @@ static void pinned_openings_are_held(void **state)
     tl_session_destroy(&session);
 }
 
+/* A cone's side between two rings, 0.2 m around the top and 0.6 m around the bottom of 0.5 m: a skirt. With
+ * lids it is a body. */
+static const char *write_cone(const char *name, bool has_lids)
+{
+    enum { STEPS = 16 };
+    static char path[512];
+    snprintf(path, sizeof path, "%s/%s", TOILE_SCRATCH_DIR, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (int ring = 0; ring < 2; ring++)
+        for (int i = 0; i < STEPS; i++) {
+            double turn = 2 * M_PI * i / STEPS, radius = ring == 0 ? 0.3 : 0.1;
+            fprintf(file, "v %.6f %.6f %.6f\n", radius * cos(turn), 0.5 * ring, -radius * sin(turn));
+        }
+    for (int i = 0; i < STEPS; i++) {
+        int next = (i + 1) % STEPS;
+        fprintf(file, "f %d %d %d %d\n", i + 1, next + 1, STEPS + next + 1, STEPS + i + 1);
+    }
+    if (has_lids) {
+        fprintf(file, "f");
+        for (int i = 0; i < STEPS; i++)
+            fprintf(file, " %d", STEPS + i + 1);
+        fprintf(file, "\nf");
+        for (int i = STEPS; i > 0; i--)
+            fprintf(file, " %d", i);
+        fprintf(file, "\n");
+    }
+    assert_int_equal(fclose(file), 0);
+    return path;
+}
+
+/* A file alone is a garment where it has a neck or a waist, and else a model that is shown. */
+static void a_file_alone_is_worn(void **state)
+{
+    (void)state;
+    for (int lids = 0; lids < 2; lids++) {
+        tl_error error = {0};
+        struct tl_settings *settings = TL_NEW(struct tl_settings);
+        const char *path = write_cone(lids ? "closed_cone.obj" : "cone.obj", lids);
+        assert_ok(tl_settings_load(settings, &(struct tl_settings_source){.scene_file = path}, &error),
+                  error);
+        assert_string_equal(settings->scene.garment, lids ? "none" : path);
+        assert_string_equal(tl_settings_avatar(&settings->scene), lids ? path : "none");
+        free(settings);
+    }
+}
+
+/* A body that a clip moves is none, whatever holes it has. */
+static void figures_are_not_worn(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file;
+        bool is_worn;
+    } cases[] = {
+        {"garments/diffcloth_skirt3448.obj", true},
+        {"garments/diffcloth_tshirt1000-tri.obj", true},
+        {"garments/mh_male_casualsuit06.glb", true},
+        {"garments/mh_female_sportsuit01.glb", true},
+        {"garments/diffcloth_dress-v5k-f10k.obj", true},
+        {"avatars/mannequiny.glb", false},
+        {"avatars/quaternius_men_Casual.glb", false},
+        {"avatars/mh_female_body.glb", false},
+        {"avatars/mean_all.stl", false},
+        {"models/GlamVelvetSofa.glb", false},
+    };
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        tl_error error = {0};
+        tl_model model;
+        assert_ok(tl_model_load(test_data(cases[i].file), &model, &error), error);
+        if (tl_sewn_is_worn(&model) != cases[i].is_worn)
+            fail_msg("%s: taken for %s", cases[i].file, cases[i].is_worn ? "a model" : "a garment");
+        tl_model_release(&model);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pins_by_name),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pins_by_name), cmocka_unit_test(a_file_alone_is_worn),
+                                       cmocka_unit_test(figures_are_not_worn),
                                        cmocka_unit_test(patterns_have_openings),
                                        cmocka_unit_test(pinned_openings_are_held)};
     return cmocka_run_group_tests(tests, NULL, NULL);
