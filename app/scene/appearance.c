@@ -47,6 +47,7 @@ static struct tl_material_params params_of(const tl_material *material)
     memcpy(params.transmission, material->transmission.raw, sizeof params.transmission);
     params.fuzz = glms_vec3_max(material->fuzz.colour);
     params.fuzz_roughness = material->fuzz.roughness;
+    params.fuzz_follow = material->fuzz.follow;
     for (int c = 0; c < 3; c++)
         params.fuzz_colour[c] = params.fuzz > 0 ? material->fuzz.colour.raw[c] / params.fuzz : 1;
     return params;
@@ -115,6 +116,7 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
         material->fuzz.colour.raw[c] = params->fuzz * params->fuzz_colour[c];
     }
     material->fuzz.roughness = params->fuzz_roughness;
+    material->fuzz.follow = params->fuzz_follow;
     material->glossiness = params->glossiness;
     material->gloss = gloss_of(params);
     material->coat = params->coat;

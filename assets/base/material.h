@@ -114,6 +114,7 @@ struct tl_back {
 struct tl_fuzz {
     vec3s colour;    /* linear, times the amount; 0: none */
     float roughness; /* [0.4, 1]; smaller: closer to the silhouette */
+    float follow;    /* [0, 1]: 0: the fibres stand on the smooth surface; 1: on its bumps, as a pile leans */
 };
 
 /* One system of threads, of which light that has been inside comes back as a lobe of its own that follows the

@@ -2,8 +2,12 @@
 
 #include <math.h>
 
-#define TILE_MM    16.0
-#define LOOP_STEPS 56 /* of an axis in a loop: fewer than a tenth of the diameter apart */
+#define TILE_MM 16.0
+#define LEAN    0.26 /* of the legs: how far their ends lie apart across, in quarters of a sine [LOOK: by eye] \
+                      */
+#define MARL       0.3 /* how much a yarn differs along itself, of how much its fibres do */
+#define MARL_WALES 3   /* ... over so many loops */
+#define LOOP_STEPS 56  /* of an axis in a loop: fewer than a tenth of the diameter apart */
 
 /* One bed of loops. */
 struct bed {
@@ -41,6 +45,12 @@ static double bulge(const struct knitting *knitting, double wale)
     return 0.45 * knitting->diameter * sin(2 * M_PI * at);
 }
 
+/* Waves of a marl along the tile. */
+static int marl_waves(const struct knitting *knitting)
+{
+    return knitting->wales > MARL_WALES ? knitting->wales / MARL_WALES : 1;
+}
+
 static struct tl_strand strand_at(const struct knitting *knitting, const struct bed *bed, int wale,
                                   int course, double t)
 {
@@ -53,11 +63,13 @@ static struct tl_strand strand_at(const struct knitting *knitting, const struct 
     const double d = knitting->diameter;
     double z = -0.5 * d * cos(2 * t);
     z = (purl ? -z - 0.55 * d : z) + bulge(knitting, along) - bed->lower_m;
+    const double marl = 0.05 + MARL * (double)knitting->params->melange;
     const float shade =
-        1 + 0.05f * (float)tl_tile_noise(seed + 1, 0.5 * along + 0.3, (knitting->wales + 1) / 2);
-    double step_x = knitting->wale * (1 / (2 * M_PI) + 0.32 * cos(2 * t));
+        1 + (float)(marl * tl_tile_noise(seed + 1, along * marl_waves(knitting) / knitting->wales + 0.3,
+                                         marl_waves(knitting)));
+    double step_x = knitting->wale * (1 / (2 * M_PI) + 2 * LEAN * cos(2 * t));
     double step_y = knitting->course * 0.85 * sin(t), length = hypot(step_x, step_y);
-    return (struct tl_strand){.x = knitting->wale * (along + 0.16 * sin(2 * t) + wild_x + bed->shift_x),
+    return (struct tl_strand){.x = knitting->wale * (along + LEAN * sin(2 * t) + wild_x + bed->shift_x),
                               .y = knitting->course * (course + 0.5 - 0.85 * cos(t) + wild_y + bed->shift_y),
                               .z = z,
                               .radius = 0.5 * d * thick,

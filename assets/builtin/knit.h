@@ -1,6 +1,6 @@
 /* Loops of knitted fabrics: a yarn's axis in each course is a sine form of the plain loop,
  *
- *     x = W (i + t/2pi + 0.16 sin 2t),  y = H (j + 1/2 - 0.85 cos t),  z = -(d/2) cos 2t,   t in [0, 2 pi)
+ *     x = W (i + t/2pi + 0.26 sin 2t),  y = H (j + 1/2 - 0.85 cos t),  z = -(d/2) cos 2t,   t in [0, 2 pi)
  *
  * for wale i and course j, W and H their spacings, d the yarn's diameter: on the face the legs lie in front,
  * on the purl side z is mirrored. A common sketch of the loop's geometry, not a mechanical model of it. */

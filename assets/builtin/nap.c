@@ -12,13 +12,14 @@
 #define TEXELS_PER_FIBRE 3.0
 #define PILE_MIN_MM      32.0
 #define PILE_MAX_MM      48.0
-#define PATCH_CLUMPS     1    /* size of the patches that lean one way, in clumps */
-#define RISE             0.35 /* of a fibre that leans, over its length */
+#define LEAN_MAX                                                                                             \
+    1.2 /* slope of the axis of a pile that leans all, where its patch leans most [LOOK: by eye] */
+#define TIP_DEPTH 1.5 /* tips of a pile end within, in radii */
 
 /* A fibre: a curve that wanders over the surface and leaves it by up to `lift` in its middle. */
 struct fibre {
-    double x, y, heading;                    /* m, rad */
-    double length, radius, lift, rise, curl; /* m; rise: of its end over its root; curl: rad per m */
+    double x, y, heading;              /* m, rad */
+    double length, radius, lift, curl; /* m; curl: rad per m */
     float shade, tint[3];
     uint32_t seed;
 };
@@ -43,7 +44,7 @@ static void lay_fibre(const struct fibre *fibre, const float *base, struct tl_ti
         z = k == 0 ? ground : z + 0.06 * (ground - z); /* it bridges what is narrower than itself */
         const struct tl_strand strand = {.x = x,
                                          .y = y,
-                                         .z = z + fibre->lift * sin(M_PI * t) + fibre->rise * t,
+                                         .z = z + fibre->lift * sin(M_PI * t),
                                          .radius = fibre->radius,
                                          .along_x = cos(heading),
                                          .along_y = sin(heading),
@@ -79,20 +80,50 @@ static int cells_of(const struct tl_tile *tile, double size_mm)
     return cells < 2 ? 2 : cells > 31 ? 31 : cells;
 }
 
-/* Where a fibre of a pile points to: anywhere, or as its patch was stroked. */
-static double heading_of(const struct tl_weave_params *params, const struct tl_tile *tile, double x, double y,
-                         double own)
+/* A pile that stands is seen from above its tips, each a little deeper or less deep than its neighbours. */
+static void lay_tips(const struct tl_weave_params *params, struct tl_tile *tile)
 {
-    const double lean = (double)params->lean;
-    if (!(lean > 0))
-        return 2 * M_PI * own;
-    const int cells = cells_of(tile, PATCH_CLUMPS * (double)params->clump_mm);
-    const double u = x / tile->size_m[0], v = y / tile->size_m[1];
-    return 1.5 * M_PI * noise_at(5900u, u, v, cells) + (1 - lean) * M_PI * (2 * own - 1);
+    const double radius = 0.5e-3 * (double)params->fibre_mm, area = tile->size_m[0] * tile->size_m[1];
+    const int count = (int)lround((double)params->nap * area / (M_PI * radius * radius));
+    for (int i = 0; i < count; i++) {
+        const uint32_t seed = 77000u + (uint32_t)i;
+        const double x = tile->size_m[0] * tl_tile_random(seed, 0, 0);
+        const double y = tile->size_m[1] * tl_tile_random(seed, 1, 0);
+        const float shade = (float)(1 + (double)params->melange * (2 * tl_tile_random(seed, 7, 0) - 1));
+        const struct tl_strand tip = {.x = x,
+                                      .y = y,
+                                      .z = -radius * TIP_DEPTH * tl_tile_random(seed, 5, 0),
+                                      .radius = radius * (0.8 + 0.4 * tl_tile_random(seed, 4, 0)),
+                                      .along_x = 1,
+                                      .tint = {shade, shade, shade},
+                                      .seed = seed};
+        tl_tile_lay(tile, &tip);
+    }
+}
+
+/* How hands and folds leave a pile: in patches of the size of its clumps, each towards somewhere else. */
+static void lean(const struct tl_weave_params *params, struct tl_tile *tile)
+{
+    const int cells = cells_of(tile, (double)params->clump_mm);
+    const double most = LEAN_MAX * (double)params->lean;
+    tile->leans = TL_NEW_ARRAY(float, 2 * (size_t)tile->width * (size_t)tile->height);
+#pragma omp parallel for schedule(static)
+    for (int row = 0; row < tile->height; row++)
+        for (int column = 0; column < tile->width; column++) {
+            const double u = (column + 0.5) / tile->width, v = (tile->height - row - 0.5) / tile->height;
+            float *slopes = tile->leans + 2 * ((size_t)row * (size_t)tile->width + (size_t)column);
+            for (uint32_t k = 0; k < 2; k++)
+                slopes[k] = (float)(most * noise_at(5900u + 1024 * k, u, v, cells));
+        }
 }
 
 void tl_nap_lay(const struct tl_weave_params *params, const float tint[3], struct tl_tile *tile)
 {
+    if (params->pattern == TL_WEAVE_PILE && params->lean > 0) {
+        lay_tips(params, tile);
+        lean(params, tile);
+        return;
+    }
     const double length = 1e-3 * (double)params->nap_mm, radius = 0.5e-3 * (double)params->fibre_mm;
     const double area = tile->size_m[0] * tile->size_m[1];
     const int count = (int)lround((double)params->nap * area / (2 * radius * length));
@@ -107,11 +138,10 @@ void tl_nap_lay(const struct tl_weave_params *params, const float tint[3], struc
         const struct fibre fibre = {
             .x = x,
             .y = y,
-            .heading = heading_of(params, tile, x, y, tl_tile_random(seed, 2, 0)),
+            .heading = 2 * M_PI * tl_tile_random(seed, 2, 0),
             .length = length * (0.5 + own),
             .radius = radius * (0.8 + 0.4 * tl_tile_random(seed, 4, 0)),
             .lift = length * 0.06 * tl_tile_random(seed, 5, 0),
-            .rise = length * RISE * (double)params->lean,
             .curl = (double)params->curl * (2 * tl_tile_random(seed, 6, 0) - 1) / radius,
             .shade = (float)(1 + (0.12 + (double)params->melange) * (2 * tl_tile_random(seed, 7, 0) - 1)),
             .tint = {tint[0], tint[1], tint[2]},

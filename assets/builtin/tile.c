@@ -24,6 +24,7 @@ void tl_tile_release(struct tl_tile *tile)
 {
     free(tile->heights);
     free(tile->tints);
+    free(tile->leans);
     *tile = (struct tl_tile){0};
 }
 
@@ -191,7 +192,7 @@ static float sky_at(const struct tl_tile *tile, int column, int row)
 void tl_tile_shade(struct tl_tile *tile, float share)
 {
     const float inside =
-        0.5f; /* of the light that a valley's walls send back stays in it and comes out later */
+        0.25f; /* of the light that a valley's walls send back stays in it and comes out later */
     const size_t count = (size_t)tile->width * (size_t)tile->height;
     float *open = TL_NEW_ARRAY(float, count);
     double before = 0;
@@ -248,6 +249,10 @@ tl_weave tl_tile_weave(const struct tl_tile *tile)
             bounded((height_at(tile, column + 1, row) - height_at(tile, column - 1, row)) / (2 * texel_x));
         float y =
             bounded((height_at(tile, column, row - 1) - height_at(tile, column, row + 1)) / (2 * texel_y));
+        if (tile->leans) {
+            x += tile->leans[2 * i];
+            y += tile->leans[2 * i + 1];
+        }
         float scale = 1 / sqrtf(1 + x * x + y * y);
         uint8_t *normal = tl_image_bytes(&weave.normal) + 3 * i;
         normal[0] = encode(-x * scale);

@@ -17,6 +17,7 @@ struct tl_tile {
     double size_m[2];
     float *heights;
     float *tints; /* RGB: factor on the colour */
+    float *leans; /* slopes along x and y that a pile's axis has beyond the heights'; NULL: none. Owned */
 };
 
 /* Flat, at `base_m`, of sides within the bounds above. The caller releases it. */
@@ -49,7 +50,8 @@ void tl_tile_shade(struct tl_tile *tile, float share);
 void tl_tile_even_heights(struct tl_tile *tile);
 void tl_tile_even_tints(struct tl_tile *tile);
 
-/* The maps of a weave from the tile: normals by central differences, gloss 0, heights about their mean. */
+/* The maps of a weave from the tile: normals by central differences and leans, gloss 0, heights about their
+ * mean. */
 tl_weave tl_tile_weave(const struct tl_tile *tile);
 
 /* A number in [0, 1) by two integers and a seed. */

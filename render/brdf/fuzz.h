@@ -10,7 +10,8 @@
  *     Lfuzz = R sum over k of w_k E(n, s_k),  s = 1, 2, 4, 8,  sum of w = 1
  *
  * The w_k minimise the integral over the cosine of the squared difference. Light that is the same from
- * everywhere is exact. The fibres stand over weave and seams: the normal is the smooth one. The lobe is not
+ * everywhere is exact. The fibres stand over weave and seams on the smooth normal, those of a pile lean with
+ * its bumps (tl_fuzz_axis): n is their axis. The lobe is not
  * reciprocal. tests/render/brdf/test_fuzz.c has the errors. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_FUZZ_H
 #define TOILE_RENDER_BRDF_FUZZ_H
@@ -76,6 +77,18 @@ TL_INLINE float tl_fuzz_lobes_at(const float weights[TL_FUZZ_POWERS], float cosi
     const float sum =
         2 * weights[0] * z + 3 * weights[1] * z2 + 5 * weights[2] * z4 + 9 * weights[3] * z4 * z4;
     return 0.159154943f * tl_maxf(sum, 0);
+}
+
+/* The direction in which the fibres stand: the smooth normal, or for those that follow the bumps towards the
+ * shading normal `shown`; all unit. */
+TL_INLINE vec3s tl_fuzz_axis(const struct tl_fuzz *fuzz, vec3s smooth, vec3s shown)
+{
+    if (!(fuzz->follow > 0))
+        return smooth;
+    const vec3s axis =
+        glms_vec3_add(glms_vec3_scale(smooth, 1 - fuzz->follow), glms_vec3_scale(shown, fuzz->follow));
+    const float length = glms_vec3_norm(axis);
+    return length > 1e-3f ? glms_vec3_scale(axis, 1 / length) : smooth;
 }
 
 /* What fuzz leaves to the rest of the material, for the cosine of viewer and smooth normal; 1 without fuzz.

@@ -77,6 +77,10 @@ static const struct tl_option material_rows[] = {
     TL_OPTION_COLOUR(material_params, fuzz_colour, AFFECTS, 0, 1, "colour of these fibres"),
     TL_OPTION_FLOAT(material_params, fuzz_roughness, AFFECTS, 0.4, 1, "",
                     "smaller: they show closer to the silhouette only"),
+    TL_OPTION_FLOAT(
+        material_params, fuzz_follow, AFFECTS, 0, 1, "",
+        "0: these fibres stand on the smooth surface, over the weave; 1: they lean with a pile, so "
+        "that its patches shine by turns"),
     TL_OPTION_ENUM(
         material_params, on_print, AFFECTS, on_print_names,
         "what becomes of a printed picture of the garment's file under a fabric: replace: the fabric's "

@@ -37,7 +37,8 @@ struct lobes {
     float base; /* what coat and fuzz leave */
     bool has_fuzz;
     struct tl_fuzz fuzz;
-    struct tl_fuzz_lobes fibres; /* of fuzz; about the smooth normal */
+    struct tl_fuzz_lobes fibres; /* of fuzz */
+    vec3s axis;                  /* along which its fibres stand, in the environment */
 };
 
 /* What a block of samples shares. */
@@ -340,8 +341,11 @@ static void part_lobes(const struct block *block, const tl_material *material, t
     lobes->has_fuzz = tl_material_has_fuzz(material);
     lobes->fuzz = material->fuzz;
     lobes->fibres.under = 1;
-    if (lobes->has_fuzz)
-        lobes->fibres = tl_fuzz_lobes_of(&material->fuzz, facing);
+    if (lobes->has_fuzz) {
+        const vec3s axis = tl_fuzz_axis(&material->fuzz, sample->smooth, sample->normal);
+        lobes->axis = into_environment(block, axis);
+        lobes->fibres = tl_fuzz_lobes_of(&material->fuzz, glms_vec3_dot(axis, view));
+    }
     lobes->base = lobes->fibres.under * (1 - material->coat * tl_coat_reflectance(facing));
     if (material->gloss.model != TL_REFLECT_PHONG) {
         add_fan(block, sample, material, lobes);
@@ -444,17 +448,23 @@ TL_INLINE void see_fibres(const struct block *block, size_t index, const struct 
     const struct tl_compose_request *request = block->request;
     const struct tl_region_lights *lights = request->lights;
     float seen_lanes[3][TL_LANES] = {0}, all_lanes[3][TL_LANES] = {0};
+    const bool is_leaning = lobes->fuzz.follow > 0; /* then what lies below the surface is not seen */
+    const vec3s n = lobes->axis;
     for (int g = 0; g < lights->group_count; g++) {
         const struct tl_region_group *group = &lights->groups[g];
-        if (glms_vec3_dot(group->axis, smooth) < -group->reach_sine)
+        if (glms_vec3_dot(group->axis, n) < -group->reach_sine)
             continue;
         float visibility[TL_LANES], open[TL_LANES], visible[TL_LANES];
         read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
         for (int lane = 0; lane < TL_LANES; lane++) {
-            float cosine = group->x[lane] * smooth.x + group->y[lane] * smooth.y + group->z[lane] * smooth.z;
+            float cosine = group->x[lane] * n.x + group->y[lane] * n.y + group->z[lane] * n.z;
             float mean = group->sine[lane] * disc_height(cosine * group->inverse_sine[lane]);
             open[lane] = tl_fuzz_lobes_at(lobes->fibres.weights, mean);
             visible[lane] = open[lane] * visibility[lane];
+        }
+        for (int lane = 0; is_leaning && lane < TL_LANES; lane++) {
+            float cosine = group->x[lane] * smooth.x + group->y[lane] * smooth.y + group->z[lane] * smooth.z;
+            visible[lane] *= disc_share(cosine * group->inverse_sine[lane]);
         }
         for (int c = 0; c < 3; c++) {
             add_weights(all_lanes[c], group->power[c], open);
@@ -521,12 +531,12 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
 }
 
 /* The unshadowed light of the environment that fibres send to the viewer. */
-static vec3s exact_fibres(const struct block *block, const struct lobes *lobes, vec3s smooth)
+static vec3s exact_fibres(const struct block *block, const struct lobes *lobes)
 {
     vec3s light = {{0, 0, 0}};
     for (int k = 0; k < TL_FUZZ_POWERS; k++) {
         const struct tl_exponent_blend power = {.index = TL_FUZZ_INDEX(k)};
-        vec3s arriving = tl_lobes_fetch(block->request->lobes, smooth, power);
+        vec3s arriving = tl_lobes_fetch(block->request->lobes, lobes->axis, power);
         light = glms_vec3_add(light, glms_vec3_scale(arriving, lobes->fibres.weights[k]));
     }
     return glms_vec3_maxv(light, glms_vec3_zero());
@@ -549,7 +559,7 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
     const int method = request->params->method;
     const bool by_occlusion = method == TL_METHOD_AO || method == TL_METHOD_AO_COLOUR;
     const bool shadowed = method != TL_METHOD_UNSHADOWED && !by_occlusion;
-    vec3s light = exact_fibres(block, lobes, smooth);
+    vec3s light = exact_fibres(block, lobes);
     if (shadowed) {
         vec3s seen, all;
         see_fibres(block, index, lobes, smooth, &seen, &all);
@@ -562,7 +572,7 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
         float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
         float open = shadowed && visibility ? above * visibility[index] : 1;
         light = glms_vec3_add(
-            light, glms_vec3_scale(sun->power, open * tl_fuzz_value(&lobes->fuzz, smooth, sun->direction,
+            light, glms_vec3_scale(sun->power, open * tl_fuzz_value(&lobes->fuzz, lobes->axis, sun->direction,
                                                                     lobes->viewer)));
     }
     if (by_occlusion)

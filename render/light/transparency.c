@@ -109,7 +109,9 @@ static tl_sample other_side(const tl_sample *sample, const tl_material *material
 {
     vec3s view = glms_vec3_normalize(glms_vec3_sub(eye, sample->point));
     float facing = fmaxf(glms_vec3_dot(sample->smooth, view), 0);
-    float base = tl_fuzz_under(material, facing) * (1 - material->coat * tl_coat_reflectance(facing));
+    const vec3s fibres = tl_fuzz_axis(&material->fuzz, sample->smooth, sample->normal);
+    float base = tl_fuzz_under(material, glms_vec3_dot(fibres, view)) *
+                 (1 - material->coat * tl_coat_reflectance(facing));
     tl_sample other = *sample;
     other.triangle ^= TL_SAMPLE_BACK;
     other.normal = glms_vec3_negate(sample->normal);

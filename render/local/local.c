@@ -31,7 +31,8 @@ enum {
     EMISSION_ROWS = 85,
     LAMP_FUZZ = 87,
     THREAD_WIDTHS = 88, /* two of each */
-    THREAD_RATIOS = 90
+    THREAD_RATIOS = 90,
+    LAMP_FUZZ_FOLLOW = 93
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -227,6 +228,7 @@ static void set_gloss(const tl_material *material)
     if (tl_material_has_fuzz(material)) {
         const struct tl_fuzz *fuzz = &material->fuzz;
         glUniform4f(LAMP_FUZZ, fuzz->colour.x, fuzz->colour.y, fuzz->colour.z, fuzz->roughness);
+        glUniform1f(LAMP_FUZZ_FOLLOW, fuzz->follow);
     }
 }
 

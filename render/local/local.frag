@@ -15,6 +15,7 @@ layout(location = 77) uniform vec3 lamp_layers; // coverage of the coat, exponen
 
 #ifdef FUZZ
 layout(location = 87) uniform vec4 lamp_fuzz; // colour, roughness
+layout(location = 93) uniform float lamp_fuzz_follow;
 #endif
 
 #ifdef EMISSION
@@ -221,15 +222,29 @@ vec3 under_coat(vec3 light, vec3 l, vec3 n)
     return light;
 }
 
+#ifdef FUZZ
+// The direction in which fibres stand, as tl_fuzz_axis.
+vec3 fibre_axis(float side, vec3 smooth_normal)
+{
+#ifndef GOURAUD
+    if (lamp_fuzz_follow > 0.0) {
+        vec3 shown = direction_or(bumped_normal(smooth_normal), smooth_normal);
+        return side * direction_or(mix(smooth_normal, shown, lamp_fuzz_follow), smooth_normal);
+    }
+#endif
+    return side * smooth_normal;
+}
+#endif
+
 // Adds the fibres that stand on everything else, which keeps what they leave.
-vec3 under_fuzz(vec3 light, vec3 l, vec3 n)
+vec3 under_fuzz(vec3 light, vec3 l, float side, vec3 smooth_normal)
 {
 #ifdef FUZZ
-    vec3 v = direction_or(eye - point, n);
+    vec3 n = fibre_axis(side, smooth_normal), v = direction_or(eye - point, n);
     float facing = clamp(dot(n, v), 0.0, 1.0), albedo = fuzz_albedo(facing, lamp_fuzz.w);
     float towards = dot(direction_or(v - dot(n, v) * n, vec3(0.0)), l);
     light *= 1.0 - albedo * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
-    light += self_shadow(dot(n, l)) * albedo * fuzz_lobe(dot(n, l), towards, facing, lamp_fuzz.w) * lamp_fuzz.rgb;
+    light += self_shadow(side * dot(smooth_normal, l)) * albedo * fuzz_lobe(dot(n, l), towards, facing, lamp_fuzz.w) * lamp_fuzz.rgb;
 #endif
     return light;
 }
@@ -264,7 +279,7 @@ void main()
     sent *= 1.0 - lamp_layers.x * fresnel_dielectric(1.5, max(dot(n, direction_or(eye - point, n)), 0.0));
 #endif
 #ifdef FUZZ
-    vec3 up = side * smooth_normal;
+    vec3 up = fibre_axis(side, smooth_normal);
     float facing = clamp(dot(up, direction_or(eye - point, up)), 0.0, 1.0);
     sent *= 1.0 - fuzz_albedo(facing, lamp_fuzz.w) * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
 #endif
@@ -272,7 +287,7 @@ void main()
 #else
     float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l) * own_shadow;
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
-    light = under_fuzz(light, l, side * smooth_normal);
+    light = under_fuzz(light, l, side, smooth_normal);
     out_light = vec4(shown * irradiance_at(point) * light, 0.0);
 #endif
 }

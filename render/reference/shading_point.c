@@ -272,7 +272,7 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
     result->layered = true;
     layers->openness = material->openness;
     layers->fuzz = material->fuzz;
-    layers->fuzz_normal = glms_vec3_scale(smooth, place->side);
+    layers->fuzz_normal = tl_fuzz_axis(&material->fuzz, glms_vec3_scale(smooth, place->side), result->normal);
     layers->base = tl_fuzz_under(material, glms_vec3_dot(layers->fuzz_normal, result->viewer));
     if (material->coat > 0)
         set_coat(place, smooth, result);

@@ -493,7 +493,7 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
 
 /* ---- Fuzz ---- */
 
-/* f_r cos of white fibres under a sun, of a lane whose smooth normal is n. */
+/* f_r cos of white fibres under a sun, of a lane whose fibres stand along n. */
 TL_INLINE float fibres_under(const struct tl_fuzz *fuzz, vec3s n, vec3s viewer, vec3s sun)
 {
     float x = tl_maxf(tl_minf(glms_vec3_dot(n, viewer), 1), 0);
@@ -509,8 +509,8 @@ TL_INLINE void add_fibres_of_sun(const struct tl_pixel_scene *scene, const struc
     const struct tl_look_lanes *look = &lanes->look;
     for (int i = 0; i < look->count; i++) {
         const vec3s n = tl_lane_vector(normal, i);
-        float seen = tl_pixel_sun_above(item, glms_vec3_dot(scene->suns[sun], n)) *
-                     tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
+        const float height = look->side[i] * glms_vec3_dot(scene->suns[sun], tl_lane_vector(look->smooth, i));
+        float seen = tl_pixel_sun_above(item, height) * tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
         if (seen > 0)
             fibres[i] += tl_pixel_quad(item->power) *
                          (seen * fibres_under(&look->part->material->fuzz, n, tl_lane_vector(look->viewer, i),
@@ -528,7 +528,8 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
     float normal[3][TL_LANES], weights[TL_FUZZ_POWERS][TL_LANES], under[TL_LANES];
     struct fetch_lanes fetch[TL_FUZZ_POWERS];
     for (int i = 0; i < TL_LANES; i++) {
-        const vec3s n = glms_vec3_scale(tl_lane_vector(look->smooth, i), look->side[i]);
+        const vec3s smooth = glms_vec3_scale(tl_lane_vector(look->smooth, i), look->side[i]);
+        const vec3s n = tl_fuzz_axis(fuzz, smooth, tl_lane_vector(look->shown, i));
         const struct tl_fuzz_lobes lobes =
             tl_fuzz_lobes_of(fuzz, glms_vec3_dot(n, tl_lane_vector(look->viewer, i)));
         const vec3s d = tl_pixel_turned(scene, n);

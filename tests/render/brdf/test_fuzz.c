@@ -33,7 +33,7 @@ static void test_the_lobe_has_its_albedo(void **state)
     const vec3s up = {{0, 0, 1}};
     for (float y = 0.4f; y <= 1; y += 0.2f)
         for (size_t i = 0; i < VIEWS; i++) {
-            const struct tl_fuzz fuzz = {{{1, 1, 1}}, y};
+            const struct tl_fuzz fuzz = {{{1, 1, 1}}, y, 0};
             double sum = 0;
             for (int row = 0; row < ROWS; row++)
                 for (int column = 0; column < COLUMNS; column++)
@@ -57,7 +57,7 @@ static void test_powers_stand_for_the_lobe(void **state)
     const vec3s up = {{0, 0, 1}};
     for (int r = 0; r < 3; r++)
         for (size_t i = 0; i < VIEWS; i++) {
-            const struct tl_fuzz fuzz = {{{1, 1, 1}}, roughnesses[r]};
+            const struct tl_fuzz fuzz = {{{1, 1, 1}}, roughnesses[r], 0};
             const struct tl_fuzz_lobes lobes = tl_fuzz_lobes_of(&fuzz, cosines[i]);
             const double albedo = (double)fuzz_albedo(cosines[i], fuzz.roughness);
             double off = 0, sum = 0;
@@ -87,7 +87,7 @@ static void test_what_is_left_below(void **state)
     (void)state;
     tl_material material = tl_material_default("test");
     assert_near(tl_fuzz_under(&material, 0.2f), 1, 0);
-    material.fuzz = (struct tl_fuzz){{{0.5f, 0.25f, 0.1f}}, 0.6f};
+    material.fuzz = (struct tl_fuzz){{{0.5f, 0.25f, 0.1f}}, 0.6f, 0};
     for (size_t i = 0; i < VIEWS; i++)
         assert_near(tl_fuzz_under(&material, cosines[i]), 1 - 0.5f * fuzz_albedo(cosines[i], 0.6f), 1e-6);
 }

@@ -60,8 +60,9 @@ struct feature {
     int ward;
     double error; /* relative RMSE against the oracle at most: see test_against_the_oracle */
     float fuzz;
-    int facets;  /* 0: Beckmann's */
-    int threads; /* systems of threads with a lobe of their own */
+    int facets;   /* 0: Beckmann's */
+    int threads;  /* systems of threads with a lobe of their own */
+    float follow; /* of fuzz, which stands on bumps then */
 };
 
 static const struct feature features[] = {
@@ -97,8 +98,27 @@ static const struct feature features[] = {
     {.name = "openness", .openness = 0.4f, .error = 0.05},
     {.name = "fuzz", .fuzz = 1, .error = 0.05},
     {.name = "fuzz over a coat", .coat = 1, .fuzz = 0.5f, .transmission = 0.3f, .error = 0.05},
+    {.name = "bumps", .error = 0.1, .follow = 1}, /* alone: what any lobe errs by on them */
+    {.name = "fuzz of a pile", .fuzz = 1, .error = 0.1, .follow = 1},
     {.name = "all", TL_REFLECT_WARD, 0.35f, 0.12f, 1, 0.3f, 0.4f, .error = 0.05, .fuzz = 0.4f},
 };
+
+/* The normals of a pile that leans by up to 35 degrees in patches much wider than a pixel. */
+static tl_image patches;
+
+static void make_patches(void)
+{
+    enum { TEXELS = 64 };
+    patches = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
+    patches.linear = true;
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        const float x = 2 * GLM_PIf * (float)(i % TEXELS) / TEXELS,
+                    y = 2 * GLM_PIf * (float)(i / TEXELS) / TEXELS;
+        const vec3s n = glms_vec3_normalize((vec3s){{0.5f * sinf(2 * x + y), 0.5f * cosf(2 * y), 1}});
+        for (int c = 0; c < 3; c++)
+            tl_image_bytes(&patches)[3 * i + c] = (uint8_t)lroundf(255 * (0.5f + 0.5f * n.raw[c]));
+    }
+}
 
 static void set_feature(const struct feature *feature, tl_material *material)
 {
@@ -115,6 +135,9 @@ static void set_feature(const struct feature *feature, tl_material *material)
     material->threads[0] = (struct tl_thread){{{0.3f, 2, 1}}, 0.45f, 0.15f};
     material->threads[1] = (struct tl_thread){{{1.5f, 0.1f, 0.5f}}, 0.15f, 0.45f};
     material->fuzz.colour = (vec3s){{feature->fuzz, 0.8f * feature->fuzz, 0.6f * feature->fuzz}};
+    material->fuzz.follow = feature->follow;
+    if (feature->follow > 0)
+        material->normal_map = (struct tl_map){.image = &patches, .transform = {.scale = {1, 1}}};
 }
 
 /* Images may err as much as the method does with two lobes (3 to 5 % when each pixel has one sample), though
@@ -258,8 +281,11 @@ static void test_extremes(void **state)
 
 int main(void)
 {
+    make_patches();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_against_the_oracle), cmocka_unit_test(test_furnace),
         cmocka_unit_test(test_only_what_the_scene_requires), cmocka_unit_test(test_extremes)};
-    return cmocka_run_group_tests_name("layered", tests, test_device_open, test_device_close);
+    const int failed = cmocka_run_group_tests_name("layered", tests, test_device_open, test_device_close);
+    tl_image_release(&patches);
+    return failed;
 }

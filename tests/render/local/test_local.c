@@ -124,7 +124,7 @@ static void layers_equal_the_reference(void **state)
         test_scene_open_lamplit(&scene, shiny_sphere(32), 96, 96);
         tl_material *ball = &scene.shapes[0].material;
         if (kind == 3) /* fibres over a coat */
-            ball->fuzz = (struct tl_fuzz){{{1, 0.8f, 0.5f}}, 0.5f};
+            ball->fuzz = (struct tl_fuzz){{{1, 0.8f, 0.5f}}, 0.5f, 0};
         if (kind == 0 || kind == 3) { /* a coat over Ward */
             ball->gloss = (struct tl_gloss){
                 .model = TL_REFLECT_WARD, .width_weft = 0.3f, .width_warp = 0.15f, .index = 1.5f};

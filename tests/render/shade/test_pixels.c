@@ -159,7 +159,7 @@ static void be_satin(struct drawn_scene *drawn)
 static void be_fuzzy(struct drawn_scene *drawn)
 {
     be_glossy(drawn);
-    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{1, 0.7f, 0.4f}}, 0.5f};
+    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{1, 0.7f, 0.4f}}, 0.5f, 0};
 }
 
 static void be_torrance_sparrow(struct drawn_scene *drawn)
@@ -222,7 +222,7 @@ static void be_voile(struct drawn_scene *drawn)
 static void be_fuzzy_voile(struct drawn_scene *drawn)
 {
     be_voile(drawn);
-    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{0.7f, 0.7f, 0.7f}}, 0.6f};
+    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{0.7f, 0.7f, 0.7f}}, 0.6f, 0};
 }
 
 static void be_open_all(struct drawn_scene *drawn)
