@@ -2,12 +2,11 @@
 
 #include <math.h>
 
-#define TILE_MM 16.0
-#define LEAN    0.26 /* of the legs: how far their ends lie apart across, in quarters of a sine [LOOK: by eye] \
-                      */
-#define MARL       0.3 /* how much a yarn differs along itself, of how much its fibres do */
-#define MARL_WALES 3   /* ... over so many loops */
-#define LOOP_STEPS 56  /* of an axis in a loop: fewer than a tenth of the diameter apart */
+#define TILE_MM    16.0
+#define LEAN       0.26 /* of the legs, sideways, in wales [LOOK: by eye] */
+#define MARL       0.3  /* how much a yarn differs along itself, of how much its fibres do */
+#define MARL_WALES 3    /* ... over so many loops */
+#define LOOP_STEPS 56   /* of an axis in a loop: fewer than a tenth of the diameter apart */
 
 /* One bed of loops. */
 struct bed {
