@@ -124,6 +124,7 @@ bool tl_command_export(const struct tl_arguments *arguments, tl_error *error)
     if (!(is_glb ? tl_headless_settings : tl_headless_garment_settings)(arguments, &settings, error))
         return false;
     settings.scene.pattern = false; /* a picture of the garment, no part of it */
+    settings.scene.smooth = false;
     tl_session *session = tl_session_create(&settings, error);
     bool done = session != NULL;
     if (done && !tl_session_garment(session) && !is_glb)

@@ -295,6 +295,7 @@ bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
     struct tl_settings settings;
     if (!check_output(arguments, error) || !tl_headless_garment_settings(arguments, &settings, error))
         return false;
+    settings.scene.smooth = false; /* the cloth itself is measured */
     tl_session *session = tl_session_create(&settings, error);
     bool done = session != NULL;
     if (done && !tl_session_cut(session))

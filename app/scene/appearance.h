@@ -8,8 +8,8 @@
 #ifndef TOILE_APP_SCENE_APPEARANCE_H
 #define TOILE_APP_SCENE_APPEARANCE_H
 
+#include "app/drawn/moving.h"
 #include "app/pictures/weaves.h"
-#include "app/scene/moving.h"
 #include "app/settings/settings.h"
 
 struct tl_appearance {

@@ -1,10 +1,11 @@
 #include "app/scene/session.h"
 
 #include "app/drape/drape.h"
-#include "app/scene/board.h"
+#include "app/drawn/board.h"
+#include "app/drawn/moving.h"
+#include "app/drawn/smoothed.h"
 #include "app/scene/camera.h"
 #include "app/scene/load.h"
-#include "app/scene/moving.h"
 #include "app/scene/moving_light.h"
 #include "app/scene/playback.h"
 #include "app/scene/tuck.h"
@@ -58,6 +59,7 @@ struct tl_session {
         bool *triangles;   /* of the garment, those that cross others; made when first asked for */
         uint64_t revision; /* dress.motion_revision that they are of; 0: none */
     } crossed;
+    struct tl_smoothed smoothed; /* made when it is first shown */
 
     struct tl_appearance appearance;
     uint64_t appearance_revision; /* of meshes and materials; the renderer sees another one as new */
@@ -318,6 +320,7 @@ void tl_session_destroy(tl_session **handle)
     tl_session *session = *handle;
     if (!session)
         return;
+    tl_smoothed_release(&session->smoothed);
     tl_moving_release(&session->dress);
     tl_moving_release(&session->board);
     tl_moving_release(&session->body);
@@ -641,6 +644,17 @@ static struct tl_box box_with_board(tl_session *session)
     return box_of_both(box_of_moving(&session->board), session->framed);
 }
 
+/* The garment as it is drawn. What is played back, or is no cloth, is drawn as its file has it. */
+static tl_surface smoothed(tl_session *session, const tl_surface *garment)
+{
+    struct tl_smoothed *smooth = &session->smoothed;
+    if (!session->settings.scene.smooth || !session->cloth)
+        return *garment;
+    if (smooth->source_count == 0)
+        tl_smoothed_make(session->garment, tl_cloth_weld(session->cloth), &session->dress.borders, smooth);
+    return tl_smoothed_surface(smooth, garment);
+}
+
 /* The garment comes last. */
 static void add_garment(tl_session *session)
 {
@@ -651,7 +665,7 @@ static void add_garment(tl_session *session)
     garment.borders = borders_of_garment(session);
     if (shows_board(session))
         session->surfaces[session->surface_count++] = tl_board_surface(&session->board, &garment);
-    session->surfaces[session->surface_count++] = garment;
+    session->surfaces[session->surface_count++] = smoothed(session, &garment);
 }
 
 tl_frame tl_session_frame(tl_session *session)

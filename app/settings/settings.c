@@ -75,6 +75,10 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_BOOL(struct tl_scene_params, pattern, TL_AFFECTS_MATERIALS,
                    "shows the garment's flat pieces beside it, where its pattern is known: views of strain "
                    "colour both"),
+    TL_OPTION_BOOL(
+        struct tl_scene_params, smooth, TL_AFFECTS_MATERIALS,
+        "draws cloth as a smooth surface, each triangle as four; creases stay at seams and hard edges; "
+        "four times the work of light at vertices; files, measures and contacts have the mesh itself"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),

@@ -25,6 +25,7 @@ struct tl_scene_params {          /* table "scene": what to show; names of built
     int up, avatar_up;            /* enum tl_up: of their files */
     float turn_deg, scale, move_m[3];    /* places the garment's file */
     bool pattern;                        /* its pieces hang beside it */
+    bool smooth;                         /* it is drawn as Loop's surface */
     char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
     float motion_rate;                   /* frames of it a second; 0: as its file says */
     char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */

@@ -1,6 +1,6 @@
 #include "app/view/review/review_read.h"
 
-#include "app/scene/board.h"
+#include "app/drawn/board.h"
 #include "app/view/review/review_wipe.h"
 #include "config/memory.h"
 #include "render/inspect/inspect.h"

@@ -4,7 +4,7 @@
 #ifndef TOILE_APP_SCENE_BOARD_H
 #define TOILE_APP_SCENE_BOARD_H
 
-#include "app/scene/moving.h"
+#include "app/drawn/moving.h"
 
 #define TL_SURFACE_PATTERN "pattern"
 

@@ -1,4 +1,4 @@
-#include "app/scene/moving.h"
+#include "app/drawn/moving.h"
 
 #include "cloth/mesh/topology.h"
 #include "config/memory.h"

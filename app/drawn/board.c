@@ -1,4 +1,4 @@
-#include "app/scene/board.h"
+#include "app/drawn/board.h"
 
 #include "assets/charts/layout.h"
 #include "config/memory.h"
