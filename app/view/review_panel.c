@@ -169,6 +169,11 @@ static char *append(char *end, const char *stop, const char *format, ...)
     return length < stop - end ? end + length : end;
 }
 
+static bool is_worn(const struct tl_review *review)
+{
+    return strcmp(tl_settings_avatar(&tl_session_settings(review->session)->scene), "none") != 0;
+}
+
 /* How the garment stands; motion without input, and the key that ends it. */
 static void describe_status(const struct tl_review *review, char *status, size_t size)
 {
@@ -183,7 +188,10 @@ static void describe_status(const struct tl_review *review, char *status, size_t
     if (drapes)
         end = append(end, stop, "draping  ");
     else if (state != TL_GARMENT_IS_NOT_CLOTH)
-        end = append(end, stop, "%s%s  ", tl_garment_state_names[state], undraped ? " (D drapes it)" : "");
+        end = append(end, stop, "%s%s  ", tl_garment_state_names[state],
+                     !undraped         ? ""
+                     : is_worn(review) ? " (D drapes it)"
+                                       : " on nobody (drop a body, D drapes it)");
     if (review->playing && review->play_speed < 0.95)
         end =
             append(end, stop, "plays at %.1f x: this machine is slower than the cloth  ", review->play_speed);

@@ -235,8 +235,9 @@ struct tl_panel_progress tl_review_progress(const struct tl_review *review, char
     if (kind == TL_LOAD_APPEARANCE && progress.seconds < unseen_s)
         return (struct tl_panel_progress){0};
     bool is_known = progress.what[0] != '\0';
-    snprintf(text, size, "%s %.100s%s%s", review->drapes_again ? "Draping" : "Loading",
-             slash ? slash + 1 : name, is_known ? ": " : "", progress.what);
+    bool drapes = review->drapes_again || (kind == TL_LOAD_SCENE && scene->drape == TL_DRAPE_SETTLE);
+    snprintf(text, size, "%s %.100s%s%s", drapes ? "Draping" : "Loading", slash ? slash + 1 : name,
+             is_known ? ": " : "", progress.what);
     return (struct tl_panel_progress){.what = text,
                                       .share = is_known ? (float)progress.share : -1,
                                       .hint = review->session ? "Esc stops it" : "Esc leaves"};
