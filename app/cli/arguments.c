@@ -62,7 +62,7 @@ static const struct flag flags_known[] = {
     {"--colourway", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.colourway", "NAME",
      "fabrics and colours of the scene or of a glTF file: `toile info FILE` lists them"},
     {"--preset", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.preset", "NAME|FILE",
-     "paper, draft, review or final"},
+     "paper, draft or review"},
     {"--method", TL_FLAGS_SCENE, FLAG_ASSIGN, 0, "light.method", "METHOD",
      "pem, lights, ao, ao_colour, unshadowed, reference or maps"},
     {"--size", TL_FLAGS_SCENE, FLAG_SIZE, 0, NULL, "WxH", "size of the image in pixels"},

@@ -113,6 +113,8 @@ static void add_mechanics(struct tl_card *card, const struct stated *stated)
     add(card, "Bending length, warp", bending_length_mm(now->bend_warp, now->areal_density), "mm", peirce);
     add(card, "Drape coefficient", 100 * card->drape, "%",
         card->is_at_rest ? "simulated: Cusick, ISO 9073-9" : "simulated: Cusick; not yet at rest");
+    add(card, "Shimmer from 1 m", 100 * card->shimmer, "%",
+        "drawn: five steps of parts of a pixel, against 8 x 8 finer");
     const struct tl_weave_params *weave = &card->settings.weave;
     if (weave->pictures[0])
         add(card, "Width of a repeat", (double)tl_weave_picture_mm(weave), "mm",

@@ -16,7 +16,7 @@
 #define TL_CARD_WIDTH_MM   210 /* A4 */
 #define TL_CARD_HEIGHT_MM  297
 
-#define TL_CARD_FIGURES 11
+#define TL_CARD_FIGURES 12
 struct tl_card_figure {
     const char *name, *unit;
     double value;
@@ -39,6 +39,7 @@ struct tl_card {
     double difference; /* CIEDE2000, between these */
     double drape;      /* Cusick's coefficient */
     int folds;
+    double shimmer;                     /* app/fabric/shimmer.h */
     bool is_at_rest;                    /* the disc */
     tl_image shadow;                    /* of the disc (assets/builtin/cusick.h) */
     tl_image swatch, close, ball, disc; /* U8 x3; empty where no page is written */

@@ -209,7 +209,7 @@ static void format_value(double value, char *out, size_t size)
 static void put_figures(const struct tl_card *card, cairo_t *cairo, double x)
 {
     double y = SWATCH_Y + 48;
-    for (int i = 0; i < card->figure_count; i++, y += 6.3) {
+    for (int i = 0; i < card->figure_count; i++, y += 5.8) {
         const struct tl_card_figure *figure = &card->figures[i];
         char value[32];
         format_value(figure->value, value, sizeof value);

@@ -1,5 +1,6 @@
 /* The views of a fabric card: two drapes, four pictures and a measured colour. */
 #include "app/fabric/card_internal.h"
+#include "app/fabric/shimmer.h"
 #include "app/scene/headless.h"
 #include "assets/builtin/cusick.h"
 #include "config/interrupt.h"
@@ -109,6 +110,7 @@ bool tl_card_draw_views(struct tl_card *card, bool with_pictures, tl_error *erro
         return false;
     measure_drape(&headless, card);
     bool done = measure_colour(&headless, card, error) &&
+                tl_shimmer_measure(&headless, &card->shimmer, error) &&
                 (!with_pictures || (draw_disc(&headless, card, error) && draw_ball(&headless, card, error)));
     tl_headless_release(&headless);
     return done;

@@ -197,7 +197,7 @@ static void test_refusals(void **state)
            "stretch_denim, trouser_twill, voile, jacket_polyester, tablecloth_polyester or "
            "a file name with its extension: did you mean satin?");
     refuse(NULL, "scene.preset=fast",
-           "--set: scene.preset: fast is no name known here: expected paper, draft, review, final or a file "
+           "--set: scene.preset: fast is no name known here: expected paper, draft, review or a file "
            "name with "
            "its extension");
     refuse(NULL, "scene.fabric=no.yaml", "no.yaml: no such file: check the path");
@@ -294,7 +294,7 @@ static void test_print_and_load_back(void **state)
 {
     (void)state;
     tl_error error = {0};
-    static const char *const assignments[] = {"scene.preset=final", "camera.target=[0.1, 1.25, -0.3]",
+    static const char *const assignments[] = {"scene.preset=draft", "camera.target=[0.1, 1.25, -0.3]",
                                               "camera.distance_m=2.7", "scene.clip=Walk: \"fast\""};
     assert_ok(load("skirt", assignments, TL_COUNT(assignments), &error), error);
     struct tl_settings before = settings;

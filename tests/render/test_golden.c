@@ -108,7 +108,7 @@ static void with_sun(struct tl_light_params *light)
     light->pem_size = 64;
 }
 
-/* As the presets review and final have it, with fewer regions. */
+/* As the preset review has it, with fewer regions. */
 static void by_rays(struct tl_light_params *light)
 {
     in_rounds(light);

@@ -43,7 +43,6 @@ static const struct tl_technique overall[] = {
      .once = true},
     {.page = "draft", .group = "presets", PRESET("draft"), .quick = true, .shown = true},
     {.page = "review", .group = "presets", PRESET("review"), .quick = true, .shown = true},
-    {.page = "final", .group = "presets", PRESET("final"), .shown = true, .once = true},
     {.page = "unshadowed", .group = "presets", PRESET("review", "light.method=unshadowed"), .shown = true},
     {BUDGET(8), .shown = true},
     {BUDGET(16), .shown = true},

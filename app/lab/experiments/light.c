@@ -34,13 +34,6 @@ static const struct tl_technique techniques[] = {
     {.table = "review by GL maps",
      SET("light.visibility=depth", "light.prefilter=slices", "light.composition=difference",
          "light.jitter=true", "light.refresh=0")},
-    {.table = "final",
-     .page = "final",
-     .picture = "PEMs by rays (final)",
-     .group = "presets",
-     .id = "D9",
-     PRESET("final"),
-     .shown = true},
 
     {.page = "paper N=6", .group = "regions, paper", PAPER("light.regions=6"), .quick = true},
     {.page = "paper N=24", .group = "regions, paper", PAPER("light.regions=24")},

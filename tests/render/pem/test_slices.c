@@ -148,7 +148,7 @@ static void slices_keep_their_regions_power(void **state)
     tl_cube_release(&cube);
 }
 
-/* The memory that `review` and `final` need for a garment with two glossinesses: 0.15 MB per region, a tenth
+/* The memory that `review` needs for a garment with two glossinesses: 0.15 MB per region, a tenth
  * of the chains of the paper. */
 static void slices_are_small(void **state)
 {
