@@ -219,7 +219,7 @@ static void put_figures(const struct tl_card *card, cairo_t *cairo, double x)
         put(cairo, RIGHT - 14, y, &(const struct text){.size = 2.9, .colour = BLACK, .is_right = true},
             value);
         put(cairo, RIGHT - 13, y, &plain, figure->unit);
-        put(cairo, x, y + 3.5, &(const struct text){.size = 2.0, .colour = GREY}, figure->source);
+        put(cairo, x, y + 3.1, &(const struct text){.size = 2.0, .colour = GREY}, figure->source);
     }
 }
 
