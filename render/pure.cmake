@@ -41,6 +41,7 @@ add_library(toile_light STATIC
   env/resample.c
   env/sun.c
   envmap/prefiltered_map.c
+  scene/lamp.c
   scene/view.c
   gpu/map_texture.c
   light/region_lights.c

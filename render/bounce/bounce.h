@@ -1,12 +1,11 @@
 /* Light that surfaces send on to each other, kept at vertices.
  *
  * Rays from a vertex, spread by the cosine, are followed to what they hit. The vertex keeps what arrives by
- * them: its mean, E_b / pi, which is what the diffuse lobe takes; and, for glossy lobes, how that light lies
- * about the vertex: a mean over the sphere and a gradient (the first two bands of spherical harmonics), in
- * one number, of the mean's colour. What is hit sends on what its own vertices received when they were traced
- * last: light of the environment, suns and lamps, what it emits, and, if all bounces are wanted, bounced
- * light, so that bounces add up from update to update. Its reflectance is that of a matt surface with the
- * material's mean colour, gloss included.
+ * them: its mean, E_b / pi, which is what the diffuse lobe takes; and for glossy lobes its gradient about the
+ * vertex, by channel: the second band of spherical harmonics. What is hit sends on what its own vertices
+ * received when they were traced last: light of the environment, suns and lamps, what it emits, and, if all
+ * bounces are wanted, bounced light, so that bounces add up from update to update. Its reflectance is that of
+ * a matt surface with the material's mean colour, gloss included.
  *
  *     environment at a hit = E(n, 1) sum of L over rays that meet nothing / sum of L over all rays
  *
@@ -17,8 +16,9 @@
  * further directions are averaged in until all have had their rounds. Open cloth counts as closed, and what a
  * surface lets through is not sent on.
  *
- * World space, metres. Lifetime: a plain struct that starts as {0} and owns its arrays. Threads: one call at
- * a time; OpenMP inside; results do not depend on the number of threads. */
+ * World space, metres; linear radiance, Rec. 709. Errors: none. Lifetime: a plain struct that starts as {0}
+ * and owns its arrays. Threads: one call at a time; OpenMP inside; results do not depend on the number of
+ * threads. */
 #ifndef TOILE_RENDER_BOUNCE_BOUNCE_H
 #define TOILE_RENDER_BOUNCE_BOUNCE_H
 
@@ -51,7 +51,6 @@ struct tl_bounce {
     float *weights;           /* ...: of the neighbours, while `shown` is made */
     uint64_t sky_revision;    /* of what `sky` was made from */
     tl_cube sky;              /* coarse */
-    size_t ray_count;         /* of the last update */
     bool is_done;             /* all wanted vertices have had their rounds */
 };
 
@@ -75,11 +74,13 @@ struct tl_bounce_request {
     bool at_once;                     /* every wanted vertex is traced, however long that takes */
 };
 
+/* Traces what is due. The first update of new shapes takes several at once, until what rays hit is known
+ * itself. */
 void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *request);
 void tl_bounce_release(struct tl_bounce *bounce);
 size_t tl_bounce_bytes(const struct tl_bounce *bounce);
 
-/* What arrives at a sample, between the vertices of its triangle. */
+/* What arrives at a sample of the last update, between the vertices of its triangle. */
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                                 const tl_sample *sample);
 /* Bounced light through the cosine lobe of exponent s about a unit direction: light that is even over the

@@ -1,7 +1,5 @@
 #include "render/local/lamp.h"
 
-#include "render/surfaces/ground.h"
-
 #include <math.h>
 
 static const char *const kind_names[] = {"none", "directional", "point", NULL};
@@ -60,25 +58,4 @@ size_t tl_lamps_lit(const tl_frame *frame, struct tl_lamp out[TL_LAMPS_MAX])
         if (tl_lamp_is_lit(&frame->lamps[i]))
             out[count++] = frame->lamps[i];
     return count;
-}
-
-struct tl_lamplight tl_lamp_at(const struct tl_lamp *lamp, vec3s point, vec3s otherwise)
-{
-    if (lamp->kind == TL_LAMP_DIRECTIONAL)
-        return (struct tl_lamplight){lamp->direction, INFINITY, lamp->irradiance};
-    vec3s towards = glms_vec3_sub(lamp->position, point);
-    float distance = glms_vec3_norm(towards), counted = fmaxf(distance, TL_LAMP_NEAREST_M);
-    return (struct tl_lamplight){
-        .direction = distance > 0 ? glms_vec3_divs(towards, distance) : otherwise,
-        .distance_m = distance,
-        .irradiance = glms_vec3_divs(lamp->irradiance, counted * counted),
-    };
-}
-
-float tl_lamp_ground_visibility(const struct tl_lamp *lamp, const struct tl_ground *ground, vec3s point,
-                                vec3s direction)
-{
-    if (!ground || (lamp->kind == TL_LAMP_POINT && lamp->position.y >= ground->centre.y))
-        return 1;
-    return tl_ground_visibility(ground, point, direction);
 }

@@ -21,7 +21,7 @@ static void trace_packet(const struct tl_lamp *lamp, const struct tl_trace *trac
         const tl_sample *sample = &samples[i];
         vec3s start = tl_sample_start(sample, ranges, offset_m);
         struct tl_lamplight light = tl_lamp_at(lamp, start, sample->smooth);
-        float left = tl_lamp_ground_visibility(lamp, ground, start, light.direction);
+        float left = tl_ground_visibility_to(ground, start, light.direction, light.distance_m);
         if (left <= 0 || glms_vec3_dot(sample->smooth, light.direction) <= 0)
             continue;
         vec3s way = is_point ? glms_vec3_sub(lamp->position, start) : light.direction;
@@ -56,7 +56,7 @@ vec3s tl_lamp_irradiance_at(const struct tl_lamp *lamp, const tl_trace *trace, c
 {
     vec3s start = trace ? tl_sample_start(sample, ranges, tl_trace_offset(trace)) : sample->point;
     struct tl_lamplight light = tl_lamp_at(lamp, start, sample->smooth);
-    float shown = trace ? tl_lamp_ground_visibility(lamp, ground, start, light.direction) : 1;
+    float shown = trace ? tl_ground_visibility_to(ground, start, light.direction, light.distance_m) : 1;
     *direction = light.direction;
     if (shown <= 0 || glms_vec3_dot(sample->smooth, light.direction) <= 0)
         return (vec3s){{0, 0, 0}};

@@ -8,10 +8,11 @@
 #include <math.h>
 
 /* Visibility of the lamp from `origin`, including transmission through open cloth. */
-static float visibility_from(const struct tl_reference_scene *scene, const struct tl_lamp *lamp, vec3s origin,
+static float visibility_from(const struct tl_reference_scene *scene, vec3s origin,
                              const struct tl_lamplight *light)
 {
-    float shown = tl_lamp_ground_visibility(lamp, scene->ground, origin, light->direction), seen[16];
+    float shown = tl_ground_visibility_to(scene->ground, origin, light->direction, light->distance_m),
+          seen[16];
     struct tl_ray_packet packet = {.count = 1, .to_m = light->distance_m};
     packet.origin_x[0] = origin.x, packet.origin_y[0] = origin.y, packet.origin_z[0] = origin.z;
     packet.direction_x[0] = light->direction.x;
@@ -60,7 +61,7 @@ vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl
         float behind = fmaxf(-glms_vec3_dot(point->normal, light.direction), 0) / (float)M_PI;
         vec3s sent = faces ? reflected(point, &brdfs, &frame, light.direction)
                            : glms_vec3_scale(point->layers.transmitted, behind);
-        float shown = visibility_from(scene, lamp, faces ? point->point : point->layers.behind, &light);
+        float shown = visibility_from(scene, faces ? point->point : point->layers.behind, &light);
         (*rays)++;
         for (int c = 0; c < 3; c++)
             sum.raw[c] = fminf(sum.raw[c] + shown * light.irradiance.raw[c] * sent.raw[c], FLT_MAX);

@@ -1,7 +1,7 @@
 /* Radiance that shading points send to their viewers: light of the environment (gather.h), and light that
  * other surfaces send on, bounce by bounce: path tracing in which every hit gathers the environment and the
- * lamps anew [Kajiya 1986]. All lobes of a point receive it: matt, glossy, coat, facets, fuzz, and what a
- * sheet transmits; behind open cloth a path continues with the share that the cloth lets through. Light of
+ * lamps for itself [Kajiya 1986]. All lobes of a point receive it: matt, glossy, coat, facets, fuzz, and what
+ * a sheet transmits; behind open cloth a path continues with the share that the cloth lets through. Light of
  * lamps at the points themselves is not included (lamps.h). Pure; threads: any. */
 #ifndef TOILE_RENDER_REFERENCE_RADIANCE_H
 #define TOILE_RENDER_REFERENCE_RADIANCE_H

@@ -1,4 +1,4 @@
-/* A lamp of a frame: world space, metres. */
+/* A lamp of a frame: world space, metres. Pure; threads: any. */
 #ifndef TOILE_RENDER_SCENE_LAMP_H
 #define TOILE_RENDER_SCENE_LAMP_H
 
@@ -16,5 +16,15 @@ struct tl_lamp {
                        */
 };
 #define TL_LAMPS_MAX 4
+
+/* The light of a lamp at a point. Points nearer than TL_LAMP_NEAREST_M are lit as at that distance. */
+#define TL_LAMP_NEAREST_M 1e-3f
+struct tl_lamplight {
+    vec3s direction;  /* towards the lamp, unit; `otherwise` where the two coincide */
+    float distance_m; /* infinite for DIRECTIONAL */
+    vec3s irradiance; /* on a surface that faces it */
+};
+/* Unshadowed light at `point`. */
+struct tl_lamplight tl_lamp_at(const struct tl_lamp *lamp, vec3s point, vec3s otherwise);
 
 #endif

@@ -122,12 +122,24 @@ float tl_ground_cover(const struct tl_ground *ground, float x, float z)
     return 1 - t * t * (3 - 2 * t);
 }
 
+float tl_ground_distance(const struct tl_ground *ground, vec3s origin, vec3s direction)
+{
+    bool meets = ground && direction.y < 0 && origin.y >= ground->centre.y;
+    return meets ? (origin.y - ground->centre.y) / -direction.y : INFINITY;
+}
+
+float tl_ground_visibility_to(const struct tl_ground *ground, vec3s point, vec3s direction, float distance_m)
+{
+    const float rounding = 1e-6f; /* of light that shines from the ground's plane */
+    float distance = tl_ground_distance(ground, point, direction);
+    if (distance == INFINITY || distance >= distance_m * (1 - rounding))
+        return 1;
+    return 1 - tl_ground_cover(ground, point.x + direction.x * distance, point.z + direction.z * distance);
+}
+
 float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction)
 {
-    if (!ground || direction.y >= 0 || point.y < ground->centre.y)
-        return 1;
-    float distance = (point.y - ground->centre.y) / -direction.y;
-    return 1 - tl_ground_cover(ground, point.x + direction.x * distance, point.z + direction.z * distance);
+    return tl_ground_visibility_to(ground, point, direction, INFINITY);
 }
 
 /* Weights of (x, z) in a triangle, seen from above; what rounding leaves outside, by 1e-4 at most, is put on
@@ -153,9 +165,9 @@ static bool weigh(const struct tl_ground *ground, uint32_t triangle, float x, fl
 bool tl_ground_meet(const struct tl_ground *ground, vec3s origin, vec3s direction, vec3s *point,
                     uint32_t *triangle, float weights[3])
 {
-    if (!ground || direction.y >= 0 || origin.y < ground->centre.y)
+    float distance = tl_ground_distance(ground, origin, direction);
+    if (distance == INFINITY)
         return false;
-    float distance = (origin.y - ground->centre.y) / -direction.y;
     *point = glms_vec3_add(origin, glms_vec3_scale(direction, distance));
     point->y = ground->centre.y;
     if (!(tl_ground_cover(ground, point->x, point->z) > 0))

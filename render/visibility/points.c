@@ -2,6 +2,7 @@
 
 #include "config/memory.h"
 #include "config/simd.h"
+#include "render/trace/spread.h"
 #include "render/visibility/cache_probes.h"
 #include "render/visibility/maps.h"
 #include "render/visibility/ray_origins.h"
@@ -305,16 +306,6 @@ static void resolve_taps(tl_points *points)
         }
 }
 
-/* Number i of a sequence that fills the square evenly [Roberts 2018, "The unreasonable effectiveness of
- * quasirandom sequences": R2], begun elsewhere for every region. Fixed point: exact at any i. */
-static vec2s jitter(uint32_t region, uint32_t i)
-{
-    uint32_t hash = (region + 1) * 0x9e3779b1u;
-    hash = (hash ^ hash >> 15) * 0x85ebca77u;
-    uint32_t x = hash + i * 3242174889u, y = (hash ^ hash >> 13) * 0xc2b2ae3du + i * 2447445414u;
-    return (vec2s){{(float)(x >> 8) / (float)(1 << 24), (float)(y >> 8) / (float)(1 << 24)}};
-}
-
 static vec3s *jitter_directions(const tl_points *points, const struct tl_points_request *request)
 {
     int count = request->regions->count, rays = request->params->rays;
@@ -322,7 +313,7 @@ static vec3s *jitter_directions(const tl_points *points, const struct tl_points_
 #pragma omp parallel for
     for (int i = 0; i < count; i++)
         for (int k = 0; k < rays; k++) {
-            vec2s at = jitter((uint32_t)i, points->frame * (uint32_t)rays + (uint32_t)k);
+            vec2s at = tl_spread((uint32_t)i, points->frame * (uint32_t)rays + (uint32_t)k);
             vec3s direction = tl_region_direction(request->regions, i, at.x, at.y);
             directions[i * rays + k] = tl_turn_direction(direction, request->environment_yaw);
         }

@@ -243,6 +243,20 @@ void test_scene_refresh(struct test_scene *scene)
     scene->frame.surface_count = scene->shape_count;
 }
 
+void test_scene_use_rays(struct test_scene *scene, int regions, int rounds)
+{
+    struct tl_light_params *light = &scene->settings.light;
+    light->lobe = TL_LOBE_DUAL;
+    light->cut = TL_CUT_SPHERE;
+    light->regions = regions;
+    light->visibility = TL_VISIBILITY_RAYS;
+    light->composition = TL_COMPOSE_RATIO;
+    light->sun = true;
+    light->jitter = true;
+    light->rounds = rounds;
+    scene->settings.image.supersample = 1;
+}
+
 tl_material *test_scene_add(struct test_scene *scene, struct test_shape shape)
 {
     assert_true(scene->shape_count < TEST_SHAPES_MAX);

@@ -70,6 +70,8 @@ struct test_scene {
 /* An empty scene with test_settings(width, height). Takes over the environment. */
 void test_scene_open(struct test_scene *scene, tl_environment environment, vec3s eye, vec3s target,
                      float fov_deg, int width, int height);
+/* Regions shadowed by rays, as the presets have it: two lobes, jitter, suns apart; one sample a pixel. */
+void test_scene_use_rays(struct test_scene *scene, int regions, int rounds);
 /* Adds a shape and takes it over. Returns its material, for editing. */
 tl_material *test_scene_add(struct test_scene *scene, struct test_shape shape);
 /* Rebuilds all surfaces after shapes were edited in place. */

@@ -389,6 +389,10 @@ static void up_is_view(struct tl_extreme_scene *scene)
     "3.14 times of it"
 #define MIRROR                                                                                               \
     "paper: the mirrored half may be black, beside half of PAPER; review: the cache lights what is mirrored"
+#define BOUNCED                                                                                              \
+    "paper: nothing bounces; review: two bands of bounced light, of which a surface that reflects more "     \
+    "than "                                                                                                  \
+    "it receives makes ever more"
 
 /* clang-format off: one extreme a line, or two. */
 const struct tl_extreme tl_extremes[] = {
@@ -418,6 +422,9 @@ const struct tl_extreme tl_extremes[] = {
     {"s = 200", .change = s_200, .bounds = {PAPER, 0.15}, .why = MIRROR},
     {"s = 1e6", .change = s_million, .bounds = {0.65, 0.20}, .why = MIRROR},
     {"g = 1", .change = mirror, .bounds = {0.65, 0.20}, .why = MIRROR},
+    {"light between pleats", .assignments = {"light.bounce=all"}, .bounds = {0.45, 0.22}, .why = BOUNCED},
+    {"light between mirrors", .assignments = {"light.bounce=all"}, .change = mirror, .bounds = {1.1, 0.90},
+     .why = BOUNCED},
     {"black material", .change = black_material, .bounds = {0, 0}, .why = "nothing is reflected"},
     {"grazing view", .change = grazing_view, .bounds = {TL_NO_WORSE, 0.12},
      .why = "a pixel spans many points of the floor"},

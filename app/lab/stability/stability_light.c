@@ -116,8 +116,8 @@ static bool picture(struct tl_variant_run *variant, const struct tl_extreme *ext
     struct tl_variant_run changed = *variant;
     struct tl_binding light = {&tl_light_options, &changed.settings.light};
     changed.settings.image.ground = scene->ground;
-    /* Its surfaces reflect more light than they receive, as no cloth does; that light grows with each bounce.
-     */
+    /* Its surfaces reflect more light than they receive, as no cloth does: what that does to light that
+     * bounces is said by extremes of its own, and would hide what all others are about. */
     changed.settings.light.bounce = TL_BOUNCE_OFF;
     for (size_t i = 0; i < TL_COUNT(extreme->assignments) && extreme->assignments[i]; i++)
         if (!tl_options_set_assignment(&light, 1, extreme->assignments[i], error))

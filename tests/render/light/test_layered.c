@@ -31,17 +31,8 @@ static void scene_open(struct test_scene *scene, test_radiance *radiance)
     sheet->specular = (vec3s){{0.2f, 0.2f, 0.2f}};
     ball->diffuse = (vec3s){{0.2f, 0.3f, 0.5f}};
     scene->frame.still = true;
-    struct tl_light_params *light = &scene->settings.light;
-    light->lobe = TL_LOBE_DUAL;
-    light->cut = TL_CUT_SPHERE;
-    light->regions = 96;
-    light->visibility = TL_VISIBILITY_RAYS;
-    light->composition = TL_COMPOSE_RATIO;
-    light->sun = true;
-    light->jitter = true;
-    light->rounds = 8;
-    light->fan = 7;
-    scene->settings.image.supersample = 1;
+    test_scene_use_rays(scene, 96, 8);
+    scene->settings.light.fan = 7;
     scene->settings.reference.strata = 512;
     scene->settings.reference.replicates = 4;
 }
