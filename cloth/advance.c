@@ -383,18 +383,27 @@ static void release_caught(tl_cloth *cloth, const tl_collider *collider)
                           &cloth->particles, cloth->contacts.slipped);
 }
 
+static bool is_torn(const tl_cloth *cloth, bool *torn)
+{
+    return tl_caught_tears(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
+                           cloth->particles.x, torn);
+}
+
 /* Cloth that a moving avatar has caught may have to go where other cloth is: it pushes that aside, in at most
  * so many rounds. */
-#define MAKE_WAY_ROUNDS 24
+#define MAKE_WAY_ROUNDS 100
 
-/* Moves what is inside the avatar out, and what is in its way aside. Returns whether some vertices cannot be
- * outside of the avatar and on their side of other cloth. */
-static bool make_way(tl_cloth *cloth, const struct tl_contact_params *contact, vec3d *from, bool *inside)
+/* Lets what is caught slip, moves what is inside the avatar out, and what is in the way of both aside, until
+ * nothing is inside and no edge is torn. Returns whether some vertices cannot be outside of the avatar and on
+ * their side of other cloth. */
+static bool make_way(tl_cloth *cloth, const tl_collider *collider, const struct tl_contact_params *contact,
+                     vec3d *from, bool *inside)
 {
     struct tl_particles *particles = &cloth->particles;
     const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
     bool any = true;
-    for (int round = 0; any && round < MAKE_WAY_ROUNDS; round++) {
+    for (int round = 0; round < MAKE_WAY_ROUNDS && (any || is_torn(cloth, NULL)); round++) {
+        release_caught(cloth, collider);
         tl_apart_push(&cloth->apart, &apart, particles);
         tl_apart_truncate(&cloth->apart, &apart, from, NULL, particles);
         memcpy(from, particles->x, particles->count * sizeof *from);
@@ -404,17 +413,15 @@ static bool make_way(tl_cloth *cloth, const struct tl_contact_params *contact, v
     return any;
 }
 
-/* Puts torn cloth where it slips to. Returns whether there is any. */
-static bool let_slip(tl_cloth *cloth, const struct tl_contact_params *contact, const bool *torn,
-                     const vec3d *to, bool *passes)
+/* Lets cloth that is torn all the same slip through other cloth. Returns whether there is any. */
+static bool let_slip(tl_cloth *cloth, const tl_collider *collider, const struct tl_contact_params *contact,
+                     bool *passes)
 {
-    bool any = false;
-    for (size_t i = 0; i < cloth->particles.count; i++)
-        if (torn[i]) {
-            cloth->particles.x[i] = to[i];
-            passes[i] = any = true;
-        }
-    return (any && tl_contacts_lift(&cloth->contacts, contact, &cloth->particles, passes)) || any;
+    if (!is_torn(cloth, passes))
+        return false;
+    release_caught(cloth, collider);
+    (void)tl_contacts_lift(&cloth->contacts, contact, &cloth->particles, passes);
+    return true;
 }
 
 /* Moves cloth outside that a step has left inside the avatar, and keeps it on its side of other cloth. What
@@ -424,25 +431,19 @@ static void keep_outside(tl_cloth *cloth, const tl_collider *collider,
 {
     struct tl_particles *particles = &cloth->particles;
     size_t count = particles->count;
-    bool moves = tl_collider_travel(collider) > 0, *torn = TL_NEW_ARRAY(bool, count),
-         *passes = TL_NEW_ARRAY(bool, count), pass = false;
-    vec3d *from = TL_NEW_ARRAY(vec3d, count), *to = TL_NEW_ARRAY(vec3d, count);
-    bool tears = moves && tl_caught_tears(&cloth->topology, (const vec2s(*)[3])cloth->rest,
-                                          cloth->shortest_edge, particles->x, torn);
+    bool *inside = TL_NEW_ARRAY(bool, count), passes = false;
+    vec3d *from = TL_NEW_ARRAY(vec3d, count);
     memcpy(from, particles->x, count * sizeof *from);
     release_caught(cloth, collider);
     tl_contacts_enforce(&cloth->contacts, contact, particles);
-    memcpy(to, particles->x, count * sizeof *to);
-    if (moves && cloth->contacts.caught_count > 0)
-        pass = make_way(cloth, contact, from, passes);
-    if (tears)
-        pass = let_slip(cloth, contact, torn, to, passes) || pass;
+    if (tl_collider_travel(collider) > 0 && cloth->contacts.caught_count > 0) {
+        passes = make_way(cloth, collider, contact, from, inside);
+        passes = let_slip(cloth, collider, contact, inside) || passes;
+    }
     const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
-    tl_apart_truncate(&cloth->apart, &apart, from, pass ? passes : NULL, particles);
-    free(torn);
-    free(passes);
+    tl_apart_truncate(&cloth->apart, &apart, from, passes ? inside : NULL, particles);
+    free(inside);
     free(from);
-    free(to);
 }
 
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance)

@@ -35,8 +35,11 @@ bool tl_caught_tears(const struct tl_topology *topology, const vec2s (*rest)[3],
             int next = (corner + 1) % 3;
             uint32_t a = topology->triangles[t][corner], b = topology->triangles[t][next];
             double length = (double)glms_vec2_distance(rest[t][corner], rest[t][next]);
-            if (length > shortest && vec3d_distance(x[a], x[b]) > TORN_STRETCH * length)
-                torn[a] = torn[b] = tears = true;
+            if (length > shortest && vec3d_distance(x[a], x[b]) > TORN_STRETCH * length) {
+                tears = true;
+                if (torn)
+                    torn[a] = torn[b] = true;
+            }
         }
     return tears;
 }

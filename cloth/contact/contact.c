@@ -262,7 +262,10 @@ bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_para
         struct tl_contact_cache *cache = &contacts->caches[i];
         if (!(particles->w[i] > 0) && !particles->driven[i])
             continue;
-        if (!cache->near && is_stale(cache, travel, step->phase, particles->x[i]))
+        bool slipped = contacts->slipped[i];
+        contacts->slipped[i] = false;
+        cache->near = cache->near && !slipped; /* as in enforce_one */
+        if (slipped || (!cache->near && is_stale(cache, travel, step->phase, particles->x[i])))
             query(contacts->collider, step->thickness_m, step->phase, particles->x[i], cache);
         if (!cache->near)
             continue;

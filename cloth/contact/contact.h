@@ -37,7 +37,7 @@ struct tl_contacts {
     double *allowed_depth; /* [particle_count] m by which a particle may still be deeper than the thickness:
                         its initial penetration less the part removed so far; HUGE_VAL: not measured yet */
     bool *slipped; /* [particle_count] moved by cloth/contact/caught.h, which ignores the planes; cleared by
-                tl_contacts_enforce */
+                tl_contacts_enforce and tl_contacts_lift */
     size_t caught_count; /* particles caught in this frame */
     uint64_t revision;   /* of the collider when the caches were filled */
     const tl_collider *collider;

@@ -106,12 +106,11 @@ static void walk(struct dressed *d, int frame)
         d->pose[i] = glms_vec3_lerp(model->mesh.positions[i], d->pose[i], part);
 }
 
-/* Arms that go through the skirt and into the legs leave it no place: a few pairs cross for some frames. When
- * all caught cloth was let through at once, 196 pairs did, in 5 of the 75 frames. */
+/* Arms go through the skirt and into the hips. When all caught cloth was let through other cloth at once, 196
+ * pairs crossed, in 5 of the 75 frames; when torn cloth was, 4 pairs in one of them. */
 static void test_walking(void **state)
 {
     (void)state;
-    const size_t most_crossings = 40;
     struct dressed d = {0};
     struct worst worst = {0};
     dress_walker(&d, params_defaults().edge_m);
@@ -121,7 +120,7 @@ static void test_walking(void **state)
         step(&d, &worst);
     }
     print_worst("walking", frames, &worst);
-    assert_true(worst.crossings < most_crossings);
+    assert_int_equal(worst.crossings, 0);
     double mean_height = 0;
     for (size_t i = 0; i < d.cloth->particles.count; i++)
         mean_height += d.cloth->particles.x[i].y / (double)d.cloth->particles.count;
