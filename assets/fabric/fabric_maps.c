@@ -225,6 +225,25 @@ static void read_planes(struct loading *loading)
     }
 }
 
+static bool is_one_everywhere(const tl_image *plane)
+{
+    bool is_one = plane->texels != NULL;
+    for (size_t i = 0; is_one && i < (size_t)plane->width * (size_t)plane->height; i++)
+        is_one = tl_image_floats(plane)[i] > 254.5f / 255;
+    return is_one;
+}
+
+/* Where nothing is hidden and all is metal, the two channels of a packed picture were left white: no cloth is
+ * metal throughout, and its albedo would be black. */
+static bool drop_empty_metalness(struct loading *loading)
+{
+    tl_image *metal = &loading->plane[TL_PICTURE_METALNESS];
+    bool is_empty = is_one_everywhere(metal) && is_one_everywhere(&loading->plane[TL_PICTURE_OCCLUSION]);
+    if (is_empty)
+        tl_image_release(metal);
+    return is_empty;
+}
+
 static void release_loading(struct loading *loading)
 {
     for (int use = 0; use < TL_PICTURE_USES; use++) {
@@ -410,6 +429,7 @@ bool tl_fabric_maps_load(const tl_fabric_file *file, struct tl_fabric_maps *out,
     if (decoded && loading.width > 0) {
         limit_size(&loading);
         read_planes(&loading);
+        bool drops = drop_empty_metalness(&loading);
         *out = (struct tl_fabric_maps){.width = loading.width,
                                        .height = loading.height,
                                        .colour = colour_of(&loading),
@@ -417,7 +437,8 @@ bool tl_fabric_maps_load(const tl_fabric_file *file, struct tl_fabric_maps *out,
                                        .normal = encoded_normals(&loading.plane[TL_PICTURE_NORMAL]),
                                        .height_map = heights_of(&loading),
                                        .opacity = opacity_of(&loading),
-                                       .specular = specular_of(&loading)};
+                                       .specular = specular_of(&loading),
+                                       .drops_metalness = drops};
     }
     release_loading(&loading);
     return decoded;

@@ -302,7 +302,7 @@ static void a_model_alone_can_be_moved(void **state)
     struct tl_settings settings;
     tl_error error = {0};
     assert_ok(tl_settings_load(&settings, &source, &error), error);
-    assert_string_equal(settings.scene.avatar, "none");
+    assert_string_equal(tl_settings_avatar(&settings.scene), "none");
     tl_session *session = tl_session_create(&settings, &error);
     assert_ok(session != NULL, error);
     assert_ok(tl_session_go_to(session, 2, &error), error);

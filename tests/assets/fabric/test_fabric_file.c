@@ -359,6 +359,7 @@ static void conventions_agree(void **state)
     assert_near(tl_image_floats(&gl.colour)[0], 1, 1e-6);
     assert_near(tl_image_floats(&gl.colour)[3], 0, 1e-6);
     assert_near(tl_image_bytes(&gl.specular)[3], 255, 0);
+    assert_false(gl.drops_metalness);
     assert_int_equal(unlink(SCRATCH "/a_NormalGL.png"), 0);
     assert_int_equal(unlink(SCRATCH "/a_orm.png"), 0);
     write_picture("a_gloss.png", (const uint8_t[]){204, 204, 204}, (const uint8_t[]){153, 153, 153}, 3);
@@ -371,6 +372,26 @@ static void conventions_agree(void **state)
         assert_near(tl_image_floats(&dx.gloss)[i], tl_image_floats(&gl.gloss)[i], 1e-6);
     tl_fabric_maps_release(&gl);
     tl_fabric_maps_release(&dx);
+}
+
+/* Cloth that is metal throughout, and hidden nowhere, is cloth whose channels nobody filled. */
+static void white_channels_are_dropped(void **state)
+{
+    (void)state;
+    tl_fabric_file file;
+    tl_error error;
+    struct tl_fabric_maps maps;
+    empty_scratch();
+    write_picture("a_color.png", (const uint8_t[]){255, 255, 255}, (const uint8_t[]){255, 255, 255}, 3);
+    write_picture("a_orm.png", (const uint8_t[]){255, 51, 255}, (const uint8_t[]){255, 102, 255}, 3);
+    assert_ok(tl_fabric_file_open(SCRATCH, &file, &error), error);
+    assert_ok(tl_fabric_maps_load(&file, &maps, &error), error);
+    assert_true(maps.drops_metalness);
+    assert_null(maps.specular.texels);
+    for (int i = 0; i < 6; i++)
+        assert_near(tl_image_floats(&maps.colour)[i], 1, 1e-6);
+    tl_fabric_maps_release(&maps);
+    tl_fabric_file_release(&file);
 }
 
 /* A picture of another size is averaged in linear light, texel by texel of the smaller raster. */
@@ -567,6 +588,7 @@ int main(void)
         cmocka_unit_test(the_measured_example_is_near_its_makers_figures),
         cmocka_unit_test(pictures_are_known_by_their_names),
         cmocka_unit_test(conventions_agree),
+        cmocka_unit_test(white_channels_are_dropped),
         cmocka_unit_test(sizes_are_made_equal),
         cmocka_unit_test(an_archive_is_as_its_folder),
         cmocka_unit_test(archives_cannot_lead_out),
