@@ -1,7 +1,6 @@
 #include "app/pictures/fabric_pictures.h"
 
 #include "assets/fabric/fabric_maps.h"
-#include "config/log.h"
 #include "config/memory.h"
 #include "render/detail/bake.h"
 
@@ -65,8 +64,6 @@ bool tl_fabric_pictures_make(const struct tl_weave_params *params, struct tl_fab
     if (!tl_fabric_file_open(params->pictures, &file, error))
         return false;
     bool loaded = tl_fabric_maps_load(&file, &maps, error);
-    if (loaded && maps.drops_metalness)
-        tl_warn("%s: metalness is not used: it and occlusion are white everywhere", params->pictures);
     if (loaded && maps.width > 0)
         make(params, &maps, out);
     else if (loaded)

@@ -27,6 +27,10 @@ bool tl_u3m_read(tl_fabric_file *file, const char *name, tl_error *error);
  * weight and thickness state is kept where `physics` has them already. */
 bool tl_fab_read(tl_fabric_file *file, const char *name, const char *prefix, tl_error *error);
 
+/* Whether a channel of a picture is 255 everywhere. False for a picture that cannot be read: who loads the
+ * maps says why. */
+bool tl_fabric_maps_are_white(const tl_fabric_file *file, const char *name, int channel);
+
 /* Finds texture maps among the store's files by their names. */
 bool tl_map_names_read(tl_fabric_file *file, tl_error *error);
 

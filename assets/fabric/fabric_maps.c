@@ -1,6 +1,7 @@
 #include "assets/fabric/fabric_maps.h"
 
 #include "assets/base/material.h"
+#include "assets/fabric/fabric_internal.h"
 #include "assets/image/image_file.h"
 #include "config/memory.h"
 
@@ -43,6 +44,24 @@ static const uint8_t *bytes_at(const tl_image *image, size_t texel)
 static uint8_t byte_of(const tl_image *image, size_t texel, int channel)
 {
     return bytes_at(image, texel)[image->channels < 3 ? 0 : channel];
+}
+
+static size_t texel_count(const tl_image *image)
+{
+    return (size_t)image->width * (size_t)image->height;
+}
+
+bool tl_fabric_maps_are_white(const tl_fabric_file *file, const char *name, int channel)
+{
+    tl_image image;
+    tl_error error;
+    if (!decode(file, name, false, &image, &error))
+        return false;
+    bool is_white = true;
+    for (size_t i = 0; is_white && i < texel_count(&image); i++)
+        is_white = byte_of(&image, i, channel) == 255;
+    tl_image_release(&image);
+    return is_white;
 }
 
 static float blend(float texel, float factor, int mode)
@@ -225,25 +244,6 @@ static void read_planes(struct loading *loading)
     }
 }
 
-static bool is_one_everywhere(const tl_image *plane)
-{
-    bool is_one = plane->texels != NULL;
-    for (size_t i = 0; is_one && i < (size_t)plane->width * (size_t)plane->height; i++)
-        is_one = tl_image_floats(plane)[i] > 254.5f / 255;
-    return is_one;
-}
-
-/* Where nothing is hidden and all is metal, the two channels of a packed picture were left white: no cloth is
- * metal throughout, and its albedo would be black. */
-static bool drop_empty_metalness(struct loading *loading)
-{
-    tl_image *metal = &loading->plane[TL_PICTURE_METALNESS];
-    bool is_empty = is_one_everywhere(metal) && is_one_everywhere(&loading->plane[TL_PICTURE_OCCLUSION]);
-    if (is_empty)
-        tl_image_release(metal);
-    return is_empty;
-}
-
 static void release_loading(struct loading *loading)
 {
     for (int use = 0; use < TL_PICTURE_USES; use++) {
@@ -254,11 +254,6 @@ static void release_loading(struct loading *loading)
 }
 
 /* ---- Maps ---- */
-
-static size_t texel_count(const tl_image *image)
-{
-    return (size_t)image->width * (size_t)image->height;
-}
 
 static float value_or(const tl_image *plane, size_t texel, float otherwise)
 {
@@ -429,7 +424,6 @@ bool tl_fabric_maps_load(const tl_fabric_file *file, struct tl_fabric_maps *out,
     if (decoded && loading.width > 0) {
         limit_size(&loading);
         read_planes(&loading);
-        bool drops = drop_empty_metalness(&loading);
         *out = (struct tl_fabric_maps){.width = loading.width,
                                        .height = loading.height,
                                        .colour = colour_of(&loading),
@@ -437,8 +431,7 @@ bool tl_fabric_maps_load(const tl_fabric_file *file, struct tl_fabric_maps *out,
                                        .normal = encoded_normals(&loading.plane[TL_PICTURE_NORMAL]),
                                        .height_map = heights_of(&loading),
                                        .opacity = opacity_of(&loading),
-                                       .specular = specular_of(&loading),
-                                       .drops_metalness = drops};
+                                       .specular = specular_of(&loading)};
     }
     release_loading(&loading);
     return decoded;

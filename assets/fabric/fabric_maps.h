@@ -19,10 +19,9 @@ struct tl_fabric_maps {
     tl_image colour; /* F32 x3, linear: diffuse albedo, occlusion in it; multiplies the surface's colour */
     tl_image gloss;  /* F32 x1: glossiness less its mean */
     tl_image normal; /* U8 x3, linear, +Y up */
-    tl_image height_map;  /* F32 x1: 0 deepest, 1 highest */
-    tl_image opacity;     /* U8 x4: white, with the cover as alpha */
-    tl_image specular;    /* U8 x3, sRGB: reflectance at normal incidence */
-    bool drops_metalness; /* its picture and that of occlusion are 1 everywhere: channels left white */
+    tl_image height_map; /* F32 x1: 0 deepest, 1 highest */
+    tl_image opacity;    /* U8 x4: white, with the cover as alpha */
+    tl_image specular;   /* U8 x3, sRGB: reflectance at normal incidence */
 };
 
 bool tl_fabric_maps_load(const tl_fabric_file *file, struct tl_fabric_maps *out, tl_error *error);

@@ -165,6 +165,27 @@ static void take(tl_fabric_file *file, const char *name, bool y_down)
                    y_down ? ", y down (DirectX)" : ""));
 }
 
+static void leave(struct tl_fabric_picture *picture)
+{
+    free(picture->file);
+    *picture = (struct tl_fabric_picture){0};
+}
+
+/* Where nothing is hidden and all is metal, nobody filled those channels: no cloth is metal throughout. */
+static bool leave_unfilled(tl_fabric_file *file, const char *name)
+{
+    struct tl_fabric_picture *occlusion = &file->pictures[TL_PICTURE_OCCLUSION],
+                             *metalness = &file->pictures[TL_PICTURE_METALNESS];
+    bool are_packed = occlusion->file && metalness->file && strcmp(occlusion->file, name) == 0 &&
+                      strcmp(metalness->file, name) == 0;
+    if (!are_packed || !tl_fabric_maps_are_white(file, name, occlusion->channel) ||
+        !tl_fabric_maps_are_white(file, name, metalness->channel))
+        return false;
+    leave(occlusion);
+    leave(metalness);
+    return true;
+}
+
 static void take_packed(tl_fabric_file *file, const char *name)
 {
     static const int uses[] = {TL_PICTURE_OCCLUSION, TL_PICTURE_ROUGHNESS, TL_PICTURE_METALNESS};
@@ -177,10 +198,11 @@ static void take_packed(tl_fabric_file *file, const char *name)
             use_picture(file, name, uses[channel], channel, NULL);
             taken++;
         }
-    list(file, name, taken > 0,
-         taken > 0
-             ? tl_copy_string("occlusion, roughness and metalness, where no picture of its own has them")
-             : tl_copy_string("not used: other pictures have occlusion, roughness and metalness"));
+    const char *use = taken == 0 ? "not used: other pictures have occlusion, roughness and metalness"
+                      : leave_unfilled(file, name)
+                          ? "roughness; occlusion and metalness are white throughout: not filled"
+                          : "occlusion, roughness and metalness, where no picture of its own has them";
+    list(file, name, taken > 0, tl_copy_string(use));
 }
 
 /* A picture whose name says nothing is the colour, if it is the only one of its kind. */

@@ -359,7 +359,6 @@ static void conventions_agree(void **state)
     assert_near(tl_image_floats(&gl.colour)[0], 1, 1e-6);
     assert_near(tl_image_floats(&gl.colour)[3], 0, 1e-6);
     assert_near(tl_image_bytes(&gl.specular)[3], 255, 0);
-    assert_false(gl.drops_metalness);
     assert_int_equal(unlink(SCRATCH "/a_NormalGL.png"), 0);
     assert_int_equal(unlink(SCRATCH "/a_orm.png"), 0);
     write_picture("a_gloss.png", (const uint8_t[]){204, 204, 204}, (const uint8_t[]){153, 153, 153}, 3);
@@ -374,24 +373,29 @@ static void conventions_agree(void **state)
     tl_fabric_maps_release(&dx);
 }
 
-/* Cloth that is metal throughout, and hidden nowhere, is cloth whose channels nobody filled. */
-static void white_channels_are_dropped(void **state)
+/* Cloth that is metal throughout, and hidden nowhere, has channels that nobody filled. Metal with hidden
+ * places stays metal, and a picture of metalness alone is meant. */
+static void unfilled_channels_are_left(void **state)
 {
     (void)state;
-    tl_fabric_file file;
+    static const struct {
+        uint8_t first[3], second[3];
+        bool is_metal;
+    } cases[] = {{{255, 51, 255}, {255, 102, 255}, false},
+                 {{255, 51, 255}, {254, 102, 255}, true},
+                 {{255, 51, 255}, {255, 102, 254}, true}};
     tl_error error;
-    struct tl_fabric_maps maps;
-    empty_scratch();
-    write_picture("a_color.png", (const uint8_t[]){255, 255, 255}, (const uint8_t[]){255, 255, 255}, 3);
-    write_picture("a_orm.png", (const uint8_t[]){255, 51, 255}, (const uint8_t[]){255, 102, 255}, 3);
-    assert_ok(tl_fabric_file_open(SCRATCH, &file, &error), error);
-    assert_ok(tl_fabric_maps_load(&file, &maps, &error), error);
-    assert_true(maps.drops_metalness);
-    assert_null(maps.specular.texels);
-    for (int i = 0; i < 6; i++)
-        assert_near(tl_image_floats(&maps.colour)[i], 1, 1e-6);
-    tl_fabric_maps_release(&maps);
-    tl_fabric_file_release(&file);
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        tl_fabric_file file;
+        empty_scratch();
+        write_picture("a_orm.png", cases[i].first, cases[i].second, 3);
+        assert_ok(tl_fabric_file_open(SCRATCH, &file, &error), error);
+        assert_non_null(file.pictures[TL_PICTURE_ROUGHNESS].file);
+        assert_int_equal(file.pictures[TL_PICTURE_METALNESS].file != NULL, cases[i].is_metal);
+        assert_int_equal(file.pictures[TL_PICTURE_OCCLUSION].file != NULL, cases[i].is_metal);
+        assert_int_equal(strstr(field_of(&file, "a_orm.png")->use, "not filled") == NULL, cases[i].is_metal);
+        tl_fabric_file_release(&file);
+    }
 }
 
 /* A picture of another size is averaged in linear light, texel by texel of the smaller raster. */
@@ -588,7 +592,7 @@ int main(void)
         cmocka_unit_test(the_measured_example_is_near_its_makers_figures),
         cmocka_unit_test(pictures_are_known_by_their_names),
         cmocka_unit_test(conventions_agree),
-        cmocka_unit_test(white_channels_are_dropped),
+        cmocka_unit_test(unfilled_channels_are_left),
         cmocka_unit_test(sizes_are_made_equal),
         cmocka_unit_test(an_archive_is_as_its_folder),
         cmocka_unit_test(archives_cannot_lead_out),
