@@ -1,6 +1,7 @@
 #include "app/pictures/fabric_pictures.h"
 
 #include "assets/fabric/fabric_maps.h"
+#include "config/log.h"
 #include "config/memory.h"
 #include "render/detail/bake.h"
 
@@ -64,6 +65,10 @@ bool tl_fabric_pictures_make(const struct tl_weave_params *params, struct tl_fab
     if (!tl_fabric_file_open(params->pictures, &file, error))
         return false;
     bool loaded = tl_fabric_maps_load(&file, &maps, error);
+    if (loaded && maps.lean_deg > 0)
+        tl_warn("%s: the picture of normals leans by %.0f degrees in the mean: it is levelled; take one from "
+                "its maker",
+                file.pictures[TL_PICTURE_NORMAL].file, (double)maps.lean_deg);
     if (loaded && maps.width > 0)
         make(params, &maps, out);
     else if (loaded)

@@ -344,8 +344,34 @@ static tl_image gloss_of(const struct loading *loading)
     return out;
 }
 
-static tl_image encoded_normals(const tl_image *own)
+/* Slopes of a repeat add up to none. A picture whose normals lean in the mean has lost its middle grey, so
+ * that its cloth would face elsewhere: the mean slope is taken out of it. Returns the angle in degrees, or 0
+ * for what a picture that is not quite periodic may have. */
+static float level(tl_image *normals)
 {
+    const float steepest = 0.05f, most_deg = 15;
+    double sums[2] = {0};
+    size_t count = texel_count(normals);
+    for (size_t i = 0; i < count; i++) {
+        const float *n = tl_image_floats(normals) + 3 * i;
+        for (int k = 0; k < 2; k++)
+            sums[k] += (double)(n[k] / fmaxf(n[2], steepest));
+    }
+    const float mean[2] = {(float)(sums[0] / (double)count), (float)(sums[1] / (double)count)};
+    float lean_deg = atanf(hypotf(mean[0], mean[1])) * 57.29578f;
+    if (!(lean_deg > most_deg))
+        return 0;
+    for (size_t i = 0; i < count; i++) {
+        float *n = tl_image_floats(normals) + 3 * i;
+        for (int k = 0; k < 2; k++)
+            n[k] -= mean[k] * fmaxf(n[2], steepest);
+    }
+    return lean_deg;
+}
+
+static tl_image encoded_normals(tl_image *own, float *lean_deg)
+{
+    *lean_deg = own->texels ? level(own) : 0;
     if (!own->texels)
         return (tl_image){0};
     tl_image out = tl_image_create(own->width, own->height, 3, TL_IMAGE_U8);
@@ -424,11 +450,14 @@ bool tl_fabric_maps_load(const tl_fabric_file *file, struct tl_fabric_maps *out,
     if (decoded && loading.width > 0) {
         limit_size(&loading);
         read_planes(&loading);
+        float lean_deg;
+        tl_image normal = encoded_normals(&loading.plane[TL_PICTURE_NORMAL], &lean_deg);
         *out = (struct tl_fabric_maps){.width = loading.width,
                                        .height = loading.height,
                                        .colour = colour_of(&loading),
                                        .gloss = gloss_of(&loading),
-                                       .normal = encoded_normals(&loading.plane[TL_PICTURE_NORMAL]),
+                                       .normal = normal,
+                                       .lean_deg = lean_deg,
                                        .height_map = heights_of(&loading),
                                        .opacity = opacity_of(&loading),
                                        .specular = specular_of(&loading)};
@@ -496,7 +525,8 @@ bool tl_fabric_maps_bake(const tl_fabric_file *file, enum tl_picture_use use, tl
     if (!read_plane(file, &file->pictures[use], read, kinds[use].channels, &plane, error))
         return false;
     if (use == TL_PICTURE_NORMAL) {
-        *out = encoded_normals(&plane);
+        float lean_deg;
+        *out = encoded_normals(&plane, &lean_deg);
     } else if (plane.texels) {
         *out = tl_image_create(plane.width, plane.height, plane.channels, TL_IMAGE_U8);
         for (size_t i = 0; i < texel_count(&plane) * (size_t)plane.channels; i++) {

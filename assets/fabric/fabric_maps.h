@@ -19,6 +19,7 @@ struct tl_fabric_maps {
     tl_image colour; /* F32 x3, linear: diffuse albedo, occlusion in it; multiplies the surface's colour */
     tl_image gloss;  /* F32 x1: glossiness less its mean */
     tl_image normal; /* U8 x3, linear, +Y up */
+    float lean_deg;  /* of the picture's normals in the mean, above 15, taken out of them; else 0 */
     tl_image height_map; /* F32 x1: 0 deepest, 1 highest */
     tl_image opacity;    /* U8 x4: white, with the cover as alpha */
     tl_image specular;   /* U8 x3, sRGB: reflectance at normal incidence */

@@ -398,6 +398,27 @@ static void unfilled_channels_are_left(void **state)
     }
 }
 
+/* Normals that all lean lost their middle grey: what is left of them rises and falls about the cloth. */
+static void leaning_normals_are_levelled(void **state)
+{
+    (void)state;
+    tl_fabric_file file;
+    tl_error error;
+    struct tl_fabric_maps maps;
+    empty_scratch();
+    write_picture("a_normal.png", (const uint8_t[]){47, 30, 255}, (const uint8_t[]){47, 50, 255}, 3);
+    assert_ok(tl_fabric_file_open(SCRATCH, &file, &error), error);
+    assert_ok(tl_fabric_maps_load(&file, &maps, &error), error);
+    const uint8_t *normal = tl_image_bytes(&maps.normal);
+    assert_near(maps.lean_deg, 44, 2);
+    assert_near(normal[0], 128, 2);
+    assert_near(normal[3], 128, 2);
+    assert_near(normal[1] + normal[4], 256, 3);
+    assert_true(normal[4] > normal[1] + 8);
+    tl_fabric_maps_release(&maps);
+    tl_fabric_file_release(&file);
+}
+
 /* A picture of another size is averaged in linear light, texel by texel of the smaller raster. */
 static void sizes_are_made_equal(void **state)
 {
@@ -593,6 +614,7 @@ int main(void)
         cmocka_unit_test(pictures_are_known_by_their_names),
         cmocka_unit_test(conventions_agree),
         cmocka_unit_test(unfilled_channels_are_left),
+        cmocka_unit_test(leaning_normals_are_levelled),
         cmocka_unit_test(sizes_are_made_equal),
         cmocka_unit_test(an_archive_is_as_its_folder),
         cmocka_unit_test(archives_cannot_lead_out),
