@@ -15,8 +15,9 @@ struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *posi
  * it. */
 struct tl_openings tl_sewn_openings_of_model(const tl_model *model);
 
-/* Whether a model has the shape of something worn: an opening that is a neck or a waist. Bodies are closed
- * there; what a rig or a clip moves is a figure. */
+/* Whether a model has the shape of something worn: an opening that is a neck or a waist, where bodies are
+ * closed; or it is one piece of cloth in whatever pose, with few and long openings. What a rig or a clip
+ * moves is a figure. */
 bool tl_sewn_is_worn(const tl_model *model);
 
 /* Pins the openings that `names` lists, with commas between them, in addition to the garment's own pins; "":

@@ -1,10 +1,14 @@
 /* format_files write FOLDER: writes a patch of cloth as the kinds of glTF file that take an encoder:
  * plain.glb, draco.glb, meshopt.glb and morph.glb, whose clip bends the patch by a morph target.
- * format_files coverage FILE.exr: prints the mean of its alpha, the share of the picture that is covered. */
+ * format_files coverage FILE.exr: prints the mean of its alpha, the share of the picture that is covered.
+ * format_files box FILE.exr: prints the lower and the upper corner, in metres, of the points of its garment
+ * (--aov). */
+#include "render/inspect/aovs.h"
 #include "tests/assets/gltf/packed.h"
 #include "tests/exr_channel.h"
 #include "tests/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,12 +77,40 @@ static int print_coverage(const char *path)
     return 0;
 }
 
+static int print_box(const char *path)
+{
+    static const char *const axes[] = {"P.x", "P.y", "P.z"};
+    float lower[3], upper[3];
+    int width, height;
+    float *garment = exr_read_channel(path, TL_AOV_GARMENT, &width, &height);
+    assert_non_null(garment);
+    for (int c = 0; c < 3; c++) {
+        float *values = exr_read_channel(path, axes[c], &width, &height);
+        assert_non_null(values);
+        lower[c] = INFINITY;
+        upper[c] = -INFINITY;
+        for (int i = 0; i < width * height; i++) {
+            if (!(garment[i] > 0))
+                continue;
+            lower[c] = fminf(lower[c], values[i]);
+            upper[c] = fmaxf(upper[c], values[i]);
+        }
+        free(values);
+    }
+    free(garment);
+    for (int c = 0; c < 6; c++)
+        printf("%.5f%s", (double)(c < 3 ? lower[c] : upper[c - 3]), c < 5 ? " " : "\n");
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     if (argc == 3 && strcmp(argv[1], "coverage") == 0)
         return print_coverage(argv[2]);
+    if (argc == 3 && strcmp(argv[1], "box") == 0)
+        return print_box(argv[2]);
     if (argc != 3 || strcmp(argv[1], "write") != 0 || chdir(argv[2]) != 0) {
-        fprintf(stderr, "usage: format_files write FOLDER | coverage FILE.exr\n");
+        fprintf(stderr, "usage: format_files write FOLDER | coverage FILE.exr | box FILE.exr\n");
         return 2;
     }
     write_files();

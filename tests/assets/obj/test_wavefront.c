@@ -204,7 +204,7 @@ static void written_objects_are_read_back(void **state)
     tl_garment_release(&skirt);
 }
 
-/* Counts as `grep -c` has them; boxes that are garments. */
+/* Counts as `grep -c` has them; boxes that are garments. The poses of one shirt have one unit. */
 static void real_garments(void **state)
 {
     (void)state;
@@ -220,6 +220,8 @@ static void real_garments(void **state)
         {"garments/diffcloth_skirt3448.obj", 1809, 3448, TL_UNITS_M, false},
         {"garments/diffcloth_tshirt1000-tri.obj", 1426, 2745, TL_UNITS_DM, false},
         {"sequences/tshirt_iter0/000.obj", 1426, 2745, TL_UNITS_DM, false},
+        {"sequences/tshirt_iter0/120.obj", 1426, 2745, TL_UNITS_DM, false},
+        {"sequences/tshirt_iter0/250.obj", 1426, 2745, TL_UNITS_DM, false},
     };
     for (size_t i = 0; i < sizeof garments / sizeof garments[0]; i++) {
         tl_model model = load_in(test_data(garments[i].file), TL_UNITS_AUTO);
