@@ -2,16 +2,9 @@
 
 #include "app/drape/drape.h"
 #include "app/drawn/board.h"
-#include "app/drawn/moving.h"
-#include "app/drawn/smoothed.h"
-#include "app/scene/camera.h"
-#include "app/scene/load.h"
-#include "app/scene/moving_light.h"
-#include "app/scene/playback.h"
+#include "app/scene/session_internal.h"
 #include "app/scene/tuck.h"
-#include "assets/avatar.h"
 #include "cloth/contact/crossings.h"
-#include "cloth/energy/strain.h"
 #include "cloth/mesh/topology.h"
 #include "config/file.h"
 #include "config/interrupt.h"
@@ -24,54 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct tl_session {
-    struct tl_settings settings;
-
-    struct tl_moving_light light;
-
-    /* On the heap, because the cloth, the meshes that move and the materials point to them, and a session's
-     * contents move when it takes over another's. */
-    tl_avatar *avatar;   /* NULL: none */
-    tl_garment *garment; /* NULL: none */
-
-    int clip; /* -1: rest pose */
-    struct tl_moving body;
-    float *tucked; /* by how much the drawn body is moved inwards, under a garment as authored; or NULL */
-
-    tl_cloth *cloth; /* NULL: no garment, or one that is played back */
-    bool authored;   /* the cloth starts as the garment's file has it */
-    bool only_sewn;  /* it starts as it is when its seams have closed */
-    struct tl_scene_standing standing;
-    tl_collider *collider;
-    tl_playback *playback; /* NULL: the garment is simulated */
-    struct tl_moving dress;
-    struct tl_moving board; /* made when first asked for; empty: not yet, or there is no pattern */
-
-    struct {
-        bool wanted;        /* whatever the image shows */
-        tl_strains *rest;   /* made when first asked for */
-        vec3s *of_vertices; /* of the garment */
-        uint64_t revision;  /* dress.motion_revision that they are of; 0: none */
-    } strain;
-
-    struct {
-        bool *triangles;   /* of the garment, those that cross others; made when first asked for */
-        uint64_t revision; /* dress.motion_revision that they are of; 0: none */
-    } crossed;
-    struct tl_smoothed smoothed; /* made when it is first shown */
-
-    struct tl_appearance appearance;
-    uint64_t appearance_revision; /* of meshes and materials; the renderer sees another one as new */
-    uint64_t appearances_made;    /* the highest revision so far */
-    struct tl_spare_appearance spares[TL_SPARE_APPEARANCES];
-
-    int frame;
-    struct tl_box framed; /* what the camera frames, at frame 0 */
-    tl_surface surfaces[TL_SESSION_SURFACES];
-    size_t surface_count;
-    struct tl_lamp lamps[2];
-};
 
 static void pose_avatar(tl_session *session, double time_s)
 {
@@ -201,8 +146,7 @@ static bool begin_playback(tl_session *session, tl_error *error)
     return posed;
 }
 
-/* The position of a sequence of environments at frame `number`, in the sequence's own frames. */
-static double light_position(const struct tl_settings *settings, int number)
+double tl_session_light_position(const struct tl_settings *settings, int number)
 {
     return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;
 }
@@ -254,13 +198,6 @@ bool tl_session_make_appearance(const struct tl_session_models *models, const st
     return tl_appearance_make(settings, models->garment, models->avatar, out, error);
 }
 
-static bool make_appearance(const tl_session *session, const struct tl_settings *settings,
-                            struct tl_appearance *out, tl_error *error)
-{
-    const struct tl_session_models models = tl_session_models(session);
-    return tl_session_make_appearance(&models, settings, out, error);
-}
-
 /* Checks the files before anything is made: the built-in form alone takes half a second. */
 static bool check_files(const struct tl_scene_params *scene, tl_error *error)
 {
@@ -283,7 +220,8 @@ static bool load_all(tl_session *session, tl_error *error)
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");
-    if (!make_appearance(session, settings, &session->appearance, error))
+    const struct tl_session_models models = tl_session_models(session);
+    if (!tl_session_make_appearance(&models, settings, &session->appearance, error))
         return false;
     session->appearance_revision = ++session->appearances_made;
     if (session->avatar)
@@ -350,7 +288,8 @@ void tl_session_destroy(tl_session **handle)
 /* Poses all that follows the clock alone. */
 static bool pose_at(tl_session *session, int number, tl_error *error)
 {
-    if (!tl_moving_light_follow(&session->light, light_position(&session->settings, number), error))
+    if (!tl_moving_light_follow(&session->light, tl_session_light_position(&session->settings, number),
+                                error))
         return false;
     /* Without a clip the avatar stands still: its normals and the collider need no update. */
     if (session->clip >= 0)
@@ -441,131 +380,6 @@ int tl_session_last_frame(const tl_session *session)
 int tl_session_frame_number(const tl_session *session)
 {
     return session->frame;
-}
-
-bool tl_session_needs_scene(const struct tl_settings *old, const struct tl_settings *new)
-{
-    return tl_settings_differ(old, new, (struct tl_option_filter){.any_of = TL_AFFECTS_SCENE});
-}
-
-bool tl_session_needs_light(const struct tl_settings *old, const struct tl_settings *new)
-{
-    return tl_settings_differ(old, new, (struct tl_option_filter){.any_of = TL_AFFECTS_ENVIRONMENT});
-}
-
-bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_settings *new)
-{
-    struct tl_settings same = *new;
-    tl_appearance_take(old, &same);
-    return !tl_settings_equal(&same, new);
-}
-
-/* Copies the colourways with the garment: they belong to it. */
-void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings)
-{
-    const struct tl_option_filter colourways = {.any_of = TL_AFFECTS_GARMENT};
-    const struct tl_option_filter scene = {.any_of = TL_AFFECTS_SCENE | TL_AFFECTS_ENVIRONMENT};
-    if (strcmp(settings->scene.garment, kept->scene.garment) != 0) {
-        tl_settings_take(kept, settings, colourways);
-        settings->colourways = kept->colourways;
-    }
-    tl_settings_take(kept, settings, scene);
-}
-
-/* Adds the old revisions to the new ones: they go on rising, so the renderer uploads everything again. */
-void tl_session_replace(tl_session *session, tl_session **made)
-{
-    tl_session *fresh = *made;
-    fresh->light.revision += session->light.revision;
-    fresh->appearances_made += session->appearances_made + 1;
-    fresh->appearance_revision = fresh->appearances_made;
-    fresh->body.motion_revision += session->body.motion_revision;
-    fresh->dress.motion_revision += session->dress.motion_revision;
-    fresh->strain.wanted = session->strain.wanted;
-    tl_session swap = *session;
-    *session = *fresh;
-    *fresh = swap;
-    tl_session_destroy(made);
-}
-
-void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name)
-{
-    made->revision += session->light.revision;
-    tl_moving_light_release(&session->light);
-    session->light = *made;
-    *made = (struct tl_moving_light){0};
-    snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
-}
-
-bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
-{
-    tl_session *fresh = tl_session_create(settings, error);
-    if (!fresh)
-        return false;
-    tl_session_replace(session, &fresh);
-    return true;
-}
-
-/* Changes environment and cloth without loading the scene again. */
-static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
-{
-    double position = light_position(settings, session->frame);
-    const char *environment = settings->scene.environment;
-    if (tl_session_needs_light(&session->settings, settings)
-            ? !tl_moving_light_open(&session->light, environment, position, error)
-            : !tl_moving_light_follow(&session->light, position, error))
-        return false;
-    /* tl_cloth_set discards the contacts, so it is called only when one of its options has changed. */
-    bool same_cloth = !tl_settings_differ(&session->settings, settings,
-                                          (struct tl_option_filter){.any_of = TL_AFFECTS_CLOTH});
-    const struct tl_cloth_fabric fabric = tl_settings_fabric(settings);
-    return !session->cloth || same_cloth || tl_cloth_set(session->cloth, &fabric, &settings->cloth, error);
-}
-
-/* Exchanges the present appearance for a kept one. */
-static void exchange_appearance(tl_session *session, struct tl_spare_appearance *spare)
-{
-    const struct tl_spare_appearance taken = *spare;
-    spare->appearance = (struct tl_appearance){0};
-    memmove(session->spares + 1, session->spares, (size_t)(spare - session->spares) * sizeof *spare);
-    session->spares[0] = (struct tl_spare_appearance){true, session->appearance, session->appearance_revision,
-                                                      session->settings};
-    session->appearance = taken.appearance;
-    session->appearance_revision = taken.revision;
-}
-
-void tl_session_keep_appearance(tl_session *session, const struct tl_settings *made_of,
-                                struct tl_appearance *made)
-{
-    if (tl_appearance_is_same(&session->settings, made_of) || tl_spare_find(session->spares, made_of))
-        tl_appearance_release(made);
-    else
-        tl_spare_add(session->spares, made_of, made, ++session->appearances_made);
-    *made = (struct tl_appearance){0};
-}
-
-bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
-{
-    if (tl_session_needs_scene(&session->settings, settings))
-        return tl_session_restart(session, settings, error);
-    struct tl_appearance appearance = {0};
-    bool is_new = !tl_appearance_is_same(&session->settings, settings);
-    struct tl_spare_appearance *spare = tl_spare_find(session->spares, settings);
-    if (is_new && !spare && !make_appearance(session, settings, &appearance, error))
-        return false;
-    if (!change_in_place(session, settings, error)) {
-        tl_appearance_release(&appearance);
-        return false;
-    }
-    if (is_new && spare) {
-        exchange_appearance(session, spare);
-    } else if (is_new) {
-        tl_spare_add(session->spares, &session->settings, &session->appearance, session->appearance_revision);
-        session->appearance = appearance;
-        session->appearance_revision = ++session->appearances_made;
-    }
-    session->settings = *settings;
-    return true;
 }
 
 const struct tl_settings *tl_session_settings(const tl_session *session)

@@ -97,18 +97,24 @@ bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_
  * of the third. Errors: none. Threads: pure. */
 void tl_session_keep_scene(const struct tl_settings *kept, struct tl_settings *settings);
 
-/* Gives the session the contents of *made, with revisions above its own, so that the renderer uploads
- * everything.
+/* Raises the revisions of a new session above those of the one whose place it takes, so that a renderer that
+ * has drawn that one uploads everything.
  * Errors: none.
- * Lifetime: takes *made and nulls it; ends all that was borrowed from either.
- * Threads: the session's; no other thread may read the session's models. */
-void tl_session_replace(tl_session *session, tl_session **made);
+ * Lifetime: either stays its owner's; a renderer may go on drawing the old one while it lives.
+ * Threads: the sessions'. */
+void tl_session_succeed(tl_session *fresh, const tl_session *old);
 
 /* Gives the session another environment, and its name in scene.environment.
  * Errors: none.
  * Lifetime: takes the contents of *made and empties it; ends the last tl_session_frame.
  * Threads: the session's. */
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
+
+/* Exchanges the environments of two sessions, and the options that decide them.
+ * Errors: none.
+ * Lifetime: ends the last tl_session_frame of either.
+ * Threads: the sessions'. */
+void tl_session_exchange_light(tl_session *session, tl_session *other);
 
 /* The models of the scene; NULL where the scene has none. Appearances are made of them and of settings alone.
  */

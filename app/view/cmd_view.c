@@ -9,6 +9,7 @@
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_memory.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_wipe.h"
 #include "app/view/review/rhythm.h"
 #include "app/view/review_begin.h"
 #include "app/view/review_input.h"
@@ -180,7 +181,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
 static void close_review(struct tl_review *review)
 {
     tl_review_save_state(review);
-    tl_renderer_destroy(&review->wipe.renderer);
+    tl_review_end_comparison(review);
     tl_renderer_destroy(&review->renderer);
     tl_panel_destroy(&review->panel);
     tl_gpu_destroy(&review->gpu);

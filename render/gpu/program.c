@@ -214,10 +214,16 @@ bool tl_program_reload(tl_program *program, tl_error *error)
     return true;
 }
 
+/* A program in use would go only when another is used, and who restores it then, as ImGui does, fails. */
 void tl_program_destroy(tl_program *program)
 {
-    if (program->id)
+    GLint used = 0;
+    if (program->id) {
+        glGetIntegerv(GL_CURRENT_PROGRAM, &used);
+        if ((GLuint)used == program->id)
+            glUseProgram(0);
         glDeleteProgram(program->id);
+    }
     *program = (tl_program){0};
 }
 

@@ -11,7 +11,7 @@
  *     review_move    turntable, glides to saved views, camera paths
  *     review_hand    the pointer's point on the garment, and the hand that pulls it
  *     review_place   units, axes and place of the files
- *     review_wipe    two appearances side by side
+ *     review_wipe    two appearances, or two drapes, side by side
  *     review_read    the legend of the image's colours, and the values under the pointer
  *     review_keep    state that is kept between runs; files that are reloaded when they are edited
  *     review_memory  the process's memory
@@ -70,11 +70,13 @@ struct tl_review_path {
     double key_due_s; /* while recording: time of the next key */
 };
 
-/* Appearance A, on the left, is what the settings were; B, on the right, is what they are. */
+/* A, on the left, is what the settings were; B, on the right, is what they are. */
 struct tl_review_wipe {
-    tl_renderer *renderer;       /* of A; NULL: nothing is compared */
-    struct tl_settings settings; /* of A */
-    float place;                 /* of the line between A and B, as a share of the view's width */
+    tl_renderer *renderer;         /* of A; NULL: nothing is compared */
+    struct tl_settings settings;   /* of A */
+    tl_session *session;           /* of A, once B is another drape or scene; NULL: A is drawn from B's */
+    struct tl_cloth_fabric draped; /* that the garment of A's session hangs in */
+    float place;                   /* of the line between A and B, as a share of the view's width */
 };
 
 /* How the file of a garment or a body was read; kept: what the user has accepted. */

@@ -162,14 +162,13 @@ static void step(struct tl_review *review)
     review->times.cloth = 1e3 * (tl_clock_s() - now_s);
 }
 
-static bool draw_with(struct tl_review *review, tl_renderer *renderer, const struct tl_settings *settings,
-                      tl_error *error)
+static bool draw_b(struct tl_review *review, const struct tl_settings *settings, tl_error *error)
 {
     if (!tl_session_apply(review->session, settings, error))
         return false;
     tl_frame frame = tl_session_frame(review->session);
     const struct tl_render_settings render = tl_settings_render(settings);
-    return tl_renderer_draw(renderer, &frame, &render, error);
+    return tl_renderer_draw(review->renderer, &frame, &render, error);
 }
 
 /* Both appearances share the budget. */
@@ -228,11 +227,11 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     if (review->wipe.renderer) {
         const struct tl_settings other = tl_review_settings_a(review, settings),
                                  a = tl_quality_apply(levels, &other);
-        if (!draw_with(review, review->wipe.renderer, &a, error))
+        if (!tl_review_draw_a(review, &a, error))
             return false;
         review->times.began_s += tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
     }
-    if (!draw_with(review, review->renderer, &b, error))
+    if (!draw_b(review, &b, error))
         return false;
     review->times.draw = 1e3 * (tl_clock_s() - started_s);
     review->drawn_count++;
@@ -269,7 +268,7 @@ static bool redraw(struct tl_review *review, enum image_time time, tl_error *err
         if (tl_interrupted())
             return false;
         tl_review_report_error(review, error);
-        tl_renderer_destroy(&review->wipe.renderer);
+        tl_review_end_comparison(review);
         review->good.image.width = width;
         review->good.image.height = height;
         review->wanted = review->good;

@@ -1,6 +1,7 @@
 #include "app/view/review/review_load.h"
 
 #include "app/view/review/review_keep.h"
+#include "app/view/review/review_move.h"
 #include "app/view/review/review_place.h"
 #include "app/view/review/review_wipe.h"
 #include "config/interrupt.h"
@@ -99,12 +100,10 @@ static bool hangs(const struct tl_review *review)
 }
 
 /* Whether the garment hangs in another fabric than it was draped in: it would hang otherwise. Cloth that
- * moves takes a new fabric up as it moves on; of two appearances that are compared only one could hang as it
- * should. */
+ * moves takes a new fabric up as it moves on. */
 static bool wants_drape(const struct tl_review *review)
 {
-    return hangs(review) && !review->wipe.renderer &&
-           memcmp(&review->draped, &review->wanted.fabric, sizeof review->draped) != 0;
+    return hangs(review) && memcmp(&review->draped, &review->wanted.fabric, sizeof review->draped) != 0;
 }
 
 static enum tl_load what_to_load(const struct tl_review *review)
@@ -153,6 +152,19 @@ static void take_lights(struct tl_review *review, struct tl_loaded *loaded)
             tl_renderer_take_prepared(renderers[i], &loaded->prepared[i], revision);
 }
 
+/* A comparison keeps the old one, if it has none, and its view: another drape may be framed otherwise. */
+static void take_session(struct tl_review *review, tl_session **loaded)
+{
+    tl_session *old = review->session;
+    if (review->wipe.renderer)
+        tl_review_fix_camera(review);
+    tl_session_succeed(*loaded, old);
+    review->session = *loaded;
+    *loaded = NULL;
+    tl_review_keep_for_a(review, &old);
+    tl_session_destroy(&old);
+}
+
 static void finish(struct tl_review *review)
 {
     enum tl_load kind = tl_loader_kind(review->loader);
@@ -161,8 +173,6 @@ static void finish(struct tl_review *review)
     struct tl_loaded loaded;
     tl_error error;
     bool is_loaded = tl_loader_take(&review->loader, &loaded, &error);
-    if (kind == TL_LOAD_SCENE && (is_loaded || review->drapes_again))
-        review->draped = made_of.fabric; /* what cannot be draped is not tried again */
     if (!is_loaded) {
         keep_present(review, &review->wanted);
         tl_review_report_error(review, &error);
@@ -171,7 +181,7 @@ static void finish(struct tl_review *review)
         take_lights(review, &loaded);
         review->loaded_appearance = made_of;
     } else if (kind == TL_LOAD_SCENE) {
-        tl_session_replace(review->session, &loaded.session);
+        take_session(review, &loaded.session);
         take_lights(review, &loaded);
         if (review->drapes_again)
             tl_info("view: %s hangs in %s", made_of.scene.garment, made_of.scene.fabric);
@@ -183,6 +193,8 @@ static void finish(struct tl_review *review)
         tl_session_replace_light(review->session, &loaded.light, environment);
         take_lights(review, &loaded);
     }
+    if (kind == TL_LOAD_SCENE && (is_loaded || review->drapes_again))
+        review->draped = made_of.fabric; /* what cannot be draped is not tried again */
     tl_loaded_release(&loaded);
 }
 

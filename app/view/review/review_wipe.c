@@ -9,12 +9,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A loader of an appearance reads the models of a session. */
+static void cancel_appearance(struct tl_review *review)
+{
+    if (review->loader && tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE)
+        tl_loader_cancel(&review->loader);
+}
+
+void tl_review_end_comparison(struct tl_review *review)
+{
+    if (review->wipe.session)
+        cancel_appearance(review);
+    tl_renderer_destroy(&review->wipe.renderer);
+    tl_session_destroy(&review->wipe.session);
+}
+
 void tl_review_compare(struct tl_review *review)
 {
     struct tl_review_wipe *wipe = &review->wipe;
     tl_error error;
     if (wipe->renderer) {
-        tl_renderer_destroy(&wipe->renderer);
+        tl_review_end_comparison(review);
         tl_review_report(review, "comparison ended");
         review->redraws = 1;
         return;
@@ -32,7 +47,33 @@ void tl_review_compare(struct tl_review *review)
     wipe->place = 0.5f;
     review->image_is_old = true;
     tl_review_report(review,
-                     "compares: A, left, keeps its appearance; change fabric, preset or options for B");
+                     "compares: A, left, stays as it is; change fabric, preset or options for B, which "
+                     "is draped in its own fabric");
+}
+
+void tl_review_keep_for_a(struct tl_review *review, tl_session **left)
+{
+    struct tl_review_wipe *wipe = &review->wipe;
+    if (!wipe->renderer || wipe->session)
+        return;
+    wipe->session = *left;
+    wipe->draped = review->draped;
+    *left = NULL;
+    tl_info("view: A keeps its drape");
+}
+
+/* The sessions change places with the renderers that have drawn them; the light stays with B's. */
+static void swap_sessions(struct tl_review *review)
+{
+    struct tl_review_wipe *wipe = &review->wipe;
+    tl_session *session_b = review->session;
+    const struct tl_cloth_fabric draped_b = review->draped;
+    cancel_appearance(review);
+    tl_session_exchange_light(review->session, wipe->session);
+    review->session = wipe->session;
+    review->draped = wipe->draped;
+    wipe->session = session_b;
+    wipe->draped = draped_b;
 }
 
 void tl_review_swap(struct tl_review *review)
@@ -48,9 +89,37 @@ void tl_review_swap(struct tl_review *review)
         review->renderer; /* each appearance keeps the renderer that has its resources */
     review->renderer = review->wipe.renderer;
     review->wipe.renderer = renderer_b;
+    if (review->wipe.session)
+        swap_sessions(review);
     review->loaded_appearance = review->wanted;
     review->changed = true;
     tl_review_report(review, "A and B exchanged");
+}
+
+/* A's own session shows what it holds in B's view: its camera, environment and lamps. */
+bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, tl_error *error)
+{
+    const struct tl_review_wipe *wipe = &review->wipe;
+    const struct tl_render_settings render = tl_settings_render(settings);
+    struct tl_settings own = *settings;
+    if (!wipe->session) {
+        if (!tl_session_apply(review->session, settings, error))
+            return false;
+        const tl_frame shared = tl_session_frame(review->session);
+        return tl_renderer_draw(wipe->renderer, &shared, &render, error);
+    }
+    tl_settings_take(tl_session_settings(wipe->session), &own,
+                     (struct tl_option_filter){.any_of = TL_AFFECTS_ENVIRONMENT});
+    int number = tl_session_frame_number(review->session);
+    if (number != tl_session_frame_number(wipe->session) && !tl_session_go_to(wipe->session, number, error))
+        return false;
+    if (!tl_session_apply(wipe->session, &own, error))
+        return false;
+    tl_frame frame = tl_session_frame(review->session);
+    const tl_frame a = tl_session_frame(wipe->session);
+    frame.surfaces = a.surfaces;
+    frame.surface_count = a.surface_count;
+    return tl_renderer_draw(wipe->renderer, &frame, &render, error);
 }
 
 void tl_review_move_wipe(struct tl_review *review, float place)
@@ -67,8 +136,15 @@ int tl_review_wipe_column(const struct tl_review *review, int width)
 
 struct tl_settings tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings)
 {
+    const struct tl_settings *a = &review->wipe.settings;
     struct tl_settings result = *settings;
-    tl_appearance_take(&review->wipe.settings, &result);
+    if (review->wipe.session) {
+        tl_settings_take(a, &result,
+                         (struct tl_option_filter){.any_of = TL_AFFECTS_SCENE | TL_AFFECTS_GARMENT});
+        result.colourways = a->colourways;
+        result.fabric = a->fabric;
+    }
+    tl_appearance_take(a, &result);
     return result;
 }
 
@@ -79,12 +155,13 @@ static const char *short_name(const char *name)
 }
 
 static void label(char *out, size_t size, const char *side, const struct tl_scene_params *scene,
-                  const char *difference)
+                  bool has_own_drape, const char *difference)
 {
     bool has_colourway = scene->colourway[0] != '\0', differs = difference[0] != '\0';
-    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%.120s%s", side, short_name(scene->fabric),
+    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%s%.120s%s", side, short_name(scene->fabric),
              has_colourway ? "colourway " : "", scene->colourway, has_colourway ? ", " : "",
-             short_name(scene->preset), differs ? " (" : "", difference, differs ? ")" : "");
+             short_name(scene->preset), has_own_drape ? ", its own drape" : "", differs ? " (" : "",
+             difference, differs ? ")" : "");
 }
 
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
@@ -92,7 +169,8 @@ void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, siz
     const struct tl_settings *now = &review->good;
     struct tl_settings same = tl_review_settings_a(review, now);
     char *difference = tl_history_describe(&same, now);
-    label(a, size, "A", &same.scene, "");
-    label(b, size, "B", &now->scene, strcmp(difference, "nothing") == 0 ? "the same" : difference);
+    bool has_own = review->wipe.session != NULL;
+    label(a, size, "A", &same.scene, has_own, "");
+    label(b, size, "B", &now->scene, has_own, strcmp(difference, "nothing") == 0 ? "the same" : difference);
     free(difference);
 }
