@@ -84,6 +84,7 @@ void tl_review_swap(struct tl_review *review)
     }
     struct tl_settings b = review->wanted;
     review->wanted = tl_review_settings_a(review, &b);
+    review->wanted.fabric = review->wipe.settings.fabric;
     review->wipe.settings = b;
     tl_renderer *renderer_b =
         review->renderer; /* each appearance keeps the renderer that has its resources */

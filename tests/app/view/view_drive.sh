@@ -84,6 +84,7 @@ round() {
     press w "compares: A"
     press ctrl+3 "view: fabric satin"
     drag 1 450 400 300 400
+    logged "view: A keeps its drape" "$1"
     press x "A and B exchanged"
     shoot
     press w "comparison ended"
