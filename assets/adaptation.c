@@ -103,3 +103,9 @@ vec3s tl_adaptation_ground(const tl_environment *environment)
         ground.raw[c] = (float)fmin(bounded * share[c], 1);
     return ground;
 }
+
+vec3s tl_adaptation_above(const tl_environment *environment)
+{
+    const struct cards cards = measure(environment);
+    return (vec3s){{(float)cards.above[0], (float)cards.above[1], (float)cards.above[2]}};
+}

@@ -30,4 +30,7 @@ vec3s tl_adaptation_to(const tl_environment *environment);
  * that falls from above, both on level cards. Where nothing falls, 0. Pure. */
 vec3s tl_adaptation_ground(const tl_environment *environment);
 
+/* The light that falls from above on a level card, over pi: the radiance of a white one. Pure. */
+vec3s tl_adaptation_above(const tl_environment *environment);
+
 #endif

@@ -2,17 +2,85 @@
 
 #include <math.h>
 
-#define MARGIN 1.12f
+#define WIDEST 0.9f /* share of the frame's width that may be filled */
 
-/* Distance at which the box's vertical extent and its widest horizontal radius fit, so that turning does not
- * zoom. */
-static float fitting_distance(struct tl_box box, float fov_y, float aspect)
+/* The axes of a picture: across it, upwards, and towards the eye. */
+struct axes {
+    vec3s across, up, back;
+};
+
+static struct axes axes_of(const struct tl_camera_params *params)
 {
-    vec3s size = glms_vec3_sub(box.upper, box.lower);
-    float half_height = 0.5f * size.y, radius = 0.5f * hypotf(size.x, size.z);
-    float tangent = tanf(0.5f * fov_y);
-    float for_height = half_height / tangent, for_width = radius / (tangent * aspect);
-    return MARGIN * fmaxf(for_height, for_width) + radius;
+    float yaw = glm_rad(params->yaw_deg), pitch = glm_rad(params->pitch_deg);
+    return (struct axes){.across = {{cosf(yaw), 0, -sinf(yaw)}},
+                         .up = {{-sinf(yaw) * sinf(pitch), cosf(pitch), -cosf(yaw) * sinf(pitch)}},
+                         .back = {{sinf(yaw) * cosf(pitch), sinf(pitch), cosf(yaw) * cosf(pitch)}}};
+}
+
+struct tl_framing tl_framing_of_box(struct tl_box box, float share)
+{
+    struct tl_framing framing = {.box = box, .share = share, .count = TL_FRAMING_POINTS};
+    float radius = 0.5f * hypotf(box.upper.x - box.lower.x, box.upper.z - box.lower.z);
+    for (int i = 0; i < TL_FRAMING_POINTS; i++) {
+        float angle = 4 * (float)M_PI * (float)(i / 2) / TL_FRAMING_POINTS;
+        framing.points[i] = (vec3s){{0.5f * (box.lower.x + box.upper.x) + radius * sinf(angle),
+                                     i % 2 ? box.upper.y : box.lower.y,
+                                     0.5f * (box.lower.z + box.upper.z) + radius * cosf(angle)}};
+    }
+    return framing;
+}
+
+/* The i-th of directions that are spread evenly over the sphere [Vogel's spiral]. */
+static vec3s spread_direction(int i)
+{
+    float height = 1 - 2 * ((float)i + 0.5f) / TL_FRAMING_POINTS, angle = 2.39996323f * (float)i;
+    float across = sqrtf(1 - height * height);
+    return (vec3s){{across * sinf(angle), height, across * cosf(angle)}};
+}
+
+void tl_framing_add(struct tl_framing *framing, const vec3s *points, size_t count)
+{
+    for (int i = 0; count > 0 && i < TL_FRAMING_POINTS; i++) {
+        vec3s direction = spread_direction(i), *furthest = &framing->points[i];
+        if (framing->count == 0)
+            *furthest = points[0];
+        for (size_t k = 0; k < count; k++)
+            if (glms_vec3_dot(points[k], direction) > glms_vec3_dot(*furthest, direction))
+                *furthest = points[k];
+    }
+    struct tl_box box = tl_box_of(points, count);
+    framing->box = framing->count > 0 ? tl_box_of_both(framing->box, box) : box;
+    framing->count = TL_FRAMING_POINTS;
+}
+
+/* How much of the allowed part of the picture is filled from a distance of the box's middle. */
+static float fill_of(const struct tl_framing *framing, const struct axes *axes, vec3s middle, float distance,
+                     float tangent, float aspect)
+{
+    float lowest = INFINITY, highest = -INFINITY, widest = 0;
+    for (int i = 0; i < framing->count; i++) {
+        vec3s from = glms_vec3_sub(framing->points[i], middle);
+        float reach = (distance - glms_vec3_dot(from, axes->back)) * tangent;
+        float up = glms_vec3_dot(from, axes->up) / reach;
+        lowest = fminf(lowest, up);
+        highest = fmaxf(highest, up);
+        widest = fmaxf(widest, fabsf(glms_vec3_dot(from, axes->across)) / (reach * aspect));
+    }
+    return fmaxf(0.5f * (highest - lowest) / framing->share, widest / WIDEST);
+}
+
+static float fitting_distance(const struct tl_framing *framing, const struct axes *axes, vec3s middle,
+                              float fov_y, float aspect)
+{
+    float tangent = tanf(0.5f * fov_y), near = 0;
+    for (int i = 0; i < framing->count; i++)
+        near = fmaxf(near, glms_vec3_norm(glms_vec3_sub(framing->points[i], middle)));
+    float far = near * (1 + 2 / (tangent * fminf(framing->share, fminf(aspect, 1) * WIDEST)));
+    for (int i = 0; i < 30; i++) { /* the nearer, the more is filled */
+        float between = 0.5f * (near + far);
+        *(fill_of(framing, axes, middle, between, tangent, aspect) > 1 ? &near : &far) = between;
+    }
+    return far;
 }
 
 static vec3s target_of(const struct tl_camera_params *params)
@@ -25,21 +93,20 @@ bool tl_camera_is_placed(const struct tl_camera_params *params)
     return params->distance_m > 0 && !glms_vec3_eqv(target_of(params), glms_vec3_zero());
 }
 
-struct tl_camera tl_camera_frame(const struct tl_camera_params *params, struct tl_box box, float aspect)
+struct tl_camera tl_camera_frame(const struct tl_camera_params *params, const struct tl_framing *framing,
+                                 float aspect)
 {
     float fov_y = glm_rad(params->fov_deg);
-    float yaw = glm_rad(params->yaw_deg), pitch = glm_rad(params->pitch_deg);
+    struct axes axes = axes_of(params);
     bool framed = params->distance_m <= 0;
-    vec3s target = tl_camera_is_placed(params) ? target_of(params)
-                                               : glms_vec3_scale(glms_vec3_add(box.lower, box.upper), 0.5f);
-    float distance = framed ? fitting_distance(box, fov_y, aspect) : params->distance_m;
-    vec3s back = {{sinf(yaw) * cosf(pitch), sinf(pitch), cosf(yaw) * cosf(pitch)}};
-    float reach = glms_vec3_norm(glms_vec3_sub(box.upper, box.lower));
+    vec3s middle = glms_vec3_scale(glms_vec3_add(framing->box.lower, framing->box.upper), 0.5f);
+    vec3s target = tl_camera_is_placed(params) ? target_of(params) : middle;
+    float distance = framed ? fitting_distance(framing, &axes, middle, fov_y, aspect) : params->distance_m;
+    float reach = glms_vec3_norm(glms_vec3_sub(framing->box.upper, framing->box.lower));
     return (struct tl_camera){
-        .eye = glms_vec3_add(target, glms_vec3_scale(back, distance)),
+        .eye = glms_vec3_add(target, glms_vec3_scale(axes.back, distance)),
         .target = target,
-        .up = {{-sinf(yaw) * sinf(pitch), cosf(pitch),
-                -cosf(yaw) * sinf(pitch)}}, /* never parallel to back */
+        .up = axes.up, /* never parallel to back */
         .fov_y = fov_y,
         .near_m = fmaxf(0.01f * distance, 1e-4f * reach),
         .far_m = distance + 20 * reach,

@@ -8,9 +8,27 @@
  * of 0 0 0 for the middle of the scene. */
 bool tl_camera_is_placed(const struct tl_camera_params *params);
 
-/* The camera of the frame. With distance_m = 0 the box (metres, world) fills the image of the given aspect
- * (width / height) with a small margin, whatever the yaw; with a distance but no target the eye looks at the
- * box's middle from there. */
-struct tl_camera tl_camera_frame(const struct tl_camera_params *params, struct tl_box box, float aspect);
+/* Shares of the picture's height that a garment fills, and that garment and body fill together. */
+#define TL_CAMERA_GARMENT 0.75f
+#define TL_CAMERA_BODY    0.94f
+
+/* What is framed: the most distant points of a thing in directions all around, in metres of the world. */
+enum { TL_FRAMING_POINTS = 64 };
+struct tl_framing {
+    struct tl_box box;
+    float share; /* of the picture's height that it shall fill */
+    int count;
+    vec3s points[TL_FRAMING_POINTS];
+};
+/* Adds a thing, by its positions; a framing of zeros and a share is empty. */
+void tl_framing_add(struct tl_framing *framing, const vec3s *points, size_t count);
+/* Of a box, for which a cylinder about it stands: it is framed alike from all sides. */
+struct tl_framing tl_framing_of_box(struct tl_box box, float share);
+
+/* The camera of the frame. With distance_m = 0 what is framed fills its share of the height of an image of
+ * the given aspect (width / height), or less where nine tenths of its width are filled. With a distance but
+ * no target the eye looks at the box's middle from there. */
+struct tl_camera tl_camera_frame(const struct tl_camera_params *params, const struct tl_framing *framing,
+                                 float aspect);
 
 #endif

@@ -158,30 +158,33 @@ static struct tl_box box_of_moving(const struct tl_moving *moving)
 
 /* A body that stands out of its garment by less than this, as a share of the garment's height, is framed with
  * it: a head that is cut off looks like a mistake, the foot of a dress form does not. */
-#define FRAMED_WITH_BODY 1.6f
-
-static struct tl_box box_of_both(struct tl_box a, struct tl_box b)
-{
-    return (struct tl_box){glms_vec3_minv(a.lower, b.lower), glms_vec3_maxv(a.upper, b.upper)};
-}
+#define FRAMED_WITH_BODY 1.35f
 
 /* Of garment and body. */
 static struct tl_box box_of_scene(const tl_session *session)
 {
     if (!session->garment || !session->avatar)
         return box_of_moving(session->garment ? &session->dress : &session->body);
-    return box_of_both(box_of_moving(&session->dress), box_of_moving(&session->body));
+    return tl_box_of_both(box_of_moving(&session->dress), box_of_moving(&session->body));
+}
+
+static void add_framed(struct tl_framing *framed, const struct tl_moving *moving)
+{
+    tl_framing_add(framed, moving->positions, moving->model->mesh.vertex_count);
 }
 
 /* What the camera frames: the garment, which is what is judged; without one, the body. */
 static void frame_garment(tl_session *session)
 {
-    struct tl_box all = session->framed = box_of_scene(session);
-    if (!session->garment)
-        return;
-    struct tl_box garment = box_of_moving(&session->dress);
-    bool with_body = all.upper.y - all.lower.y < FRAMED_WITH_BODY * (garment.upper.y - garment.lower.y);
-    session->framed = with_body ? all : garment;
+    struct tl_box all = box_of_scene(session),
+                  garment = session->garment ? box_of_moving(&session->dress) : all;
+    bool with_body = !session->garment ||
+                     all.upper.y - all.lower.y < FRAMED_WITH_BODY * (garment.upper.y - garment.lower.y);
+    session->framed = (struct tl_framing){.share = with_body ? TL_CAMERA_BODY : TL_CAMERA_GARMENT};
+    if (session->garment)
+        add_framed(&session->framed, &session->dress);
+    if (session->avatar && with_body)
+        add_framed(&session->framed, &session->body);
 }
 
 struct tl_session_models tl_session_models(const tl_session *session)
@@ -451,11 +454,12 @@ static bool shows_board(tl_session *session)
     return session->board.model != NULL;
 }
 
-static struct tl_box box_with_board(tl_session *session)
+static struct tl_framing framing_with_board(tl_session *session)
 {
     if (!shows_board(session))
         return session->framed;
-    return box_of_both(box_of_moving(&session->board), session->framed);
+    return tl_framing_of_box(tl_box_of_both(box_of_moving(&session->board), session->framed.box),
+                             TL_CAMERA_BODY);
 }
 
 /* The garment as it is drawn. What is played back, or is no cloth, is drawn as its file has it. */
@@ -495,8 +499,9 @@ tl_frame tl_session_frame(tl_session *session)
     for (size_t i = 0; i < session->surface_count; i++)
         session->surfaces[i].topology_revision = session->appearance_revision;
     const struct tl_image_params *image = &session->settings.image;
-    struct tl_camera camera = tl_camera_frame(&session->settings.camera, box_with_board(session),
-                                              (float)image->width / (float)image->height);
+    const struct tl_framing framing = framing_with_board(session);
+    struct tl_camera camera =
+        tl_camera_frame(&session->settings.camera, &framing, (float)image->width / (float)image->height);
     session->lamps[0] = tl_lamp_make(&session->settings.lamp, camera.target);
     session->lamps[1] = tl_lamp_make(&session->settings.fill, camera.target);
     return (tl_frame){

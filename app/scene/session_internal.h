@@ -53,7 +53,7 @@ struct tl_session {
     struct tl_spare_appearance spares[TL_SPARE_APPEARANCES];
 
     int frame;
-    struct tl_box framed; /* what the camera frames, at frame 0 */
+    struct tl_framing framed; /* what the camera frames, at frame 0 */
     tl_surface surfaces[TL_SESSION_SURFACES];
     size_t surface_count;
     struct tl_lamp lamps[2];

@@ -3,6 +3,7 @@
 #include "app/fit/sewn.h"
 #include "app/settings/layers.h"
 #include "assets/base/units.h"
+#include "assets/builtin/studio.h"
 #include "assets/garment.h"
 #include "assets/model.h"
 #include "assets/motion/motion_mesh.h"
@@ -12,6 +13,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -106,7 +108,8 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_STRING(struct tl_scene_params, clip, TL_AFFECTS_SCENE | TL_AFFECTS_DRAPE | TL_AFFECTS_WORK,
                      "animation of the avatar; empty: the first one; none: the rest pose"),
     TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, TL_AFFECTS_AT_ONCE, -3600, 3600, "degrees",
-                    "rotation of the environment about the vertical, counter-clockwise seen from above"),
+                    "rotation of the environment about the vertical, counter-clockwise seen from above; not "
+                    "given: 0, but the studio's lights stand as the first view needs them"),
     TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, TL_AFFECTS_NOTHING, 0, 1000, "1/s",
                     "frames per second of a sequence of environments; 0: its first frame only"),
 };
@@ -426,6 +429,22 @@ static void log_assumed_width(const struct tl_weave_params *weave)
                 TL_PICTURE_ASSUMED_MM);
 }
 
+/* A photographer sets the lights up for the view. They stay as the camera turns from there. */
+static void turn_studio(struct tl_settings *settings)
+{
+    struct tl_scene_params *scene = &settings->scene;
+    if (!isnan(scene->environment_yaw_deg))
+        return;
+    scene->environment_yaw_deg = 0;
+    tl_settings_turn_studio(settings, TL_STUDIO_VIEW_DEG);
+}
+
+void tl_settings_turn_studio(struct tl_settings *settings, float from_deg)
+{
+    if (strcmp(settings->scene.environment, "studio") == 0)
+        settings->scene.environment_yaw_deg += settings->camera.yaw_deg - from_deg;
+}
+
 /* The topmost layers name the preset and the fabric that lie below them, so they are read twice: once to
  * learn these names, and once more in their place. */
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
@@ -435,6 +454,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     struct tl_binding all[TL_SETTINGS_TABLES];
     tl_settings_bind(&settings, all);
     tl_options_reset(all, TL_SETTINGS_TABLES);
+    settings.scene.environment_yaw_deg = NAN; /* not given */
     if (!apply_source(all, source, error))
         return false;
     struct tl_scene_params named = settings.scene;
@@ -448,6 +468,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
+    turn_studio(&settings);
     if (!read_colourways(&settings, error))
         return false;
     warn_of_unused_options(&settings);

@@ -103,6 +103,10 @@ struct tl_settings_source {
 bool tl_settings_is_scene(const char *name);
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
 
+/* Turns the lights of the built-in studio by as much as the camera is turned from `from_deg`: they stand for
+ * the view. Other environments stay. */
+void tl_settings_turn_studio(struct tl_settings *settings, float from_deg);
+
 /* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */
 bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
                         tl_error *error);

@@ -109,7 +109,8 @@ static void frame_garment(tl_session *session, struct tl_settings *settings)
     struct tl_box box = worn_box(&before, &worn);
     if (tl_session_models(session).avatar)
         add_avatar(&frame.surfaces[0], &box);
-    struct tl_camera camera = tl_camera_frame(&settings->camera, box, aspect);
+    const struct tl_framing framing = tl_framing_of_box(box, TL_CAMERA_BODY);
+    struct tl_camera camera = tl_camera_frame(&settings->camera, &framing, aspect);
     tl_orbit_take(&settings->camera, &camera);
 }
 

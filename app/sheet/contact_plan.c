@@ -375,8 +375,11 @@ bool tl_contact_cell_settings(const struct tl_contact_plan *plan, size_t row, si
         out->camera = at->view.key.camera;
         out->scene.environment_yaw_deg = at->view.key.environment_yaw_deg;
     }
-    if (at->view.camera == TL_CONTACT_ORBIT)
+    if (at->view.camera == TL_CONTACT_ORBIT) {
+        float from_deg = out->camera.yaw_deg;
         out->camera.yaw_deg = at->view.yaw_deg;
+        tl_settings_turn_studio(out, from_deg); /* the figure turns before the lights */
+    }
     if (at->view.has_pitch)
         out->camera.pitch_deg = at->view.pitch_deg;
     return true;

@@ -50,3 +50,8 @@ struct tl_box tl_box_of(const vec3s *positions, size_t count)
     }
     return box;
 }
+
+struct tl_box tl_box_of_both(struct tl_box a, struct tl_box b)
+{
+    return (struct tl_box){glms_vec3_minv(a.lower, b.lower), glms_vec3_maxv(a.upper, b.upper)};
+}

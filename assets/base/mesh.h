@@ -42,5 +42,7 @@ struct tl_box {
 };
 /* The smallest box around the positions; zero for count 0. */
 struct tl_box tl_box_of(const vec3s *positions, size_t count);
+/* The smallest box about two. */
+struct tl_box tl_box_of_both(struct tl_box a, struct tl_box b);
 
 #endif

@@ -46,6 +46,13 @@ float tl_studio_room(vec3s direction)
     return grey + glow * expf(glow_exponent * (glms_vec3_dot(direction, backdrop) - 1));
 }
 
+float tl_studio_backdrop(vec3s direction)
+{
+    float turn = glm_rad(TL_STUDIO_VIEW_DEG);
+    return tl_studio_room((vec3s){{direction.x * cosf(turn) - direction.z * sinf(turn), direction.y,
+                                   direction.x * sinf(turn) + direction.z * cosf(turn)}});
+}
+
 /* The coverage of a light in a direction: 1 inside, 0 outside, a smooth step across the edge. */
 static float coverage(const struct tl_studio_light *light, const struct tl_studio_axes *axes, vec3s direction)
 {
@@ -58,10 +65,10 @@ static float coverage(const struct tl_studio_light *light, const struct tl_studi
            (1 - smooth_step(light->half_height - light->edge, light->half_height + light->edge, along));
 }
 
-/* Without `axes`: of the empty room. */
+/* Without `axes`: of the backdrop. */
 static vec3s studio_radiance(vec3s direction, const struct tl_studio_axes *axes)
 {
-    float room = tl_studio_room(direction);
+    float room = axes ? tl_studio_room(direction) : tl_studio_backdrop(direction);
     vec3s radiance = {{room, room, room}};
     for (size_t i = 0; axes && i < tl_studio_light_count; i++) {
         float seen = coverage(&tl_studio_lights[i], &axes[i], direction);

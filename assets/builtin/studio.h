@@ -20,6 +20,9 @@ struct tl_studio_light {
     vec3s radiance;
 };
 
+/* The direction of the eye for which the lights stand, as camera.yaw_deg. */
+#define TL_STUDIO_VIEW_DEG 25.0f
+
 extern const struct tl_studio_light tl_studio_lights[];
 extern const size_t tl_studio_light_count;
 
@@ -29,8 +32,10 @@ struct tl_studio_axes {
 };
 struct tl_studio_axes tl_studio_light_axes(const struct tl_studio_light *light);
 
-/* Radiance of the empty room from a unit direction: grey, so one value. */
+/* Radiance of the empty room from a unit direction: grey, so one value; and of the same room as a backdrop,
+ * whose wall is lit behind the figure as seen in the direction TL_STUDIO_VIEW_DEG. */
 float tl_studio_room(vec3s direction);
+float tl_studio_backdrop(vec3s direction);
 
 /* Built-in lights that need no file: soft boxes and one strong small lamp in a grey
  * room, 512 x 256 lat-long. */

@@ -461,6 +461,7 @@
     IO(READS, pem_size)                                                                                      \
     IO(READS, cube)                                                                                          \
     IO(READS, filter)                                                                                        \
+    IO(READS, ground_input)                                                                                  \
     IO(WRITES_IN, present, TL_MADE_BACKDROP)
 
 #define TL_SHOW_JOB(IO)                                                                                      \

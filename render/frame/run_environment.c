@@ -1,4 +1,5 @@
 /* Jobs that make light of the environment. */
+#include "assets/adaptation.h"
 #include "render/env/from_environment.h"
 #include "render/frame/facts.h"
 #include "render/frame/job_io.h"
@@ -99,13 +100,15 @@ bool tl_run_backdrop(const struct tl_backdrop_job *job, tl_error *error)
     (void)error;
     const tl_environment *map = job->environment->map;
     struct tl_backdrop *backdrop = &job->present->backdrop;
+    const vec3s ground = glms_vec3_mul(job->ground_input->colour, tl_adaptation_above(map));
+    const vec3s *drawn = job->ground_input->is_drawn ? &ground : NULL;
     if (tl_image_floats(&map->backdrop)) {
         const tl_environment room = {.name = map->name, .layout = map->layout, .image = map->backdrop};
         tl_cube cube = tl_cube_from_environment(&room, *job->pem_size);
-        tl_backdrop_set(backdrop, &cube, *job->filter);
+        tl_backdrop_set(backdrop, &cube, *job->filter, drawn);
         tl_cube_release(&cube);
     } else {
-        tl_backdrop_set(backdrop, job->cube, *job->filter);
+        tl_backdrop_set(backdrop, job->cube, *job->filter, drawn);
     }
     return true;
 }

@@ -6,6 +6,10 @@
 
 /* The level of the filter chain that is seen behind: a hint of the place that does not distract. */
 #define BLUR_LEVEL 3
+/* Sines of the elevations between which the ground passes into the environment. The disc fades (ground.h) at
+ * lower ones, from where a whole figure is framed. */
+#define GROUND_BELOW -0.14f
+#define GROUND_ABOVE 0.16f
 
 static void destroy_textures(struct tl_backdrop *backdrop)
 {
@@ -32,13 +36,24 @@ size_t tl_backdrop_bytes(const struct tl_backdrop *backdrop)
            cube_bytes(&backdrop->blurred) + backdrop->behind.bytes;
 }
 
-void tl_backdrop_set(struct tl_backdrop *backdrop, const tl_cube *cube, int filter)
+static void paint_ground(tl_cube *cube, vec3s ground)
+{
+    for (int i = 0; i < 6 * cube->size * cube->size; i++) {
+        vec3s *texel = (vec3s *)(void *)(cube->texels + 3 * (size_t)i);
+        float height = tl_cube_texel_direction(cube->size, i).y;
+        *texel = glms_vec3_lerp(ground, *texel, glm_smoothstep(GROUND_BELOW, GROUND_ABOVE, height));
+    }
+}
+
+void tl_backdrop_set(struct tl_backdrop *backdrop, const tl_cube *cube, int filter, const vec3s *ground)
 {
     struct tl_chain chain = tl_chain_build(cube, (enum tl_chain_filter)filter);
     int last = chain.level_count - 1;
     destroy_textures(backdrop);
     tl_cube_release(&backdrop->blurred);
     backdrop->blurred = tl_cube_copy(&chain.levels[last < BLUR_LEVEL ? last : BLUR_LEVEL]);
+    if (ground)
+        paint_ground(&backdrop->blurred, *ground);
     backdrop->revision++;
     tl_chain_release(&chain);
 }

@@ -14,8 +14,10 @@ struct tl_backdrop {
 };
 
 /* Takes an environment, as the cube that `filter` (enum tl_chain_filter) blurs; textures of the last one are
- * destroyed. */
-void tl_backdrop_set(struct tl_backdrop *backdrop, const tl_cube *cube, int filter);
+ * destroyed. `ground`: radiance of a ground that is drawn, where no shadow falls on it; NULL: there is none.
+ * The blurred picture has it below the horizon and passes into the environment above it, as a photographer's
+ * cyclorama does: all that is seen of the ground are its shadows. */
+void tl_backdrop_set(struct tl_backdrop *backdrop, const tl_cube *cube, int filter, const vec3s *ground);
 
 /* The environment in its own layout; NULL, with `error` set, when it is larger than GL can hold. */
 const tl_texture *tl_backdrop_sharp(struct tl_backdrop *backdrop, tl_gpu *gpu,

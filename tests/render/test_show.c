@@ -179,6 +179,70 @@ static void test_ground_of_environment(void **state)
     test_scene_close(&scene);
 }
 
+/* The direction of a pixel, from the upper left corner. */
+static vec3s direction_of(const struct test_scene *scene, int x, int y)
+{
+    const struct tl_image_params *image = &scene->settings.image;
+    const struct tl_view view = tl_view_make(&scene->frame.camera, image->width, image->height);
+    float across = 2 * ((float)x + 0.5f) / (float)image->width - 1,
+          upwards = 1 - 2 * ((float)y + 0.5f) / (float)image->height;
+    return glms_vec3_normalize(glms_vec3_add(
+        view.forward, glms_vec3_add(glms_vec3_scale(view.right, across), glms_vec3_scale(view.up, upwards))));
+}
+
+/* Of the ground only its shadows are seen: where none falls, the disc, its fading rim and the backdrop below
+ * the horizon are one colour, under a studio and under a sun. Light that a finite disc misses, or gets from
+ * what stands on it, is below two bytes. Above -0.3 the coarse cube of these settings passes into the sky. */
+static void expect_plain_ground(struct test_device *device, struct test_scene *scene, const char *name)
+{
+    const int width = scene->settings.image.width, height = scene->settings.image.height;
+    const vec3s eye = scene->frame.camera.eye;
+    tl_image shown;
+    const uint8_t *bytes = shown_bytes(device->renderer, scene, &shown);
+    int lowest[3] = {255, 255, 255}, highest[3] = {0}, count[2] = {0};
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const vec3s direction = direction_of(scene, x, y);
+            if (direction.y > -0.3f)
+                continue;
+            const float distance = eye.y / -direction.y;
+            const float from_middle = hypotf(eye.x + distance * direction.x, eye.z + distance * direction.z);
+            if (from_middle < 0.25f || y < height / 8) /* the ball and its shadow */
+                continue;
+            count[from_middle < 0.5f]++;
+            for (int c = 0; c < 3; c++) {
+                const int byte = bytes[3 * (y * width + x) + c];
+                lowest[c] = byte < lowest[c] ? byte : lowest[c];
+                highest[c] = byte > highest[c] ? byte : highest[c];
+            }
+        }
+    print_message("%s: %d pixels of the disc, %d beyond: %d..%d %d..%d %d..%d\n", name, count[1], count[0],
+                  lowest[0], highest[0], lowest[1], highest[1], lowest[2], highest[2]);
+    assert_true(count[0] > 1000 && count[1] > 1000);
+    for (int c = 0; c < 3; c++)
+        assert_true(highest[c] - lowest[c] <= 2);
+    tl_image_release(&shown);
+}
+
+static void test_ground_melts_away(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    for (int sunny = 0; sunny < 2; sunny++) {
+        tl_environment environment =
+            sunny ? test_environment(256, 128, test_daylight) : tl_environment_studio();
+        test_scene_open(&scene, environment, (vec3s){{0, 0.7f, 1.4f}}, (vec3s){{0, 0.1f, 0}}, 50, 300, 240);
+        test_scene_add(&scene, test_sphere((vec3s){{0, 0.05f, 0}}, 0.05f, 16));
+        scene.settings.light.visibility = TL_VISIBILITY_RAYS;
+        scene.settings.light.composition = TL_COMPOSE_RATIO;
+        scene.settings.image.background = TL_BACKGROUND_BLURRED;
+        scene.settings.image.ground = true;
+        scene.frame.environment_revision += 300 + (uint64_t)sunny;
+        expect_plain_ground(device, &scene, sunny ? "daylight" : "studio");
+        test_scene_close(&scene);
+    }
+}
+
 /* An environment with a sun, as many texels as real ones have. */
 static void test_large_environment(void **state)
 {
@@ -270,6 +334,7 @@ int main(void)
         cmocka_unit_test(test_views),
         cmocka_unit_test(test_adaptation),
         cmocka_unit_test(test_ground_of_environment),
+        cmocka_unit_test(test_ground_melts_away),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -13,6 +13,12 @@ static void project(const struct tl_camera *camera, float aspect, vec3s point, f
     *y = p.y / p.w;
 }
 
+static struct tl_camera framed(const struct tl_camera_params *params, struct tl_box box, float aspect)
+{
+    const struct tl_framing framing = tl_framing_of_box(box, 0.9f);
+    return tl_camera_frame(params, &framing, aspect);
+}
+
 static void every_corner_is_in_view(void **state)
 {
     (void)state;
@@ -21,7 +27,7 @@ static void every_corner_is_in_view(void **state)
     for (size_t a = 0; a < 3; a++)
         for (int yaw = -180; yaw < 180; yaw += 30) {
             const struct tl_camera_params params = {.yaw_deg = (float)yaw, .pitch_deg = 0, .fov_deg = 30};
-            struct tl_camera camera = tl_camera_frame(&params, box, aspects[a]);
+            struct tl_camera camera = framed(&params, box, aspects[a]);
             float largest = 0;
             for (int corner = 0; corner < 8; corner++) {
                 float x, y;
@@ -40,15 +46,15 @@ static void yaw_zero_looks_from_plus_z_and_grows_towards_plus_x(void **state)
 {
     (void)state;
     struct tl_camera_params params = {.distance_m = 2, .target = {0, 1, 0}, .fov_deg = 30};
-    struct tl_camera camera = tl_camera_frame(&params, (struct tl_box){{{0, 0, 0}}, {{1, 1, 1}}}, 1);
+    struct tl_camera camera = framed(&params, (struct tl_box){{{0, 0, 0}}, {{1, 1, 1}}}, 1);
     assert_near(camera.eye.x, 0, 1e-6);
     assert_near(camera.eye.y, 1, 1e-6);
     assert_near(camera.eye.z, 2, 1e-6);
     params.yaw_deg = 90;
-    camera = tl_camera_frame(&params, (struct tl_box){{{0, 0, 0}}, {{1, 1, 1}}}, 1);
+    camera = framed(&params, (struct tl_box){{{0, 0, 0}}, {{1, 1, 1}}}, 1);
     assert_near(camera.eye.x, 2, 1e-6);
     params.pitch_deg = 30;
-    camera = tl_camera_frame(&params, (struct tl_box){{{0, 0, 0}}, {{1, 1, 1}}}, 1);
+    camera = framed(&params, (struct tl_box){{{0, 0, 0}}, {{1, 1, 1}}}, 1);
     assert_near(camera.eye.y, 2, 1e-6); /* 1 + 2 sin 30 */
 }
 
@@ -58,20 +64,20 @@ static void distance_alone_goes_nearer(void **state)
     (void)state;
     const struct tl_box box = {{{-0.4f, 0.5f, -0.2f}}, {{0.5f, 1.8f, 0.3f}}};
     struct tl_camera_params params = {.yaw_deg = 25, .pitch_deg = 8, .fov_deg = 30};
-    const struct tl_camera framed = tl_camera_frame(&params, box, 1);
-    const vec3s framed_back = glms_vec3_normalize(glms_vec3_sub(framed.eye, framed.target));
+    const struct tl_camera whole = framed(&params, box, 1);
+    const vec3s whole_back = glms_vec3_normalize(glms_vec3_sub(whole.eye, whole.target));
     assert_false(tl_camera_is_placed(&params));
     params.distance_m = 0.75f;
     assert_false(tl_camera_is_placed(&params));
-    const struct tl_camera camera = tl_camera_frame(&params, box, 1);
+    const struct tl_camera camera = framed(&params, box, 1);
     const vec3s back = glms_vec3_normalize(glms_vec3_sub(camera.eye, camera.target));
-    assert_near(glms_vec3_distance(camera.target, framed.target), 0, 0);
+    assert_near(glms_vec3_distance(camera.target, whole.target), 0, 0);
     assert_near(camera.target.y, 1.15, 1e-6);
     assert_near(glms_vec3_distance(camera.eye, camera.target), 0.75, 1e-6);
-    assert_near(glms_vec3_distance(back, framed_back), 0, 1e-6);
+    assert_near(glms_vec3_distance(back, whole_back), 0, 1e-6);
     params.target[1] = 0.25f;
     assert_true(tl_camera_is_placed(&params));
-    assert_near(tl_camera_frame(&params, box, 1).target.y, 0.25, 0);
+    assert_near(framed(&params, box, 1).target.y, 0.25, 0);
 }
 
 int main(void)

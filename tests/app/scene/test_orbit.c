@@ -22,7 +22,8 @@ static struct tl_camera_params some_orbit(void)
 static struct tl_camera camera_of(const struct tl_camera_params *orbit)
 {
     struct tl_box box = {.upper = {{1, 1, 1}}};
-    return tl_camera_frame(orbit, box, view_width / view_height);
+    const struct tl_framing framing = tl_framing_of_box(box, 0.9f);
+    return tl_camera_frame(orbit, &framing, view_width / view_height);
 }
 
 /* Pixel position of a world point: cglm's look-at and perspective, which orbit.c does not use. */

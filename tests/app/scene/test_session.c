@@ -1,6 +1,7 @@
 /* A session takes over changed settings, keeps its state when it cannot, and replays to the bit. */
 #include "tests/app/quick_session.h"
 
+#include "app/scene/camera.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -301,6 +302,48 @@ static void strains_are_told_when_they_are_looked_at(void **state)
     tl_session_destroy(&session);
 }
 
+/* Lowest and highest place of a surface in the picture, in half heights of it from the middle. */
+static void find_extent(const tl_surface *surface, const struct tl_camera *camera, float *lowest,
+                        float *highest)
+{
+    mat4s view = glms_lookat(camera->eye, camera->target, camera->up);
+    *lowest = INFINITY, *highest = -INFINITY;
+    for (size_t i = 0; i < surface->vertex_count; i++) {
+        vec3s at = glms_mat4_mulv3(view, surface->positions[i], 1);
+        float place = at.y / (-at.z * tanf(0.5f * camera->fov_y));
+        *lowest = fminf(*lowest, place);
+        *highest = fmaxf(*highest, place);
+    }
+}
+
+/* As its vertices are projected, from whichever side it is seen first: 75 % of the height, or 1.5 % more
+ * where a point lies between the directions in which the furthest ones are kept; all of it is in the picture.
+ */
+static void the_garment_fills_three_quarters(void **state)
+{
+    (void)state;
+    static const char *const garments[] = {"dress", "skirt", "layers", "trousers", "shirt"};
+    for (size_t g = 0; g < TL_COUNT(garments); g++) {
+        struct tl_settings settings = quick_settings(NULL);
+        tl_error error = {0};
+        strcpy(settings.scene.garment, garments[g]);
+        tl_session *session = tl_session_create(&settings, &error);
+        assert_ok(session != NULL, error);
+        for (int yaw = 25; yaw < 360; yaw += 90) {
+            float lowest, highest;
+            settings.camera.yaw_deg = (float)yaw;
+            assert_ok(tl_session_apply(session, &settings, &error), error);
+            tl_frame frame = tl_session_frame(session);
+            find_extent(&frame.surfaces[frame.surface_count - 1], &frame.camera, &lowest, &highest);
+            print_message("%s from %d degrees: %.3f of the height, from %.3f to %.3f\n", garments[g], yaw,
+                          (double)(0.5f * (highest - lowest)), (double)lowest, (double)highest);
+            assert_near(0.5f * (highest - lowest), TL_CAMERA_GARMENT, 0.015);
+            assert_true(lowest > -0.9f && highest < 0.9f);
+        }
+        tl_session_destroy(&session);
+    }
+}
+
 int main(void)
 {
     tl_log_set_level(TL_LOG_WARN);
@@ -313,6 +356,7 @@ int main(void)
         cmocka_unit_test(picking_finds_the_front),
         cmocka_unit_test(the_pattern_hangs_beside_the_garment),
         cmocka_unit_test(strains_are_told_when_they_are_looked_at),
+        cmocka_unit_test(the_garment_fills_three_quarters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

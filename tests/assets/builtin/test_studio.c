@@ -175,11 +175,19 @@ static void test_backdrop_without_lamps(void **state)
     assert_int_equal(studio.backdrop.width, studio.image.width);
     for (int y = 0; y < studio.image.height; y++)
         for (int x = 0; x < studio.image.width; x++) {
-            double room = (double)tl_studio_room(texel_direction(&studio.image, x, y));
+            double room = (double)tl_studio_backdrop(texel_direction(&studio.image, x, y));
             assert_near(texel(&studio.backdrop, x, y)[1], room, 0.01 * room);
             brightest = fmax(brightest, (double)texel(&studio.backdrop, x, y)[1]);
         }
     assert_true(brightest < 0.5);
+    /* The same on both sides of the view for which the lights stand, and brightest there. */
+    float turn = glm_rad(TL_STUDIO_VIEW_DEG);
+    for (int side_deg = 20; side_deg <= 160; side_deg += 20) {
+        float left = turn + glm_rad(180 - (float)side_deg), right = turn + glm_rad(180 + (float)side_deg);
+        float at_left = tl_studio_backdrop((vec3s){{sinf(left), 0, cosf(left)}});
+        assert_near(at_left, tl_studio_backdrop((vec3s){{sinf(right), 0, cosf(right)}}), 1e-5);
+        assert_true(at_left < tl_studio_backdrop((vec3s){{-sinf(turn), 0, -cosf(turn)}}));
+    }
 }
 
 static void test_constant(void **state)
