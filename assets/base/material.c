@@ -45,12 +45,18 @@ bool tl_material_is_layered(const tl_material *material)
            tl_material_has_fuzz(material) || tl_material_transmits(material);
 }
 
+vec3s tl_material_thread_gain(const tl_material *material)
+{
+    vec3s gain = glms_vec3_one();
+    for (int i = 0; i < material->thread_count; i++)
+        gain = glms_vec3_add(gain, material->threads[i].ratio);
+    return gain;
+}
+
 vec3s tl_material_colour(const tl_material *material)
 {
-    vec3s colour = material->diffuse;
-    for (int i = 0; i < material->thread_count; i++)
-        colour = glms_vec3_muladd(material->diffuse, material->threads[i].ratio, colour);
-    return glms_vec3_minv(colour, glms_vec3_one());
+    return glms_vec3_minv(glms_vec3_mul(material->diffuse, tl_material_thread_gain(material)),
+                          glms_vec3_one());
 }
 
 bool tl_material_has_fuzz(const tl_material *material)

@@ -163,6 +163,9 @@ tl_material tl_material_default(const char *name);
 /* Whether the material has more than two cosine lobes about the normal and the mirror direction: microfacets,
  * a coat, fuzz, or transmission. */
 bool tl_material_is_layered(const tl_material *material);
+/* The even light and that of the threads over the even light: 1 where there are no threads. Who draws no
+ * lobes of threads multiplies the diffuse colour by it. */
+vec3s tl_material_thread_gain(const tl_material *material);
 /* The even light of the material and that of its threads: its colour from afar. */
 vec3s tl_material_colour(const tl_material *material);
 /* Whether fibres stand on it. */

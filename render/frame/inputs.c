@@ -150,6 +150,8 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
     signatures[TL_INPUT_MOTION] = motion_signature(frame);
     signatures[TL_INPUT_CAMERA] = camera_signature(&frame->camera);
     signatures[TL_INPUT_GROUND] = MIX(signatures[TL_INPUT_GROUND], frame->environment->ground);
+    const struct tl_lobes_input lobes = tl_input_lobes(light);
+    signatures[TL_INPUT_LOBES] = MIX(MIX(start, lobes.all), lobes.are_blended);
     bool in_passes =
         tl_light_source(light) == TL_LIGHT_CHAIN; /* maps in an array: as many as PEMs in a pass */
     signatures[TL_INPUT_MAPS] = MIX(signatures[TL_INPUT_MAPS], in_passes);
@@ -177,6 +179,12 @@ struct tl_light_params tl_input_light(const struct tl_light_params *light)
                                     .depth_bias_m = light->depth_bias_m,
                                     .min_variance = light->min_variance,
                                     .bleed_reduction = light->bleed_reduction};
+}
+
+struct tl_lobes_input tl_input_lobes(const struct tl_light_params *light)
+{
+    return (struct tl_lobes_input){.all = tl_light_is_composed(light),
+                                   .are_blended = light->lobe == TL_LOBE_SINGLE};
 }
 
 struct tl_shadow_input tl_input_shadows(const struct tl_light_params *light)

@@ -50,6 +50,11 @@ struct tl_ground_input {
     vec3s colour; /* reflectance */
 };
 
+struct tl_lobes_input {
+    bool all;         /* of a material; else the diffuse and the glossy one */
+    bool are_blended; /* into one between the two: TL_LOBE_SINGLE */
+};
+
 struct tl_cut_input {
     int regions, cut; /* enum tl_cut */
 };
@@ -100,6 +105,7 @@ void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *setti
 
 /* The options of the inputs that hold some of a table. */
 struct tl_light_params tl_input_light(const struct tl_light_params *light);
+struct tl_lobes_input tl_input_lobes(const struct tl_light_params *light);
 struct tl_shadow_input tl_input_shadows(const struct tl_light_params *light);
 struct tl_detail_params tl_input_detail_maps(const struct tl_detail_params *detail);
 struct tl_maps_params tl_input_layout(const struct tl_maps_params *maps);

@@ -137,6 +137,7 @@
     IO(READS, ground_input)                                                                                  \
     IO(READS, detail_steps)                                                                                  \
     IO(READS, detail_options)                                                                                \
+    IO(READS, lobes_input)                                                                                   \
     IO(SEES, shapes)                                                                                         \
     IO(WRITES, gbuffer)                                                                                      \
     IO(USES, gpu)
@@ -174,6 +175,7 @@
     IO(READS, size)                                                                                          \
     IO(READS, ground_input)                                                                                  \
     IO(READS, detail_steps)                                                                                  \
+    IO(READS, lobes_input)                                                                                   \
     IO(READS, shapes)                                                                                        \
     IO(WRITES, transparency)                                                                                 \
     IO(USES, gpu)

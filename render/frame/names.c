@@ -8,6 +8,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_CAMERA] = "camera",
     [TL_INPUT_SIZE] = "image size",
     [TL_INPUT_GROUND] = "ground option",
+    [TL_INPUT_LOBES] = "lobes drawn",
     [TL_INPUT_PEM_SIZE] = "PEM size",
     [TL_INPUT_FILTER] = "filter option",
     [TL_INPUT_SUN] = "sun option",

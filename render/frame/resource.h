@@ -13,6 +13,7 @@ enum tl_resource {
     TL_INPUT_CAMERA,
     TL_INPUT_SIZE, /* image size and samples per pixel */
     TL_INPUT_GROUND,
+    TL_INPUT_LOBES, /* which lobes of a material are drawn */
     TL_INPUT_PEM_SIZE,
     TL_INPUT_FILTER,
     TL_INPUT_SUN,

@@ -53,6 +53,7 @@ struct tl_surroundings {
     RESOURCE(camera, TL_INPUT_CAMERA, struct tl_camera_input)                                                \
     RESOURCE(size, TL_INPUT_SIZE, struct tl_size_input)                                                      \
     RESOURCE(ground_input, TL_INPUT_GROUND, struct tl_ground_input)                                          \
+    RESOURCE(lobes_input, TL_INPUT_LOBES, struct tl_lobes_input)                                             \
     RESOURCE(pem_size, TL_INPUT_PEM_SIZE, int) /* texels */                                                  \
     RESOURCE(filter, TL_INPUT_FILTER, int)     /* enum tl_chain_filter */                                    \
     RESOURCE(takes_suns, TL_INPUT_SUN, bool)                                                                 \

@@ -51,15 +51,23 @@ bool tl_run_blur(const struct tl_blur_job *job, tl_error *error)
     return true;
 }
 
+/* The ground has an upper side only: from below it hides nothing. It is the last of what is drawn. */
+#define SEEN_GROUND(job)                                                                                     \
+    ((job)->ground_input->is_drawn && (job)->camera->view.eye.y > (job)->ground->centre.y ? (job)->ground    \
+                                                                                          : NULL)
+#define SEEN_COUNT(job)                                                                                      \
+    ((job)->shapes->drawn_count - ((job)->ground_input->is_drawn && !SEEN_GROUND(job) ? 1 : 0))
+
 /* The layers behind open cloth are drawn as the nearest one is. */
 #define GBUFFER_REQUEST(job)                                                                                 \
     (struct tl_gbuffer_request)                                                                              \
     {                                                                                                        \
         .view = &(job)->camera->view, .width = (job)->size->columns, .height = (job)->size->rows,            \
-        .surfaces = (job)->surfaces, .drawn = (job)->shapes->drawn,                                          \
-        .surface_count = (job)->shapes->drawn_count,                                                         \
-        .ground = (job)->ground_input->is_drawn ? (job)->ground : NULL, .detail = (job)->detail_steps,       \
+        .surfaces = (job)->surfaces, .drawn = (job)->shapes->drawn, .surface_count = SEEN_COUNT(job),        \
+        .ground = SEEN_GROUND(job), .detail = (job)->detail_steps,                                           \
+        .blends_lobes = (job)->lobes_input->are_blended,                                                     \
         .frames =                                                                                            \
+            (job)->lobes_input->all &&                                                                       \
             tl_materials_have((job)->shapes->surfaces, (job)->shapes->surface_count, tl_material_is_faceted) \
     }
 
@@ -77,8 +85,8 @@ bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
                                          .height = size->rows,
                                          .surfaces = job->surfaces,
                                          .drawn = job->shapes->drawn,
-                                         .surface_count = job->shapes->drawn_count,
-                                         .ground = job->ground_input->is_drawn ? job->ground : NULL,
+                                         .surface_count = SEEN_COUNT(job),
+                                         .ground = SEEN_GROUND(job),
                                          .only_triangle = true};
     if (!tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error))
         return false;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Uniform locations of gbuffer.vert and gbuffer.frag that surface.glsl does not have. */
-enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18 };
+enum { VIEW_PROJECTION = 16, EYE = 17, FADING_DISC = 18, BLENDS_LOBES = 19 };
 
 /* Texture units of gbuffer.frag's own: the last ones, out of the surfaces' way. */
 #define NUMBERS_UNIT 14
@@ -146,6 +146,7 @@ static void use_program(const struct tl_gbuffer_request *request, const tl_progr
     glUseProgram(program->id);
     glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, request->view->view_projection.raw[0]);
     glUniform3fv(EYE, 1, request->view->eye.raw);
+    glUniform1i(BLENDS_LOBES, request->blends_lobes);
 }
 
 static void set_fading_disc(const struct tl_gbuffer_request *request, size_t surface)

@@ -5,6 +5,7 @@
 
 layout(location = 17) uniform vec3 eye;
 layout(binding = 14) uniform usamplerBuffer numbers; // of the triangles that are drawn
+layout(location = 19) uniform bool blends_lobes;
 layout(location = 18) uniform vec4 fading_disc; // centre and radius of the ground, while the ground is drawn
 
 in vec2 uv;
@@ -98,6 +99,10 @@ void main()
     out_widening = vec2(detail_widening(own_rough, rough, 0.0));
 #endif
     vec3 kd = diffuse(colour.rgb, place.uv);
+#ifndef FRAMES
+    vec3 of_threads = min(kd * (thread_gain - 1.0), 1.0 - kd);
+    kd += of_threads;
+#endif
     if (has_bumps(tangent)) {
         Bumps bumps = bumps_at(place.uv);
 #if DETAIL_MODE == DETAIL_BLINN
@@ -119,6 +124,9 @@ void main()
 #ifdef FRAMES
     if ((map_flags & FLAG_FACETED) != 0)
         ks = specular_f0(place.uv); // a facet's Fresnel term is not the normal's
+#else
+    if (blends_lobes)
+        ks = min(ks + of_threads, vec3(1.0)); // the light of threads is their colour all the way to the mirror
 #endif
 #if DETAIL_SHADOW != 0
     if (has_detail(DETAIL_HORIZONS)) {

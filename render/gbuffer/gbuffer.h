@@ -54,6 +54,7 @@ struct tl_gbuffer_request {
     const struct tl_ground *ground;        /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_detail_params *detail; /* NULL: normals alone */
     bool frames;                           /* with the layer of facets */
+    bool blends_lobes; /* one lobe is drawn, between the diffuse and the glossy one (TL_LOBE_SINGLE) */
     bool
         only_triangle; /* one layer, like TL_GBUFFER_TRIANGLE but with places in cull.numbers: an ID buffer */
     const tl_texture *passed; /* only what lies behind this depth; NULL: what is nearest */

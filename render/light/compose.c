@@ -594,6 +594,16 @@ static const tl_material *rich_material(const struct tl_compose_request *request
     return is_rich ? material : NULL;
 }
 
+/* A sample of two lobes, whose threads shine as if they were matt. */
+static tl_sample with_matt_threads(const struct tl_compose_request *request, const tl_sample *sample)
+{
+    const tl_material *material = tl_triangle_material(request->ranges, sample->triangle & ~TL_SAMPLE_BACK);
+    tl_sample matt = *sample;
+    matt.diffuse =
+        glms_vec3_minv(glms_vec3_mul(sample->diffuse, tl_material_thread_gain(material)), glms_vec3_one());
+    return matt;
+}
+
 static float share_of_sample(const struct tl_compose_request *request, size_t index)
 {
     if (request->shares && index < tl_samples_seen(request->samples))
@@ -620,6 +630,9 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     if (rich) {
         rest = *sample;
         part_lobes(block, rich, &rest, &lobes);
+        sample = &rest;
+    } else if (request->any_layered) {
+        rest = with_matt_threads(request, sample);
         sample = &rest;
     }
     struct frame frame = frame_of(block, sample);

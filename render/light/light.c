@@ -55,6 +55,12 @@ bool tl_light_needs_exact(const struct tl_light_params *params)
     return tl_light_source(params) != TL_LIGHT_CHAIN || begins_exact(params);
 }
 
+bool tl_light_is_composed(const struct tl_light_params *params)
+{
+    return params->visibility == TL_VISIBILITY_RAYS && params->method != TL_METHOD_MAPS &&
+           params->method != TL_METHOD_REFERENCE;
+}
+
 static enum composition composition_of(const struct tl_light_params *params)
 {
     switch (params->method) {

@@ -28,6 +28,9 @@ enum tl_light_source { TL_LIGHT_CHAIN, TL_LIGHT_SLICES, TL_LIGHT_LOBES, TL_LIGHT
 enum tl_light_source tl_light_source(const struct tl_light_params *params);
 /* Whether the exact light of the whole environment is read (env/lobes.h). */
 bool tl_light_needs_exact(const struct tl_light_params *params);
+/* Whether the light of every sample is composed on the CPU, which draws all lobes of a material; what draws
+ * with GL has two. */
+bool tl_light_is_composed(const struct tl_light_params *params);
 
 #define TL_LIGHT_MAP_KINDS 3 /* enum tl_visibility, none instead of rays */
 

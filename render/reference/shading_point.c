@@ -480,10 +480,10 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
     return result;
 }
 
-/* Distance along the ray to the plane of the ground; infinite when there is no intersection. */
+/* Distance along the ray to the upper side of the ground; infinite when there is no intersection. */
 static float distance_to_ground(const struct tl_reference_scene *scene, const struct tl_ray_differential *ray)
 {
-    if (!scene->ground || fabsf(ray->direction.y) < 1e-12f)
+    if (!scene->ground || ray->direction.y > -1e-12f)
         return INFINITY;
     float distance = (scene->ground->centre.y - ray->origin.y) / ray->direction.y;
     return distance > ray->from_m && distance < ray->to_m ? distance : INFINITY;
@@ -495,7 +495,7 @@ static struct tl_shading_point ground_point(const struct tl_reference_scene *sce
     const struct tl_ground *ground = scene->ground;
     vec3s point = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, distance));
     point.y = ground->centre.y;
-    float cover = tl_ground_cover(ground, point.x, point.z), side = ray->direction.y < 0 ? 1.0f : -1.0f;
+    float cover = tl_ground_cover(ground, point.x, point.z);
     const struct sample_place place = {
         .detail = &scene->detail.params,
         .material = &ground->material,
@@ -503,10 +503,10 @@ static struct tl_shading_point ground_point(const struct tl_reference_scene *sce
         .footprint.uv = {{(point.x - ground->centre.x) / ground->radius,
                           (point.z - ground->centre.z) / ground->radius}},
         .point = point,
-        .facet = {{0, side, 0}},
+        .facet = {{0, 1, 0}},
         .normal = {{0, 1, 0}},
         .tangent = {{1, 0, 0, 1}},
-        .side = side,
+        .side = 1,
     };
     struct tl_shading_point result = point_of(&place, scene, ray, point);
     result.cover = cover;

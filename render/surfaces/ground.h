@@ -1,6 +1,7 @@
 /* The ground: a matt disc at y = 0 under whatever stands there, so that a figure casts a shadow on
  * something. It fades towards its rim and so melts into the background; light from below is stopped by as
- * much as the disc covers where the ray meets it (ground.glsl). Pure. */
+ * much as the disc covers where the ray meets it (ground.glsl). Who looks from below sees through it. Pure.
+ */
 #ifndef TOILE_RENDER_SURFACES_GROUND_H
 #define TOILE_RENDER_SURFACES_GROUND_H
 

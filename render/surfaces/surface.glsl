@@ -23,6 +23,8 @@ layout(location = 114) uniform vec3 back_diffuse;
 layout(location = 115) uniform vec3 back_specular;
 layout(location = 116) uniform vec4 yarn_rows; // yarns per UV unit along u and v; how many there are in each table
 
+layout(location = 117) uniform vec3 thread_gain; // for who draws no lobes of threads: on the diffuse colour
+
 layout(binding = 0) uniform sampler2D diffuse_map;
 layout(binding = 1) uniform sampler2D normal_map;
 layout(binding = 2) uniform sampler2D gloss_map;

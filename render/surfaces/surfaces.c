@@ -418,6 +418,7 @@ static void set_material(const struct surface_item *item, const struct tl_mesh_p
     if (material->gloss.model != TL_REFLECT_PHONG)
         flags |= TL_FLAG_FACETED;
     glUniform3fv(TL_UNIFORM_DIFFUSE, 1, material->diffuse.raw);
+    glUniform3fv(TL_UNIFORM_THREAD_GAIN, 1, tl_material_thread_gain(material).raw);
     glUniform3fv(TL_UNIFORM_SPECULAR, 1, material->specular.raw);
     glUniform4f(TL_UNIFORM_SCALARS, material->glossiness, material->normal_scale,
                 material->occlusion_strength, material->alpha_cutoff);

@@ -41,7 +41,8 @@ enum tl_surface_uniform {
     TL_UNIFORM_SEWN_THREAD,
     TL_UNIFORM_BACK_DIFFUSE,
     TL_UNIFORM_BACK_SPECULAR,
-    TL_UNIFORM_YARN_ROWS
+    TL_UNIFORM_YARN_ROWS,
+    TL_UNIFORM_THREAD_GAIN /* tl_material_thread_gain */
 };
 /* Bindings of shader storage: the borders by triangle, the profiles of the part's material, and its yarns. */
 enum tl_surface_storage {

@@ -325,13 +325,93 @@ static void test_average_restarts(void **state)
     tl_environment_release(&environment);
 }
 
+static vec3s mean_colour(const tl_image *image)
+{
+    vec3s sum = {{0, 0, 0}};
+    for (int i = 0; i < image->width * image->height; i++)
+        for (int c = 0; c < 3; c++)
+            sum.raw[c] += tl_image_floats(image)[4 * i + c];
+    return sum;
+}
+
+/* Satin whose colour comes from inside its threads, by maps, which have no lobe for that: not black. */
+static void test_threads_by_maps(void **state)
+{
+    const struct test_device *device = *state;
+    struct test_scene scene;
+    test_scene_open(&scene, test_environment(64, 32, test_daylight), (vec3s){{0.5f, 0.8f, 2}},
+                    (vec3s){{0, 0.3f, 0}}, 25, 48, 48);
+    tl_material *satin = test_scene_add(&scene, test_sphere((vec3s){{0, 0.3f, 0}}, 0.3f, 32));
+    satin->diffuse = (vec3s){{0.05f, 0.02f, 0.01f}};
+    satin->specular = (vec3s){{0.04f, 0.04f, 0.04f}};
+    satin->glossiness = 0.3f;
+    satin->gloss = (struct tl_gloss){
+        .model = TL_REFLECT_WARD, .ward = TL_WARD_BOUNDED, .width_weft = 0.5f, .width_warp = 0.2f};
+    satin->thread_count = 1;
+    satin->threads[0] = (struct tl_thread){{{9, 9, 9}}, 0.5f, 0.2f};
+    test_scene_refresh(&scene);
+    scene.settings.light.method = TL_METHOD_REFERENCE;
+    scene.settings.reference.strata = 256;
+    tl_image exact = test_scene_draw(&scene, device->renderer);
+    const vec3s truth = mean_colour(&exact);
+    scene.settings.light.method = TL_METHOD_PEM;
+    for (int lobe = TL_LOBE_SINGLE; lobe <= TL_LOBE_DUAL; lobe++) {
+        scene.settings.light.lobe = lobe;
+        tl_image drawn = test_scene_draw(&scene, device->renderer);
+        const vec3s mean = mean_colour(&drawn);
+        printf("%s lobe: %+.1f %+.1f %+.1f %%\n", lobe == TL_LOBE_SINGLE ? "single" : "dual",
+               100 * (double)(mean.x / truth.x - 1), 100 * (double)(mean.y / truth.y - 1),
+               100 * (double)(mean.z / truth.z - 1));
+        assert_colour(mean, truth, 0.6f); /* without its threads it has lost nine tenths */
+        tl_image_release(&drawn);
+    }
+    tl_image_release(&exact);
+    test_scene_close(&scene);
+}
+
+/* From below the ground is not there: a ball stands in the same pixels as without it, and nothing else does.
+ */
+static void test_ground_from_below(void **state)
+{
+    const struct test_device *device = *state;
+    const int methods[] = {TL_METHOD_PEM, TL_METHOD_REFERENCE};
+    struct test_scene scene;
+    test_scene_open(&scene, test_environment(64, 32, test_daylight), (vec3s){{0.3f, -0.7f, 1.5f}},
+                    (vec3s){{0, 0.4f, 0}}, 40, 48, 48);
+    test_scene_add(&scene, test_sphere((vec3s){{0, 0.4f, 0}}, 0.3f, 32));
+    test_scene_refresh(&scene);
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++)
+        for (int by_rays = 0; by_rays < 2; by_rays++) {
+            tl_image images[2];
+            if (by_rays)
+                test_scene_use_rays(&scene, 24, 1);
+            scene.settings.light.method = methods[m];
+            for (int ground = 0; ground < 2; ground++) {
+                scene.settings.image.ground = ground;
+                images[ground] = test_scene_draw(&scene, device->renderer);
+            }
+            for (int i = 0; i < 48 * 48; i++)
+                assert_near(tl_image_floats(&images[1])[4 * i + 3], tl_image_floats(&images[0])[4 * i + 3],
+                            1e-6);
+            assert_true(test_brightest(&images[1]) > 0);
+            tl_image_release(&images[0]);
+            tl_image_release(&images[1]);
+        }
+    test_scene_close(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exact_light),      cmocka_unit_test(test_unoccluded_is_exact),
-        cmocka_unit_test(test_lights),           cmocka_unit_test(test_methods_at_a_wall),
-        cmocka_unit_test(test_sun_apart),        cmocka_unit_test(test_sun_casts_a_shadow),
+        cmocka_unit_test(test_exact_light),
+        cmocka_unit_test(test_unoccluded_is_exact),
+        cmocka_unit_test(test_lights),
+        cmocka_unit_test(test_methods_at_a_wall),
+        cmocka_unit_test(test_sun_apart),
+        cmocka_unit_test(test_sun_casts_a_shadow),
         cmocka_unit_test(test_average_restarts),
+        cmocka_unit_test(test_threads_by_maps),
+        cmocka_unit_test(test_ground_from_below),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

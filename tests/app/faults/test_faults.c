@@ -15,6 +15,8 @@ static const struct {
     const char *name, *arguments;
 } runs[] = {
     {"rays", ""},
+    {"matt",
+     "--fabric cotton_plain"}, /* satin's colour is that of its threads: it has next to no diffuse light */
     {"skirt", "--garment skirt --set camera.pitch_deg=-30"}, /* its inside is seen */
     {"turned", "--set scene.environment_yaw_deg=50"},
     {"paper", "--preset paper"},
