@@ -22,6 +22,8 @@ typedef struct tl_cloth tl_cloth;
 /* A particle's mass is at least this share of the mean mass: the vertex of a sliver would weigh next to
  * nothing, and one iteration that corrects it would leave its neighbours where they are. */
 #define TL_CLOTH_MIN_MASS 1e-4
+/* Of `preview`, per step. */
+#define TL_CLOTH_MAX_SUBSTEPS 1000
 /* A larger strain than this means that the solver has failed: the frame is refused. */
 #define TL_CLOTH_MAX_STRAIN 10
 
@@ -35,7 +37,7 @@ struct tl_cloth_params {
     int solver;             /* enum tl_cloth_solver */
     double dt;              /* s, longest step; a frame is made of equal steps: see frame_rate */
     double frame_rate;      /* frames per second of the animation */
-    int substeps;           /* preview: per step */
+    int substeps;           /* preview: per step; 0: as many as the mesh needs */
     int cg_iterations;      /* settle: at most, per solve */
     double cg_tolerance;    /* settle: residual at the end of a solve, relative to its start */
     int reference_substeps; /* reference: at most, per frame; a fabric that needs more is refused */

@@ -3,6 +3,7 @@
 #include "assets/halfmesh/halfmesh.h"
 #include "cloth/build.h"
 #include "cloth/mesh/rigid.h"
+#include "cloth/timestep.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -148,7 +149,8 @@ static int substeps_of(const tl_coarser *coarser, const tl_cloth *from)
 {
     double ratio = sqrt((double)coarser->cage.vertex_count / (double)from->topology.vertex_count);
     bool rests_by_preview = from->params.solver == TL_CLOTH_PREVIEW;
-    return rests_by_preview ? (int)fmax(ceil(from->params.substeps * ratio), 1) : from->params.substeps;
+    return rests_by_preview ? (int)fmax(ceil(tl_cloth_substeps_per_step(from) * ratio), 1)
+                            : from->params.substeps;
 }
 
 static bool make_cloth(tl_coarser *coarser, const tl_cloth *from)

@@ -4,10 +4,9 @@
 #define AFFECTS (TL_AFFECTS_CLOTH | TL_AFFECTS_DRAPE)
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
-    .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .substeps = 30,       \
-    .self_contact = true, .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000,           \
-    .gravity = 9.81, .settle_s = 10, .settle_speed = 0.003, .cages = true, .edge_m = 0.02f,                  \
-    .longest_edge_m = 0.1f
+    .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .self_contact = true, \
+    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81,                \
+    .settle_s = 10, .settle_speed = 0.003, .cages = true, .edge_m = 0.02f, .longest_edge_m = 0.1f
 
 const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
 
@@ -22,8 +21,9 @@ static const struct tl_option cloth_rows[] = {
                      "maximum time step; a frame is divided into equal steps; larger: faster, less exact"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, frame_rate, AFFECTS | TL_AFFECTS_WORK, 1, 1000, "1/s",
                      "frames per second of animation"),
-    TL_OPTION_INT(struct tl_cloth_params, substeps, AFFECTS, 1, 1000, "",
-                  "preview: substeps per step; more: slower, stretches less"),
+    TL_OPTION_INT(struct tl_cloth_params, substeps, AFFECTS, 0, TL_CLOTH_MAX_SUBSTEPS, "",
+                  "preview: substeps per step; more: slower, stretches less; 0: 30, or as many as mean edges "
+                  "below 12 mm need"),
     TL_OPTION_INT(struct tl_cloth_params, cg_iterations, AFFECTS, 1, 1000000, "",
                   "settle: maximum iterations of a step's solve; more: slower, more steps converge"),
     TL_OPTION_DOUBLE(

@@ -210,7 +210,7 @@ static void test_bad_input_is_refused(void **state)
     assert_null(tl_cloth_create(&garment, &fabric, &params, &error));
     assert_non_null(strstr(error.message, "cloth.dt"));
     params = params_defaults();
-    params.substeps = 0;
+    params.substeps = -1;
     assert_null(tl_cloth_create(&garment, &fabric, &params, &error));
     assert_non_null(strstr(error.message, "cloth.substeps"));
     params = params_defaults();
