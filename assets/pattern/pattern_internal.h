@@ -29,4 +29,9 @@ struct pattern_draft {
 bool tl_pattern_outline(const struct pattern_draft *draft, struct tl_pattern_panel *panel, size_t *place,
                         tl_error *error);
 
+/* Turns round, and reports, each stitch that alone would make its edges end where they begin, and would not
+ * the other way round: collars come from files whose front and back are joined crosswise at the shoulder.
+ * Edges that are rings either way, as those of cuffs, stay. */
+void tl_pattern_untwist(tl_pattern *pattern);
+
 #endif

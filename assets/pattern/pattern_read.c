@@ -411,7 +411,9 @@ bool tl_pattern_load(const char *path, tl_pattern *out, tl_error *error)
     free(reader.where);
     cJSON_Delete(root);
     free(data);
-    if (!good)
+    if (good)
+        tl_pattern_untwist(out);
+    else
         tl_pattern_release(out);
     return good;
 }

@@ -2,6 +2,7 @@
 
 #include "app/fabric/fields.h"
 #include "app/settings/imported.h"
+#include "assets/motion/motion_mesh.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern.h"
 #include "config/embedded.h"
@@ -188,8 +189,28 @@ static bool is_alone(const struct tl_review *review)
     return strcmp(scene->garment, "none") == 0 && tl_option_is_file_name(scene->avatar);
 }
 
+/* Units, axis, place and motion were those of the file before. */
+static void forget_garment(struct tl_review *review)
+{
+    static const char *const options[][2] = {{"scene.units", "auto"},   {"scene.up", "auto"},
+                                             {"scene.turn_deg", "0"},   {"scene.scale", "1"},
+                                             {"scene.move_m", "0,0,0"}, {"scene.motion", "none"}};
+    for (size_t i = 0; i < TL_COUNT(options); i++)
+        tl_review_set(review, options[i][0], options[i][1]);
+    review->reading.kept[TL_READING_GARMENT][0] = '\0';
+}
+
+static void forget_avatar(struct tl_review *review)
+{
+    tl_review_set(review, "scene.avatar_units", "auto");
+    tl_review_set(review, "scene.avatar_up", "auto");
+    review->reading.kept[TL_READING_AVATAR][0] = '\0';
+}
+
 static void use_as_garment(struct tl_review *review, const char *path)
 {
+    if (strcmp(review->wanted.scene.garment, path) != 0)
+        forget_garment(review);
     if (tl_review_set(review, "scene.garment", path))
         tl_review_apply_names(review);
 }
@@ -200,6 +221,8 @@ static void use_as_avatar(struct tl_review *review, const char *path)
     char *worn = is_alone(review) ? tl_copy_string(review->wanted.scene.avatar) : NULL;
     if (worn)
         use_as_garment(review, worn);
+    if (strcmp(review->wanted.scene.avatar, path) != 0)
+        forget_avatar(review);
     tl_review_set(review, "scene.avatar", path);
     free(worn);
 }
@@ -222,6 +245,17 @@ void tl_review_ask_recent(struct tl_review *review)
     }
     if (recent->offered == 0)
         tl_review_report(review, "no garment has been opened from a file yet");
+}
+
+/* A point cache moves the mesh of its name beside it, if there is one; else the present garment. */
+static void use_as_motion(struct tl_review *review, const char *path)
+{
+    tl_error error;
+    char *mesh = tl_motion_find_mesh(path, &error);
+    if (mesh)
+        use_as_garment(review, mesh);
+    tl_review_set(review, "scene.motion", path);
+    free(mesh);
 }
 
 static void use_as_fabric(struct tl_review *review, const char *path)
@@ -321,7 +355,7 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
         tl_review_add_environment(review, path);
         tl_review_set(review, "scene.environment", path);
     } else if (tl_point_cache_is_file(path)) {
-        tl_review_set(review, "scene.motion", path);
+        use_as_motion(review, path);
     } else if (use_foreign_fabric(review, path)) {
         return;
     } else if (tl_pattern_is_file(path)) {

@@ -107,8 +107,9 @@ static void write_notice(struct tl_review *review)
     struct tl_review_reading *reading = &review->reading;
     const char *size = open_size_note(review);
     char *read_as = reading->of != TL_READING_NONE ? describe(review, reading->of) : tl_copy_string("");
-    snprintf(reading->notice, sizeof reading->notice, "%s%s%s%s", read_as, read_as[0] && size ? "\n" : "",
-             size ? size : "", size && !read_as[0] ? "\nEnter closes this" : "");
+    snprintf(reading->notice, sizeof reading->notice, "%s%s%s%s%s", read_as, read_as[0] && size ? "\n" : "",
+             size ? size : "", size && !read_as[0] ? "\nEnter closes this" : "",
+             size ? "\nD drapes the garment; Ctrl + Shift and a drag moves it, the wheel sizes it" : "");
     free(read_as);
     review->redraws = review->redraws > 1 ? review->redraws : 1;
 }
@@ -172,6 +173,13 @@ static bool is_conceivable(const struct tl_units_reading *reading, int units)
     return length_m >= 0.1 && length_m <= 10;
 }
 
+static bool set_up(struct tl_review *review, enum tl_reading_of of, enum tl_up up)
+{
+    return tl_review_set(review, of == TL_READING_GARMENT ? "scene.up" : "scene.avatar_up", tl_up_names[up]);
+}
+
+/* The axis stays: it was guessed for the size that the file had, and in another unit the guess may be
+ * another. */
 void tl_review_next_units(struct tl_review *review, int by)
 {
     if (!choose_file(review))
@@ -185,7 +193,8 @@ void tl_review_next_units(struct tl_review *review, int by)
     while (next != present && !is_conceivable(reading, next));
     if (next == present)
         tl_review_report(review, "in no other unit it would be from 0.1 to 10 m long");
-    else if (tl_review_set(review, of == TL_READING_GARMENT ? "scene.units" : "scene.avatar_units",
+    else if (set_up(review, of, up_of(review, of)) &&
+             tl_review_set(review, of == TL_READING_GARMENT ? "scene.units" : "scene.avatar_units",
                            tl_units_names[next]))
         tl_review_report(review, "reads it in %s", tl_units_plurals[next]);
 }
@@ -196,7 +205,7 @@ void tl_review_next_up(struct tl_review *review)
         return;
     enum tl_reading_of of = review->reading.of;
     enum tl_up next = up_of(review, of) == TL_UP_Z ? TL_UP_Y : TL_UP_Z;
-    if (tl_review_set(review, of == TL_READING_GARMENT ? "scene.up" : "scene.avatar_up", tl_up_names[next]))
+    if (set_up(review, of, next))
         tl_review_report(review, "reads it with %c up", next == TL_UP_Z ? 'Z' : 'Y');
 }
 

@@ -8,6 +8,7 @@ set -eu
 fast="--preset draft --set cloth.edge_m=0.08 --set light.regions=24 --set light.pem_size=16"
 $TOILE render $fast --size 64x32 --quiet -o light.exr # any picture is an environment
 $TOILE export $fast --set image.ground=false --avatar none --garment skirt --quiet -o skirt.obj
+$TOILE export $fast --set image.ground=false --avatar none --garment skirt.obj --set cloth.substeps=4 --set cloth.longest_edge_m=0 --frames 0:1 --quiet -o skirt.pc2
 printf 'material: {diffuse: [0.1, 0.2, 0.3], glossiness: 0.4}\n' >"bleu é 100%.yaml"
 printf 'scene: {garment: dress, preset: draft}\ncloth: {edge_m: 0.08}\nlight: {regions: 24, pem_size: 16}\n' >scene.yaml
 echo "material: [" >broken.yaml
@@ -102,6 +103,11 @@ press 2 "view: fabric .*/bleu é 100%.yaml"
 # The garments that were opened, the last one first.
 xdotool key ctrl+r
 press 2 "view: garment .*/lying.obj"
+logged "lying.obj: .* taken as millimetres" 2 # the units that were kept for it went with it
+
+# A motion brings the mesh of its name with it.
+drops skirt.pc2 "view: motion .*/skirt.pc2"
+logged "view: garment .*/skirt.obj" 3
 
 # It goes on, shows what could be opened, and closes.
 press t "turntable turns"

@@ -220,6 +220,44 @@ static void test_seams_run_against_each_other(void **state)
 
 /* A dart: a notch narrower than an edge, whose legs share their tip. Every outline vertex stays on the
  * outline, the triangles cover the panel's area, and the tip is not sewn to itself. */
+/* A square of the name, whose edges are bottom, right, top and left. */
+#define SQUARE_PANEL(name)                                                                                   \
+    "\"" name "\": {" SQUARE ", \"edges\": [{\"endpoints\": [0, 1]}, {\"endpoints\": [1, 2]}, "              \
+    "{\"endpoints\": [2, 3]}, {\"endpoints\": [3, 0]}]}"
+#define SIDE(name, edge)         "{\"panel\": \"" name "\", \"edge\": " #edge "}"
+#define STITCH(a, i, b, j, more) "[" SIDE(a, i) ", " SIDE(b, j) more "]"
+#define RIGHT_WRONG              ", \"right_wrong\""
+
+static bool is_right_wrong(const char *panels, const char *stitches, size_t stitch)
+{
+    char text[4096];
+    tl_error error = {0};
+    tl_pattern pattern;
+    snprintf(text, sizeof text, "\"panels\": {%s}, \"stitches\": [%s]", panels, stitches);
+    assert_ok(tl_pattern_load(write_pattern("twisted.json", text, CM), &pattern, &error), error);
+    bool found = pattern.stitches[stitch].right_wrong;
+    tl_pattern_release(&pattern);
+    return found;
+}
+
+/* Front and back of a collar, each sewn to its side of a neck: at the shoulder bottom meets bottom, whatever
+ * the file says. The ends of a cuff and of its sleeve are rings, which say nothing. */
+static void test_seams_that_close_their_edges_are_turned(void **state)
+{
+    (void)state;
+    const char *collar = SQUARE_PANEL("front") ", " SQUARE_PANEL("back") ", " SQUARE_PANEL(
+        "collar_front") ", " SQUARE_PANEL("collar_back");
+#define NECK                                                                                                 \
+    STITCH("front", 1, "back", 3, "")                                                                        \
+    ", " STITCH("front", 2, "collar_front", 0, "") ", " STITCH("back", 2, "collar_back", 0, "") ", "
+    assert_false(is_right_wrong(collar, NECK STITCH("collar_front", 1, "collar_back", 3, ""), 3));
+    assert_false(is_right_wrong(collar, NECK STITCH("collar_front", 1, "collar_back", 3, RIGHT_WRONG), 3));
+    const char *cuff = SQUARE_PANEL("sleeve") ", " SQUARE_PANEL("cuff");
+#define ARM STITCH("sleeve", 1, "sleeve", 3, "") ", " STITCH("cuff", 1, "cuff", 3, "") ", "
+    assert_false(is_right_wrong(cuff, ARM STITCH("sleeve", 0, "cuff", 2, ""), 2));
+    assert_true(is_right_wrong(cuff, ARM STITCH("sleeve", 0, "cuff", 2, RIGHT_WRONG), 2));
+}
+
 static void test_darts_are_cut_out(void **state)
 {
     (void)state;
@@ -546,6 +584,7 @@ int main(void)
         cmocka_unit_test(test_panels_are_turned_about_x_then_y_then_z),
         cmocka_unit_test(test_outer_side_is_that_of_the_loop),
         cmocka_unit_test(test_seams_run_against_each_other),
+        cmocka_unit_test(test_seams_that_close_their_edges_are_turned),
         cmocka_unit_test(test_darts_are_cut_out),
         cmocka_unit_test(test_panels_at_the_waist_are_raised),
         cmocka_unit_test(test_labelled_edges_are_held),
