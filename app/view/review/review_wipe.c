@@ -1,6 +1,7 @@
 #include "app/view/review/review_wipe.h"
 
 #include "app/scene/appearance.h"
+#include "app/view/review/review_place.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -74,6 +75,7 @@ static void swap_sessions(struct tl_review *review)
     review->draped = wipe->draped;
     wipe->session = session_b;
     wipe->draped = draped_b;
+    review->reported_frame = -1;
 }
 
 void tl_review_swap(struct tl_review *review)
@@ -94,6 +96,7 @@ void tl_review_swap(struct tl_review *review)
         swap_sessions(review);
     review->loaded_appearance = review->wanted;
     review->changed = true;
+    tl_review_note_reading(review);
     tl_review_report(review, "A and B exchanged");
 }
 
@@ -159,10 +162,10 @@ static void label(char *out, size_t size, const char *side, const struct tl_scen
                   bool has_own_drape, const char *difference)
 {
     bool has_colourway = scene->colourway[0] != '\0', differs = difference[0] != '\0';
-    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%s%.120s%s", side, short_name(scene->fabric),
+    snprintf(out, size, "%s  %.40s, %s%.40s%s%.30s%s%s%.60s%s", side, short_name(scene->fabric),
              has_colourway ? "colourway " : "", scene->colourway, has_colourway ? ", " : "",
-             short_name(scene->preset), has_own_drape ? ", its own drape" : "", differs ? " (" : "",
-             difference, differs ? ")" : "");
+             short_name(scene->preset), has_own_drape ? ", own drape" : "", differs ? " (" : "", difference,
+             differs ? ")" : "");
 }
 
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
