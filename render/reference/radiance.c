@@ -8,9 +8,15 @@
 #include <float.h>
 #include <math.h>
 
-/* Samples of the environment at points that paths hit, at most: few, because there are many such points. */
+/* Samples of the environment at points that paths hit, at most: few, because there are many such points, and
+ * fewer at those that are hit from them. */
 #define HIT_STRATA       64
+#define FURTHER_STRATA   16
 #define HIT_LOBE_SAMPLES 1
+
+/* Of the paths that hits send on, those that carry less than this are followed by chance, with as much more
+ * weight: lobes of a few per cent would multiply the paths from bounce to bounce. */
+#define FOLLOWED_WEIGHT 0.25f
 
 /* Points that paths hit, and what each sends on to the point that its path comes from. */
 struct path_hits {
@@ -43,8 +49,8 @@ static void light_hits(struct paths *paths)
     if (hits->points.count == 0)
         return;
     struct tl_sky_sample sky[HIT_STRATA];
-    const int strata =
-        paths->request->direct.strata < HIT_STRATA ? paths->request->direct.strata : HIT_STRATA;
+    const int most = paths->samples > 1 ? HIT_STRATA : FURTHER_STRATA;
+    const int strata = paths->request->direct.strata < most ? paths->request->direct.strata : most;
     struct tl_random own = {tl_random_bits(&paths->random)};
     tl_gather_sample_sky(&paths->scene->sky, strata, 0, 1, tl_random_begin(own.state, 1), own, sky);
     const struct tl_radiance_request inner = {
@@ -91,9 +97,21 @@ static void follow(struct paths *paths, int owner, vec3s origin, vec3s direction
     }
 }
 
+/* Russian roulette [Arvo and Kirk 1990]. False: the path ends. */
+static bool goes_on(struct paths *paths, vec3s *weight)
+{
+    float most = glms_vec3_max(*weight);
+    if (paths->samples > 1 || !(most < FOLLOWED_WEIGHT))
+        return true;
+    if (FOLLOWED_WEIGHT * (float)tl_random_unit(&paths->random) >= most)
+        return false;
+    *weight = glms_vec3_scale(*weight, FOLLOWED_WEIGHT / most);
+    return true;
+}
+
 static void follow_above(struct paths *paths, int i, vec3s direction, vec3s weight)
 {
-    if (glms_vec3_dot(tl_shading_lane(paths->points->horizon, i), direction) > 0)
+    if (glms_vec3_dot(tl_shading_lane(paths->points->horizon, i), direction) > 0 && goes_on(paths, &weight))
         follow(paths, i, tl_shading_lane(paths->points->point, i), direction, weight);
 }
 
