@@ -58,6 +58,7 @@ struct tl_experiment {
     const char *name, *title, *text; /* "a3"; heading; what is seen, and what the papers say of it */
     const char *scene;               /* built-in */
     const char *solid;               /* pictures: garment of the first object, "sphere" or "torus" */
+    const char *solid_only[6];       /* ... over all other settings of that object */
     const char *base[TL_EXPERIMENT_ASSIGNMENTS];        /* over the scene's settings */
     struct tl_setup reference;                          /* the exact evaluation */
     const struct tl_experiment_appearance *appearances; /* NULL: one, as `base` has it */

@@ -50,6 +50,21 @@ static const struct tl_technique cloths[] = {
      SET(DULL, "weave.pattern=rib", "weave.wale_mm=14", "weave.course_mm=11", "weave.yarn_mm=6")},
 };
 
+/* Twice as large as on cloth, so that a sheet's hem shows them at a gallery's size. */
+static const struct tl_technique seams[] = {
+    {.picture = "nothing sewn", .id = "A14", SET("construction.show=never")},
+    {.picture = "plain seams and hems",
+     .id = "A14",
+     SET("construction.seam=plain", "construction.hem=plain")},
+    {.picture = "topstitched",
+     .id = "A14",
+     SET("construction.seam=topstitched", "construction.hem=topstitched")},
+    {.picture = "flat-felled, hem of two rows",
+     .id = "A14",
+     SET("construction.seam=flat_felled", "construction.hem=twice")},
+    {.picture = "bound in tape", .id = "A14", SET("construction.seam=bound", "construction.hem=bound")},
+};
+
 static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a13",
@@ -65,6 +80,26 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {TRACED}},
      .ids = {"A13"},
      TECHNIQUES(cloths)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "a14",
+     .scene = "gallery",
+     .title = "A14  Seams, hems, stitches",
+     .text =
+         "Heights over the distance to a border and the length along it, in closed form: the ditch of a "
+         "seam, "
+         "its allowances and pucker, a hem with its folded rim, stitches in thread. What is smaller than a "
+         "pixel widens the gloss. The reference evaluates the same formula at a point; what is left is the "
+         "light's error, as the row without anything sewn has it, and detail between a pixel's samples.",
+     .solid = "dress",
+     .solid_only = {"scene.avatar=form", "cloth.edge_m=0.02", "camera.target=[0.08, 1.02, 0.12]",
+                    "camera.distance_m=0.55", "camera.pitch_deg=5"},
+     .base = {"scene.environment=studio", "light.method=pem", "material.diffuse=[0.12, 0.2, 0.4]",
+              "material.specular=[0.04, 0.04, 0.04]", "material.glossiness=0.5", "construction.show=always",
+              "construction.thread=[0.8, 0.45, 0.1]", "construction.hem_mm=28", "construction.stitch_mm=5.6",
+              "construction.thread_mm=0.8", "construction.pucker_mm=0.5", "construction.thickness_mm=0.5"},
+     .reference = {.assignments = {TRACED}},
+     .ids = {"A14"},
+     TECHNIQUES(seams)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "coat",
      .title = "A clear coat",

@@ -63,13 +63,16 @@ bool tl_picture_settings(const struct tl_experiment_picture *picture, enum tl_pi
                       tl_format("camera.target=[0, %g, 0]", is_solid ? 0.2 : 0.27),
                       tl_format("camera.distance_m=%g", is_solid ? 0.9 : 1.15),
                       setup->preset && !alone ? tl_format("scene.preset=%s", setup->preset) : NULL};
-    const char *all[OWN + 2 * TL_EXPERIMENT_ASSIGNMENTS + TL_SETUP_ASSIGNMENTS];
+    const char
+        *all[OWN + 2 * TL_EXPERIMENT_ASSIGNMENTS + TL_SETUP_ASSIGNMENTS + TL_COUNT(experiment->solid_only)];
     size_t count = append(all, 0, (const char *const *)own, OWN);
     count = append(all, count, experiment->base, TL_COUNT(experiment->base));
     if (appearance)
         count = append(all, count, appearance->assignments, TL_COUNT(appearance->assignments));
     if (!alone)
         count = append(all, count, setup->assignments, TL_COUNT(setup->assignments));
+    if (is_solid)
+        count = append(all, count, experiment->solid_only, TL_COUNT(experiment->solid_only));
     const struct tl_settings_source source = {experiment->scene, all, count};
     bool chosen = tl_settings_load(out, &source, error);
     if (chosen && reference)
