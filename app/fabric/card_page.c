@@ -183,7 +183,8 @@ static void put_chip(cairo_t *cairo, double x, double y, const char *name,
 
 static void put_colours(const struct tl_card *card, cairo_t *cairo, double x)
 {
-    char text[160];
+    char text[200];
+    const char *open = card->settings.material.openness > 0 ? ", over white" : "";
     if (!card->has_colour) {
         put(cairo, x, SWATCH_Y, &(const struct text){.size = 2.9, .width = RIGHT - x, .colour = BLACK},
             "States no appearance: shown in grey.");
@@ -194,8 +195,8 @@ static void put_colours(const struct tl_card *card, cairo_t *cairo, double x)
     snprintf(text, sizeof text,
              "\u0394E\u2080\u2080 %.1f between them. Measured: light from everywhere, seen along the normal, "
              "gloss "
-             "and yarns included (d/0). CIELAB, D65.",
-             card->difference);
+             "and yarns included (d/0)%s. CIELAB, D65.",
+             card->difference, open);
     put(cairo, x, SWATCH_Y + 36, &(const struct text){.size = 2.4, .width = RIGHT - x, .colour = GREY}, text);
 }
 
