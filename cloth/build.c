@@ -62,7 +62,8 @@ void tl_cloth_set_constants(tl_cloth *cloth)
 void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)
 {
     const struct tl_cloth_params *now = &cloth->params;
-    if (now->solver == params->solver && now->dt == params->dt && now->frame_rate == params->frame_rate)
+    if (now->solver == params->solver && now->dt == params->dt && now->frame_rate == params->frame_rate &&
+        now->substeps == params->substeps)
         return;
     cloth->params = *params;
     tl_implicit_destroy(&cloth->implicit);

@@ -26,7 +26,8 @@ void tl_cloth_make_pins(tl_cloth *cloth);
 /* Appends one pin at the particle's present position. tl_cloth_set_constants must follow. */
 void tl_cloth_add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand);
 
-/* Switches to the solver and the time step of `params`, which must equal the cloth's own in all else. */
+/* Switches to the solver, time step and substeps of `params`, which must equal the cloth's own in all else.
+ */
 void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params);
 
 /* Replaces topology, energy and particles by those of a mesh in which physics vertex i has become joined[i]:

@@ -1,6 +1,7 @@
 /* Seams: two panels on either side of a body are pulled together around it and become one cloth. */
 #include "cloth/build.h"
 #include "cloth/state.h"
+#include "cloth/timestep.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
@@ -162,6 +163,47 @@ static void test_seams_close_where_the_panels_end(void **state)
     }
 }
 
+/* Two panels of 10 mm edges, for which cloth.substeps=0 takes more than 30: sewing takes 30, and is then bit
+ * by bit what it is where 30 were asked for. Afterwards constants are those of the cloth's own substep, as
+ * when they are made again. */
+static void test_fine_panels_are_sewn_as_coarse_ones(void **state)
+{
+    (void)state;
+    const float scale = 0.4f;
+    const int asked[] = {0, 30};
+    vec3d *sewn[2] = {NULL};
+    size_t counts[2] = {0};
+    for (int run = 0; run < 2; run++) {
+        tl_error error = {0};
+        tl_garment garment = two_panels(0.1);
+        for (size_t i = 0; i < garment.model.mesh.vertex_count; i++) {
+            garment.model.mesh.positions[i] = glms_vec3_scale(garment.model.mesh.positions[i], scale);
+            garment.pattern[i] = glms_vec2_scale(garment.pattern[i], scale);
+        }
+        struct tl_cloth_fabric fabric = fabric_defaults();
+        struct tl_cloth_params params = params_defaults();
+        params.substeps = asked[run];
+        tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
+        assert_non_null(cloth);
+        assert_true(run == 1 || tl_cloth_substeps_per_step(cloth) > 30);
+        assert_ok(tl_cloth_sew(cloth, NULL, &error), error);
+        assert_int_equal(tl_cloth_measure(cloth, NULL).open_seams, 0);
+        const struct tl_preview_membrane left = cloth->energy.previewed[0];
+        tl_cloth_set_constants(cloth);
+        assert_memory_equal(left.weft, cloth->energy.previewed[0].weft, sizeof left.weft);
+        assert_memory_equal(left.shear, cloth->energy.previewed[0].shear, sizeof left.shear);
+        counts[run] = cloth->particles.count;
+        sewn[run] = TL_NEW_ARRAY(vec3d, counts[run]);
+        memcpy(sewn[run], cloth->particles.x, counts[run] * sizeof(vec3d));
+        tl_cloth_destroy(&cloth);
+        sheet_free(&garment);
+    }
+    assert_int_equal(counts[0], counts[1]);
+    assert_memory_equal(sewn[0], sewn[1], counts[0] * sizeof(vec3d));
+    free(sewn[0]);
+    free(sewn[1]);
+}
+
 /* Joining keeps mass, momentum and the centre of mass. */
 static void test_joining_keeps_momentum(void **state)
 {
@@ -205,6 +247,7 @@ int main(void)
         cmocka_unit_test(test_held_apart),
         cmocka_unit_test(test_a_held_thread_stores_nothing),
         cmocka_unit_test(test_seams_close_where_the_panels_end),
+        cmocka_unit_test(test_fine_panels_are_sewn_as_coarse_ones),
         cmocka_unit_test(test_joining_keeps_momentum),
     };
     tl_log_set_level(TL_LOG_WARN);
