@@ -7,6 +7,7 @@
 #include "app/lab/gallery/commands.h"
 #include "app/lab/stability/commands.h"
 #include "app/lab/trade/commands.h"
+#include "app/manual/manual.h"
 #include "app/settings/settings.h"
 #include "app/sheet/commands.h"
 #include "app/view/commands.h"
@@ -88,9 +89,12 @@ static const struct tl_command commands[] = {
     {"info", "info FILE|fabrics|presets|garments [--json]",
      "Prints what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
      tl_command_info},
-    {"help", "help [COMMAND|options|reference]",
-     "Lists the commands, explains one, or prints every option (reference: as a Markdown page).", 0,
-     tl_command_help},
+    {"help",
+     "help [COMMAND|options|reference]\n       toile help man [COMMAND]\n       toile help complete LINE",
+     "Lists the commands, explains one, or prints every option (reference: as a Markdown page; man: as a "
+     "page "
+     "of the manual). complete: what can stand at the end of a command line, for the shell.",
+     0, tl_command_help},
 };
 
 const struct tl_command *tl_command_find(const char *name, tl_error *error)
@@ -119,9 +123,22 @@ static bool print_command_help(const char *name, tl_error *error)
     return true;
 }
 
+static bool print_manual(const struct tl_manual *manual, const char *name, tl_error *error)
+{
+    const struct tl_command *command = name ? tl_command_find(name, error) : NULL;
+    if (name && !command)
+        return false;
+    if (command)
+        tl_manual_print_command(manual, command, stdout);
+    else
+        tl_manual_print(manual, stdout);
+    return true;
+}
+
 bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
 {
     const char *topic = arguments->positional_count ? arguments->positionals[0] : NULL;
+    const char *subject = arguments->positional_count > 1 ? arguments->positionals[1] : NULL;
     struct tl_settings settings;
     struct tl_binding bindings[TL_SETTINGS_TABLES];
     tl_settings_bind(&settings, bindings);
@@ -132,6 +149,14 @@ bool tl_command_help(const struct tl_arguments *arguments, tl_error *error)
     }
     if (topic && strcmp(topic, "reference") == 0) {
         tl_options_print_reference(bindings, TL_SETTINGS_TABLES, stdout);
+        return true;
+    }
+    const struct tl_manual manual = {TOILE_VERSION, commands, TL_COUNT(commands), bindings,
+                                     TL_SETTINGS_TABLES};
+    if (topic && strcmp(topic, "man") == 0)
+        return print_manual(&manual, subject, error);
+    if (topic && strcmp(topic, "complete") == 0) {
+        tl_complete_print(&manual, subject ? subject : "", stdout);
         return true;
     }
     if (topic)

@@ -137,7 +137,8 @@ static const struct flag flags_known[] = {
     {"--video", TL_FLAGS_FLY, FLAG_TEXT, AT(video), NULL, "FILE.mp4",
      "write a video of the flight; .mp4, .mkv or .mov, by ffmpeg"},
     {"--against", TL_FLAGS_FLY, FLAG_TEXT, AT(against), NULL, "FOLDER",
-     "compare with an earlier flight, job by job"},
+     "compare with an earlier flight, job by job; without a verdict where the wall and the CPU time of the "
+     "frame disagree, as on a machine that was busier in one of them"},
     {"--replay", TL_FLAGS_FLY, FLAG_TEXT, AT(replay), NULL, "FOLDER",
      "fly an earlier flight's path at its levels: the images are the same to the bit"},
     {"--oracle", TL_FLAGS_FLY, FLAG_WHOLE, AT(oracle_every), NULL, "N",
@@ -315,14 +316,24 @@ void tl_arguments_release(struct tl_arguments *arguments)
     *arguments = (struct tl_arguments){0};
 }
 
-void tl_arguments_print_flags(unsigned flags)
+bool tl_arguments_flag(unsigned flags, size_t index, struct tl_flag_text *out)
 {
     for (size_t i = 0; i < TL_COUNT(flags_known); i++) {
-        if (!belongs(&flags_known[i], flags))
+        const struct flag *flag = &flags_known[i];
+        if (!belongs(flag, flags) || index-- > 0)
             continue;
+        *out = (struct tl_flag_text){flag->name, flag->value, flag->key, flag->help};
+        return true;
+    }
+    return false;
+}
+
+void tl_arguments_print_flags(unsigned flags)
+{
+    struct tl_flag_text flag;
+    for (size_t i = 0; tl_arguments_flag(flags, i, &flag); i++) {
         char left[64];
-        snprintf(left, sizeof left, "%s %s", flags_known[i].name,
-                 flags_known[i].value ? flags_known[i].value : "");
-        printf("  %-26s %s\n", left, flags_known[i].help);
+        snprintf(left, sizeof left, "%s %s", flag.name, flag.value ? flag.value : "");
+        printf("  %-26s %s\n", left, flag.help);
     }
 }

@@ -5,6 +5,7 @@
 
 #include "config/error.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #define TL_POSITIONALS_MAX 64
@@ -63,6 +64,16 @@ struct tl_arguments {
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
 void tl_arguments_release(struct tl_arguments *arguments);
+
+/* A flag as it is documented; strings are static. */
+struct tl_flag_text {
+    const char *name;  /* "--garment" */
+    const char *value; /* name of its value; NULL: it takes none */
+    const char *key;   /* the option that it sets, "scene.garment"; NULL: none */
+    const char *help;
+};
+/* The flags of a set in the order of --help; false after the last. Pure. */
+bool tl_arguments_flag(unsigned flags, size_t index, struct tl_flag_text *out);
 
 /* The flags of a set, one a line, for --help. */
 void tl_arguments_print_flags(unsigned flags);

@@ -101,6 +101,23 @@ void tl_gpu_destroy(tl_gpu **gpu)
     *gpu = NULL;
 }
 
+bool tl_gpu_bind(tl_gpu *gpu, tl_error *error)
+{
+    if (gpu->display == EGL_NO_DISPLAY ||
+        eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context))
+        return true;
+    return tl_fail(
+        error, TL_DEVICE,
+        "EGL: the context cannot be used on this thread (EGL error 0x%x): is it in use on another?",
+        (unsigned)eglGetError());
+}
+
+void tl_gpu_unbind(tl_gpu *gpu)
+{
+    if (gpu->display != EGL_NO_DISPLAY)
+        eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
 const char *tl_gpu_name(const tl_gpu *gpu)
 {
     return gpu->name;

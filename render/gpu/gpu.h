@@ -21,6 +21,11 @@ tl_gpu *tl_gpu_create_headless(tl_error *error);
 tl_gpu *tl_gpu_create_current(tl_error *error);
 void tl_gpu_destroy(tl_gpu **gpu);
 
+/* Makes a headless context current on this thread, or current on none, so that several contexts, or several
+ * threads one after the other, can be used by one program. Nothing happens to a window's. */
+bool tl_gpu_bind(tl_gpu *gpu, tl_error *error);
+void tl_gpu_unbind(tl_gpu *gpu);
+
 const char *tl_gpu_name(const tl_gpu *gpu);     /* GL_RENDERER and version, for reports */
 bool tl_gpu_is_software(const tl_gpu *gpu);     /* Mesa's llvmpipe: it runs on the cores of the CPU */
 size_t tl_gpu_message_count(const tl_gpu *gpu); /* GL debug messages so far */

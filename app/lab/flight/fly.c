@@ -191,7 +191,11 @@ static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_f
     const struct tl_render_settings render = tl_settings_render(&settings);
     if (!tl_renderer_draw(headless->renderer, &shown, &render, error))
         return false;
-    frame->total_ms = tl_stopwatch_read(&watch).wall_ms; /* every job ends with a glFinish */
+    const struct tl_taken taken = tl_stopwatch_read(&watch); /* every job ends with a glFinish */
+    frame->total_ms = taken.wall_ms;
+    frame->cpu_ms = taken.cpu_ms;
+    if (getloadavg(&frame->load, 1) != 1)
+        frame->load = NAN;
     frame->levels = choice.levels;
     frame->predicted_ms = choice.predicted_ms;
     frame->error = choice.error;

@@ -21,6 +21,8 @@
 
 struct tl_flight_frame {
     double total_ms, cloth_ms;
+    double cpu_ms; /* of all threads of the process, in total_ms; NaN: an older version did not record it */
+    double load;   /* of the machine, averaged over the minute before; NaN: as above */
     double predicted_ms; /* NaN: nothing was known yet */
     double error;        /* estimated, of the reduced levels; NaN: unknown */
     double job_ms[TL_JOBS_MAX];
@@ -36,7 +38,8 @@ struct tl_flight_frame {
 /* A frame of which nothing is measured yet. */
 #define TL_FLIGHT_FRAME_EMPTY                                                                                \
     {                                                                                                        \
-        .garment_flip = NAN, .garment_flip_worst = NAN, .flip_mean = NAN, .rel_rmse = NAN                    \
+        .cpu_ms = NAN, .load = NAN, .garment_flip = NAN, .garment_flip_worst = NAN, .flip_mean = NAN,        \
+        .rel_rmse = NAN                                                                                      \
     }
 
 struct tl_flight_picture {

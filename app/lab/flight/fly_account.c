@@ -82,7 +82,7 @@ static void add_replay(cJSON *summary, const struct tl_flight_account *account)
                        account->first_different < 0 ? (double)NAN : account->first_different);
 }
 
-static const char *const verdicts[] = {"alike", "faster", "slower"};
+static const char *const verdicts[] = {"alike", "faster", "slower", "unclear"};
 
 static void add_against(cJSON *summary, const struct tl_flight_account *account)
 {
@@ -123,6 +123,8 @@ cJSON *tl_flight_summary(const struct tl_flight_account *account)
     tl_json_add_number(summary, "mean_ms", figures->mean_ms);
     tl_json_add_number(summary, "worst_ms", figures->worst_ms);
     tl_json_add_number(summary, "cloth_median_ms", figures->cloth_ms);
+    tl_json_add_number(summary, "cpu_p50_ms", figures->cpu_p50_ms);
+    tl_json_add_number(summary, "load", figures->load);
     tl_json_add_number(summary, "within_1_1x", figures->within);
     tl_json_add_number(summary, "over_budget_frames",
                        flight->budget_ms > 0 ? figures->over_budget : (double)NAN);
@@ -159,13 +161,17 @@ void tl_flight_write_summary(const struct tl_flight_account *account, FILE *out)
 
 static void print_ratios(const struct tl_flight_account *account, FILE *out)
 {
-    static const char *const words[] = {"", "faster", "SLOWER"};
+    static const char *const words[] = {"", "faster", "SLOWER", "unclear"};
     fprintf(out, "\nagainst %s      this ms    that ms    ratio   95 %% interval\n", account->against);
     for (int i = 0; i < account->ratio_count; i++) {
         const struct tl_flight_ratio *ratio = &account->ratios[i];
         fprintf(out, "  %-14s %9.3f  %9.3f  %7.3f   %.3f to %.3f  %s\n", ratio->name, ratio->this_ms,
                 ratio->that_ms, ratio->ratio, ratio->low, ratio->high, words[ratio->verdict]);
     }
+    if (account->ratio_count > 0 && account->ratios[0].verdict == TL_FLIGHT_UNCLEAR)
+        fputs("no verdict: wall time and CPU time of the frame disagree, or one flight has no CPU time: the "
+              "machine was busier in one of them, or the work is spread over other threads\n",
+              out);
 }
 
 void tl_flight_print(const struct tl_flight_account *account, FILE *out)
@@ -178,6 +184,10 @@ void tl_flight_print(const struct tl_flight_account *account, FILE *out)
     }
     fprintf(out, "%d frames: median %.2f ms, 95 %% within %.2f ms, 99 %% within %.2f ms, longest %.2f ms\n",
             flight->count, figures->p50_ms, figures->p95_ms, figures->p99_ms, figures->worst_ms);
+    if (isfinite(figures->cpu_p50_ms))
+        fprintf(out,
+                "CPU time of a frame, all threads: median %.2f ms; load of the machine: %.2f on %d cores\n",
+                figures->cpu_p50_ms, figures->load, account->cores);
     if (flight->budget_ms > 0)
         fprintf(out, "%.2f %% of %d frames within 1.1 x %g ms after the first second, %d above %g ms\n",
                 100 * figures->within, figures->judged, flight->budget_ms, figures->over_budget,

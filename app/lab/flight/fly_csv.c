@@ -19,6 +19,8 @@ static const struct {
     const char *format;
 } numbers[] = {
     {"total_ms", offsetof(struct tl_flight_frame, total_ms), "%.4f"},
+    {"cpu_ms", offsetof(struct tl_flight_frame, cpu_ms), "%.4f"},
+    {"load", offsetof(struct tl_flight_frame, load), "%.2f"},
     {"cloth_ms", offsetof(struct tl_flight_frame, cloth_ms), "%.4f"},
     {"predicted_ms", offsetof(struct tl_flight_frame, predicted_ms), "%.4f"},
     {"error_estimate", offsetof(struct tl_flight_frame, error), "%.6g"},

@@ -105,6 +105,14 @@ struct tl_flight_figures tl_flight_measure(const struct tl_flight *flight)
         add_number(&numbers, flight->frames[i].cloth_ms);
     figures.cloth_ms = tl_median(numbers.values, numbers.count);
     numbers.count = 0;
+    for (int i = flight->warm_up; i < flight->count; i++)
+        add_number(&numbers, flight->frames[i].cpu_ms);
+    figures.cpu_p50_ms = tl_median(numbers.values, numbers.count);
+    numbers.count = 0;
+    for (int i = flight->warm_up; i < flight->count; i++)
+        add_number(&numbers, flight->frames[i].load);
+    figures.load = mean_of(&numbers);
+    numbers.count = 0;
     for (int i = flight->warm_up; i < flight->count; i++) {
         const struct tl_flight_frame *frame = &flight->frames[i];
         add_number(&numbers, fabs(frame->predicted_ms - frame->total_ms) / frame->total_ms);
@@ -171,11 +179,14 @@ struct pairs {
     size_t count;
 };
 
-enum { WHOLE_FRAME = -2, CLOTH = -1 }; /* what is no job */
+enum { WHOLE_FRAME = -3, FRAME_CPU = -2, CLOTH = -1 }; /* what is no job */
+static const char *const no_jobs[] = {"frame", "frame (CPU)", "cloth"};
 
 static double value_of(const struct tl_flight_frame *frame, int job)
 {
-    return job == WHOLE_FRAME ? frame->total_ms : job == CLOTH ? frame->cloth_ms : frame->job_ms[job];
+    if (job >= 0)
+        return frame->job_ms[job];
+    return job == WHOLE_FRAME ? frame->total_ms : job == FRAME_CPU ? frame->cpu_ms : frame->cloth_ms;
 }
 
 static void find_pairs(const struct tl_flight *here, int job, const struct tl_flight *there, int other_job,
@@ -209,6 +220,16 @@ static void judge(struct tl_flight_ratio *ratio, double frame_ms)
         ratio->verdict = TL_FLIGHT_FASTER;
 }
 
+/* Wall and CPU time of the frame, the first two rows, have to agree: see the header. */
+static void withhold(struct tl_flight_ratio *ratios, int count)
+{
+    if (count > 1 && strcmp(ratios[1].name, no_jobs[FRAME_CPU - WHOLE_FRAME]) == 0 &&
+        ratios[0].verdict == ratios[1].verdict)
+        return;
+    for (int i = 0; i < count; i++)
+        ratios[i].verdict = TL_FLIGHT_UNCLEAR;
+}
+
 int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *there,
                       struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX])
 {
@@ -217,9 +238,8 @@ int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *ther
     struct pairs pairs = {.here = TL_NEW_ARRAY(double, (size_t)here->count),
                           .there = TL_NEW_ARRAY(double, (size_t)here->count)};
     int count = 0;
-    double frame_ms = 0;
     for (int job = WHOLE_FRAME; job < here->job_count; job++) {
-        const char *name = job == WHOLE_FRAME ? "frame" : job == CLOTH ? "cloth" : here->job_names[job];
+        const char *name = job < 0 ? no_jobs[job - WHOLE_FRAME] : here->job_names[job];
         int other = job < 0 ? job : find_job(there, name);
         if (other == there->job_count)
             continue;
@@ -229,11 +249,10 @@ int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *ther
         double block = fmax(fmin(rint(here->frame_rate), floor((double)pairs.count / blocks)), 1);
         out[count] = tl_ratio_of_medians(pairs.here, pairs.there, pairs.count, (size_t)block);
         snprintf(out[count].name, sizeof out[count].name, "%s", name);
-        if (job == WHOLE_FRAME)
-            frame_ms = out[count].that_ms;
-        judge(&out[count], frame_ms);
+        judge(&out[count], out[job == FRAME_CPU ? count : 0].that_ms);
         count++;
     }
+    withhold(out, count);
     free(pairs.here);
     free(pairs.there);
     return count;

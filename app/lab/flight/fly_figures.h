@@ -12,6 +12,8 @@ struct tl_flight_figures {
     int judged; /* frames after the warm-up */
     double mean_ms, p50_ms, p95_ms, p99_ms, worst_ms;
     double cloth_ms;         /* median */
+    double cpu_p50_ms;       /* median of the frames' CPU time; NaN: not recorded */
+    double load;             /* of the machine: mean of the frames; NaN: not recorded */
     double within;           /* share of frames that keep their time; NaN without a budget */
     int over_budget;         /* frames above the budget itself */
     double prediction_error; /* median of |predicted - measured| / measured; NaN: nothing was predicted */
@@ -40,18 +42,19 @@ struct tl_flight_job tl_flight_measure_job(const struct tl_flight *flight, int j
 /* The time of one part over its time in an earlier flight along the same path: the ratio of medians
  * over frames that both have, and the interval that holds it with 95 % by a bootstrap over the same pairs, in
  * blocks of a second, because successive frames are alike. It includes the noise within each run, but not a
- * machine that was busier during one of them. */
+ * machine that was busier during one of them: that shows in the frame's CPU time, which does not grow with
+ * its wall time then. Where the verdicts of the two differ, or CPU time was not recorded, no row has one. */
 struct tl_flight_ratio {
-    char name[TL_JOB_NAME_BYTES]; /* "frame", "cloth" or a job's */
+    char name[TL_JOB_NAME_BYTES]; /* "frame", "frame (CPU)", "cloth" or a job's */
     double this_ms, that_ms;
     double ratio, low, high;
-    enum { TL_FLIGHT_ALIKE, TL_FLIGHT_FASTER, TL_FLIGHT_SLOWER } verdict;
+    enum { TL_FLIGHT_ALIKE, TL_FLIGHT_FASTER, TL_FLIGHT_SLOWER, TL_FLIGHT_UNCLEAR } verdict;
 };
-#define TL_FLIGHT_RATIOS_MAX (TL_JOBS_MAX + 2)
+#define TL_FLIGHT_RATIOS_MAX (TL_JOBS_MAX + 3)
 
-/* Compares the whole frame, the cloth, and every job that ran in both flights, in this order; returns the
- * number of ratios. A job counts as slower or faster when 1 lies outside of its interval and the difference
- * of medians is at least TL_FLIGHT_NOTICED of the frame's. */
+/* Compares the whole frame, its CPU time, the cloth, and every job that ran in both flights, in this order;
+ * returns the number of ratios. A job counts as slower or faster when 1 lies outside of its interval and the
+ * difference of medians is at least TL_FLIGHT_NOTICED of the frame's. */
 int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *there,
                       struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX]);
 #define TL_FLIGHT_NOTICED 0.01

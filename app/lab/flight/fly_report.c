@@ -444,7 +444,7 @@ static void print_oracle(const struct tl_flight_account *account, FILE *out)
 static void print_against(const struct tl_flight_account *account, FILE *out)
 {
     static const char *const heads[] = {"", "this, ms", "that, ms", "ratio", "95 % interval", ""};
-    static const char *const words[] = {"", "faster", "slower"};
+    static const char *const words[] = {"", "faster", "slower", "unclear"};
     struct tl_cells cells = {0};
     char text[400];
     if (!account->against)
@@ -452,7 +452,9 @@ static void print_against(const struct tl_flight_account *account, FILE *out)
     tl_report_heading(out, "Against an earlier flight");
     snprintf(text, sizeof text,
              "Medians of this flight over those of %.150s, frame by frame along the same path. The interval "
-             "includes the noise within each run, but not a machine that was busier in one of them.",
+             "includes the noise within each run, but not a machine that was busier in one of them: where "
+             "wall and "
+             "CPU time of the frame disagree, no row has a verdict.",
              account->against);
     tl_report_paragraph(out, text);
     for (size_t i = 0; i < TL_COUNT(heads); i++)

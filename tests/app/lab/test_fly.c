@@ -40,6 +40,7 @@ static struct tl_flight make_flight(int count, uint32_t seed)
         frame->job_ms[1] = 3 + 0.2 * draw();
         frame->job_ms[2] = i % 4 == 0 ? 1 + 0.1 * draw() : 0;
         frame->total_ms = frame->cloth_ms + frame->job_ms[0] + frame->job_ms[1] + frame->job_ms[2];
+        frame->cpu_ms = 1.8 * frame->total_ms;
         frame->predicted_ms = 1.02 * frame->total_ms;
         frame->error = 0.01;
         frame->levels.of[TL_CONTROL_SCALE] = (uint8_t)(i % 3);
@@ -150,6 +151,7 @@ static void a_slower_job_is_named(void **unused)
         double more_ms = 0.5 * after.frames[i].job_ms[1];
         after.frames[i].job_ms[1] += more_ms;
         after.frames[i].total_ms += more_ms;
+        after.frames[i].cpu_ms += 1.5 * more_ms;
     }
     memcpy(after.job_names[0], "light", 6); /* another order of columns */
     memcpy(after.job_names[1], "points", 7);
@@ -160,8 +162,9 @@ static void a_slower_job_is_named(void **unused)
     }
     struct tl_flight_ratio ratios[TL_FLIGHT_RATIOS_MAX];
     int count = tl_flight_compare(&after, &before, ratios);
-    assert_int_equal(count, 5);
+    assert_int_equal(count, 6);
     assert_string_equal(ratios[0].name, "frame");
+    assert_int_equal(find_ratio(ratios, count, "frame (CPU)")->verdict, TL_FLIGHT_SLOWER);
     const struct tl_flight_ratio *light = find_ratio(ratios, count, "light");
     assert_int_equal(light->verdict, TL_FLIGHT_SLOWER);
     assert_true(light->low < 1.5 && light->high > 1.5 && light->low > 1.4 && light->high < 1.6);
@@ -171,6 +174,33 @@ static void a_slower_job_is_named(void **unused)
     assert_int_equal(find_ratio(ratios, count, "lobes")->verdict, TL_FLIGHT_ALIKE);
     count = tl_flight_compare(&before, &after, ratios); /* the other way round it is faster */
     assert_int_equal(find_ratio(ratios, count, "light")->verdict, TL_FLIGHT_FASTER);
+    tl_flight_release(&before);
+    tl_flight_release(&after);
+}
+
+/* A machine that was busier: wall times double, CPU time stays. Nothing is called slower then, nor where CPU
+ * time is not known. */
+static void a_busy_machine_gives_no_verdict(void **unused)
+{
+    (void)unused;
+    struct tl_flight before = make_flight(400, 5), after = make_flight(400, 99);
+    struct tl_flight_ratio ratios[TL_FLIGHT_RATIOS_MAX];
+    int count = tl_flight_compare(&after, &before, ratios);
+    for (int i = 0; i < count; i++)
+        assert_int_equal(ratios[i].verdict, TL_FLIGHT_ALIKE);
+    for (int i = 0; i < after.count; i++) {
+        after.frames[i].total_ms *= 2;
+        for (int job = 0; job < after.job_count; job++)
+            after.frames[i].job_ms[job] *= 2;
+    }
+    for (int known = 1; known >= 0; known--) {
+        count = tl_flight_compare(&after, &before, ratios);
+        assert_int_equal(count, 5 + known);
+        for (int i = 0; i < count; i++)
+            assert_int_equal(ratios[i].verdict, TL_FLIGHT_UNCLEAR);
+        for (int i = 0; i < after.count; i++) /* as a record of an older version is read */
+            after.frames[i].cpu_ms = NAN;
+    }
     tl_flight_release(&before);
     tl_flight_release(&after);
 }
@@ -291,7 +321,7 @@ int main(void)
         cmocka_unit_test(percentiles_are_the_nearest_rank), cmocka_unit_test(the_warm_up_does_not_count),
         cmocka_unit_test(jobs_count_where_they_ran),        cmocka_unit_test(a_slower_job_is_named),
         cmocka_unit_test(noise_is_seldom_called_slower),    cmocka_unit_test(records_come_back),
-        cmocka_unit_test(broken_records_are_refused),
+        cmocka_unit_test(broken_records_are_refused),       cmocka_unit_test(a_busy_machine_gives_no_verdict),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
