@@ -398,6 +398,7 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
     resources->yaw = frame->environment_yaw;
     resources->camera =
         (struct tl_camera_input){frame->camera, tl_view_make(&frame->camera, image->width, image->height)};
+    resources->shift = tl_input_shift(&renderer->rest, &resources->camera.view, image->width, image->height);
     resources->size = (struct tl_size_input){
         .width = image->width, .height = image->height, .supersample = image->supersample};
     tl_image_samples(image, &resources->size.columns, &resources->size.rows);
@@ -613,11 +614,13 @@ double tl_renderer_standard_error(const tl_renderer *renderer)
 bool tl_renderer_is_at_rest(const tl_renderer *renderer)
 {
     const struct tl_light_params *light = &renderer->settings.light;
-    bool is_done = light->visibility == TL_VISIBILITY_RAYS ? renderer->rest.is_done
-                                                           : renderer->rest.image >= light->rounds - 1;
+    const struct tl_rest *rest = &renderer->rest;
+    bool is_done = light->visibility == TL_VISIBILITY_RAYS ? rest->is_done : rest->image >= light->rounds - 1;
+    bool averages = tl_light_averages(light) && tl_inspect_averages(renderer->settings.image.view);
     bool waits = light->visibility != TL_VISIBILITY_RAYS && tl_shadow_maps_wait(renderer->resources.maps);
-    return renderer->resources.valid & TL_BIT(TL_MADE_IMAGE) && renderer->rest.is_captured && !waits &&
-           (is_done || !tl_light_averages(light) || !tl_inspect_averages(renderer->settings.image.view));
+    /* Shifted samples have rounds of their own, of which the image needs one each. */
+    bool is_refined = rest->shift_set > 0 ? rest->shifts_left == 0 : is_done || !averages;
+    return renderer->resources.valid & TL_BIT(TL_MADE_IMAGE) && rest->is_captured && !waits && is_refined;
 }
 
 const tl_plan *tl_renderer_last_plan(const tl_renderer *renderer)

@@ -168,7 +168,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     /* The first image must succeed: there are no earlier settings to go back to. */
     review->good = review->wanted;
     review->changed = true;
-    if (!tl_review_draw_sharp(review, error))
+    if (!tl_review_draw_first(review, error))
         return false;
     tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->gpu));
     if (is_draft)

@@ -34,6 +34,12 @@ struct tl_camera_input {
     struct tl_view view; /* of an image of this size */
 };
 
+/* The camera's view of the image that is drawn, and how many were averaged before it. */
+struct tl_shift_input {
+    struct tl_view view;
+    int before;
+};
+
 struct tl_size_input {
     int width, height, supersample; /* pixels, samples a pixel side */
     int columns, rows;              /* samples */
@@ -93,6 +99,9 @@ struct tl_moment {
 struct tl_rest {
     int image, scene;
     bool is_done;      /* rays: all rounds of this image are in */
+    int shift_set;     /* images of a set that are shifted; 0: none */
+    int shifts;        /* ... that there were in this rest */
+    int shifts_left;   /* ... that are to come once all rounds are in */
     uint64_t captured; /* environment maps: the signature of the scene that they show; 0: none */
     int capture_age;   /* ... frames ago */
     bool is_captured;  /* ... and it is the one that is there */
@@ -102,6 +111,10 @@ struct tl_rest {
 void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,
                    const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
                    uint64_t signatures[TL_INPUT_COUNT]);
+
+/* The view of the image to be drawn, `view` being that of the camera. Pixels. */
+struct tl_shift_input tl_input_shift(const struct tl_rest *rest, const struct tl_view *view, int width,
+                                     int height);
 
 /* The options of the inputs that hold some of a table. */
 struct tl_light_params tl_input_light(const struct tl_light_params *light);

@@ -132,6 +132,7 @@
     IO(READS_HANDLE, surfaces)                                                                               \
     IO(READS, ground)                                                                                        \
     IO(AFTER, TL_MADE_DETAIL)                                                                                \
+    IO(READS, shift)                                                                                         \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
     IO(READS, ground_input)                                                                                  \
@@ -151,6 +152,7 @@
 #define TL_IDS_JOB(IO)                                                                                       \
     IO(READS_HANDLE, surfaces)                                                                               \
     IO(READS, ground)                                                                                        \
+    IO(READS, shift)                                                                                         \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
     IO(READS, ground_input)                                                                                  \
@@ -171,6 +173,7 @@
     IO(READS_HANDLE, surfaces)                                                                               \
     IO(READS, ground)                                                                                        \
     IO(READS, gbuffer)                                                                                       \
+    IO(READS, shift)                                                                                         \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
     IO(READS, ground_input)                                                                                  \
@@ -257,6 +260,7 @@
     IO(READS, suns)                                                                                          \
     IO(READS_HANDLE, trace)                                                                                  \
     IO(READS, yaw)                                                                                           \
+    IO(READS, shift)                                                                                         \
     IO(READS, camera)                                                                                        \
     IO(READS, shapes)                                                                                        \
     IO(READS, ground)                                                                                        \
@@ -275,6 +279,7 @@
     IO(READS, exact)                                                                                         \
     IO(READS, suns)                                                                                          \
     IO(READS, yaw)                                                                                           \
+    IO(READS, shift)                                                                                         \
     IO(READS, camera)                                                                                        \
     IO(READS, size)                                                                                          \
     IO(READS, shapes)                                                                                        \
@@ -421,6 +426,7 @@
     IO(READS, ground_input)                                                                                  \
     IO(AFTER, TL_MADE_LAMP_MAPS)                                                                             \
     IO(AFTER, TL_MADE_LAMP_RAYS)                                                                             \
+    IO(READS, shift)                                                                                         \
     IO(READS, camera)                                                                                        \
     IO(READS, lamps)                                                                                         \
     IO(READS, light_options)                                                                                 \
@@ -436,6 +442,7 @@
     IO(AFTER, TL_INPUT_RATIO)                                                                                \
     IO(AFTER, TL_MADE_LAMPLIGHT)                                                                             \
     IO(READS, gbuffer)                                                                                       \
+    IO(READS, shift)                                                                                         \
     IO(READS, size)                                                                                          \
     IO(WRITES, present)                                                                                      \
     IO(USES, gpu)

@@ -18,6 +18,7 @@ const char *const tl_resource_names[] = {
     [TL_INPUT_RAYS] = "ray options",
     [TL_INPUT_ROUND] = "round",
     [TL_INPUT_SCENE_ROUND] = "round of the scene",
+    [TL_INPUT_SHIFT] = "shift by a part of a pixel",
     [TL_INPUT_LIGHT] = "light options",
     [TL_INPUT_LAMPS] = "lamps and shading options",
     [TL_INPUT_REFERENCE] = "reference options",

@@ -23,6 +23,7 @@ enum tl_resource {
     TL_INPUT_RAYS,        /* how rays are spent */
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
     TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
+    TL_INPUT_SHIFT,       /* which of the images that are shifted by parts of a pixel */
     TL_INPUT_LIGHT,       /* how light is composed */
     TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
     TL_INPUT_REFERENCE,

@@ -63,6 +63,7 @@ struct tl_surroundings {
     RESOURCE(ray_options, TL_INPUT_RAYS, struct tl_rays_input)                                               \
     RESOURCE(round, TL_INPUT_ROUND, int)                                                                     \
     RESOURCE(scene_round, TL_INPUT_SCENE_ROUND, int)                                                         \
+    RESOURCE(shift, TL_INPUT_SHIFT, struct tl_shift_input)                                                   \
     RESOURCE(light_options, TL_INPUT_LIGHT, struct tl_light_params)                                          \
     RESOURCE(lamps, TL_INPUT_LAMPS, struct tl_lamps_input)                                                   \
     RESOURCE(reference_options, TL_INPUT_REFERENCE, struct tl_reference_params)                              \

@@ -139,11 +139,12 @@ bool tl_run_resolve(const struct tl_resolve_job *job, tl_error *error)
     (void)error;
     if (job->light->is_finished) {
         tl_present_resolve_texels(job->present, job->light->texels, job->size->columns, job->size->rows,
-                                  job->size->width, job->size->height);
+                                  job->size->width, job->size->height, job->shift->before);
         return true;
     }
     tl_present_resolve(job->present, *job->gpu, &job->light->target.colours[0],
-                       &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->width, job->size->height);
+                       &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->width, job->size->height,
+                       job->shift->before);
     return true;
 }
 

@@ -131,7 +131,7 @@ bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
 bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
 {
     (void)error;
-    tl_pixel_triangles_make(job->pixel_triangles, job->ids, &job->camera->view, &job->shapes->ranges,
+    tl_pixel_triangles_make(job->pixel_triangles, job->ids, &job->shift->view, &job->shapes->ranges,
                             job->shade_materials);
     const struct tl_sun_pixels_request request = {.ids = job->ids,
                                                   .triangles = job->pixel_triangles,
@@ -153,7 +153,7 @@ static void enlarge(const struct tl_shade_job *job, const float *shaded)
         .from = shaded,
         .from_width = size->columns,
         .from_height = size->rows,
-        .to = tl_present_begin_cpu_image(job->present, size->width, size->height),
+        .to = tl_present_begin_cpu_image(job->present, size->width, size->height, job->shift->before),
         .to_width = size->width,
         .to_height = size->height};
     const struct tl_outlines_request outlines = {.samples = job->ids,
@@ -162,10 +162,11 @@ static void enlarge(const struct tl_shade_job *job, const float *shaded)
                                                  .ranges = &job->shapes->ranges,
                                                  .materials = job->shade_materials,
                                                  .ground = job->ground_input->is_drawn ? job->ground : NULL,
-                                                 .view = &job->camera->view};
+                                                 .view = &job->shift->view};
     tl_resample(&resample);
     if (tl_size_has_outlines(size))
         tl_outlines_draw(&outlines, resample.to);
+    tl_present_end_cpu_image(job->present);
 }
 
 bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
@@ -181,12 +182,15 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
                                               .sun_pixels = job->sun_pixels,
                                               .cover_m = tl_points_cover_m(job->trace),
                                               .ground = job->ground_input->is_drawn ? job->ground : NULL,
-                                              .view = &job->camera->view,
+                                              .view = &job->shift->view,
                                               .environment_yaw = *job->yaw};
     const struct tl_size_input *size = job->size;
     int side = size->columns / size->width;
     if (side * size->width == size->columns && side * size->height == size->rows) {
-        tl_pixels_shade(&request, side, tl_present_begin_cpu_image(job->present, size->width, size->height));
+        tl_pixels_shade(
+            &request, side,
+            tl_present_begin_cpu_image(job->present, size->width, size->height, job->shift->before));
+        tl_present_end_cpu_image(job->present);
         return true;
     }
     float *shaded = tl_resize(NULL, 4 * (size_t)size->columns * (size_t)size->rows, sizeof *shaded);
@@ -300,7 +304,7 @@ bool tl_run_lamps(const struct tl_lamps_job *job, tl_error *error)
     bool passes = *job->facts & TL_BIT(TL_SCENE_PASSES);
     const struct tl_local_request request = {.gbuffer = job->gbuffer,
                                              .light = &job->light->target,
-                                             .view = &job->camera->view,
+                                             .view = &job->shift->view,
                                              .surfaces = job->surfaces,
                                              .surface_count = job->shapes->drawn_count,
                                              .ground = job->ground_input->is_drawn ? job->ground : NULL,

@@ -62,7 +62,7 @@ bool tl_run_blur(const struct tl_blur_job *job, tl_error *error)
 #define GBUFFER_REQUEST(job)                                                                                 \
     (struct tl_gbuffer_request)                                                                              \
     {                                                                                                        \
-        .view = &(job)->camera->view, .width = (job)->size->columns, .height = (job)->size->rows,            \
+        .view = &(job)->shift->view, .width = (job)->size->columns, .height = (job)->size->rows,             \
         .surfaces = (job)->surfaces, .drawn = (job)->shapes->drawn, .surface_count = SEEN_COUNT(job),        \
         .ground = SEEN_GROUND(job), .detail = (job)->detail_steps,                                           \
         .blends_lobes = (job)->lobes_input->are_blended,                                                     \
@@ -80,7 +80,7 @@ bool tl_run_gbuffer(const struct tl_gbuffer_job *job, tl_error *error)
 bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
 {
     const struct tl_size_input *size = job->size;
-    struct tl_gbuffer_request request = {.view = &job->camera->view,
+    struct tl_gbuffer_request request = {.view = &job->shift->view,
                                          .width = size->columns,
                                          .height = size->rows,
                                          .surfaces = job->surfaces,

@@ -27,6 +27,8 @@ void tl_present_release(struct tl_present *present)
         for (int same_size = 0; same_size < 2; same_size++)
             tl_program_destroy(&present->shows[shown][same_size]);
     tl_linear_image_release(&present->image);
+    free(present->part.texels);
+    present->part = (struct tl_image_part){0};
     tl_picture_release(&present->picture);
     tl_backdrop_release(&present->backdrop);
 }
@@ -41,15 +43,34 @@ bool tl_present_reload(struct tl_present *present, tl_error *error)
     return fine;
 }
 
-float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height)
+float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height, int before)
 {
-    return tl_linear_image_begin_cpu(&present->image, width, height);
+    struct tl_image_part *part = &present->part;
+    float *texels = tl_linear_image_begin_cpu(&present->image, width, height);
+    size_t bytes = before > 0 ? 4 * sizeof(float) * (size_t)width * (size_t)height : 0;
+    part->before = before;
+    if (bytes != part->bytes) {
+        free(part->texels);
+        part->texels = bytes > 0 ? tl_alloc_lines(bytes, 1) : NULL;
+        part->bytes = bytes;
+    }
+    return before > 0 ? part->texels : texels;
+}
+
+void tl_present_end_cpu_image(struct tl_present *present)
+{
+    const struct tl_image_part *part = &present->part;
+    float *mean = present->image.texels, share = 1 / (float)(part->before + 1);
+    size_t count = part->bytes / sizeof *mean;
+#pragma omp parallel for
+    for (size_t i = 0; i < count; i++)
+        mean[i] += (part->texels[i] - mean[i]) * share;
 }
 
 void tl_present_set_image(struct tl_present *present, const tl_image *image)
 {
     size_t row_floats = 4 * (size_t)image->width;
-    float *texels = tl_present_begin_cpu_image(present, image->width, image->height);
+    float *texels = tl_present_begin_cpu_image(present, image->width, image->height, 0);
     for (size_t y = 0; y < (size_t)image->height; y++) /* the image's rows run downwards */
         memcpy(texels + ((size_t)image->height - 1 - y) * row_floats, tl_image_floats(image) + y * row_floats,
                row_floats * sizeof *texels);
@@ -64,36 +85,37 @@ static float *read_texture(const tl_texture *texture)
 }
 
 static void resolve_by_resampling(struct tl_present *present, const tl_texture *lights,
-                                  const tl_texture *points, int width, int height)
+                                  const tl_texture *points, int width, int height, int before)
 {
     float *light = read_texture(lights), *point = read_texture(points);
     size_t count = (size_t)lights->width * (size_t)lights->height;
 #pragma omp parallel for
     for (size_t i = 0; i < count; i++) /* as resolve.frag has it */
         light[4 * i + 3] = point[4 * i + 3] - light[4 * i + 3];
-    tl_present_resolve_texels(present, light, lights->width, lights->height, width, height);
+    tl_present_resolve_texels(present, light, lights->width, lights->height, width, height, before);
     free(point);
     free(light);
 }
 
 void tl_present_resolve_texels(struct tl_present *present, const float *texels, int columns, int rows,
-                               int width, int height)
+                               int width, int height, int before)
 {
     const struct tl_resample resolve = {.from = texels,
                                         .from_width = columns,
                                         .from_height = rows,
-                                        .to = tl_present_begin_cpu_image(present, width, height),
+                                        .to = tl_present_begin_cpu_image(present, width, height, before),
                                         .to_width = width,
                                         .to_height = height};
     tl_resolve(&resolve);
+    tl_present_end_cpu_image(present);
 }
 
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
-                        const tl_texture *points, int width, int height)
+                        const tl_texture *points, int width, int height, int before)
 {
     int side = lights->width / width;
     if (side * width != lights->width || side * height != lights->height) {
-        resolve_by_resampling(present, lights, points, width, height);
+        resolve_by_resampling(present, lights, points, width, height, before);
         return;
     }
     tl_linear_image_begin_gpu(&present->image, gpu, width, height);
@@ -101,7 +123,14 @@ void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_textur
     glUniform1i(0, side);
     glBindTextureUnit(0, lights->id);
     glBindTextureUnit(1, points->id);
+    if (before > 0) { /* the target holds the mean of those before */
+        float share = 1 / (float)(before + 1);
+        glEnable(GL_BLEND);
+        glBlendColor(share, share, share, share);
+        glBlendFunc(GL_CONSTANT_COLOR, GL_ONE_MINUS_CONSTANT_COLOR);
+    }
     tl_gpu_draw_fullscreen(gpu);
+    glDisable(GL_BLEND);
 }
 
 static enum tl_shown shown_of(const struct tl_show_request *request)
@@ -232,5 +261,5 @@ bool tl_present_show(struct tl_present *present, tl_gpu *gpu, const struct tl_sh
 
 size_t tl_present_bytes(const struct tl_present *present)
 {
-    return tl_linear_image_bytes(&present->image) + tl_picture_bytes(&present->picture);
+    return tl_linear_image_bytes(&present->image) + present->part.bytes + tl_picture_bytes(&present->picture);
 }

@@ -20,10 +20,18 @@ enum tl_shown {
     TL_SHOWN_COUNT
 };
 
+/* One of several images whose mean is the image. */
+struct tl_image_part {
+    float *texels; /* [height][width][4] */
+    size_t bytes;
+    int before; /* how many there were before it; 0: the image itself is made */
+};
+
 struct tl_present {
     tl_program resolve;
     tl_program shows[TL_SHOWN_COUNT][2]; /* made when first used; the second where sizes are the same */
     struct tl_linear_image image;
+    struct tl_image_part part; /* that is made on the CPU for it */
     struct tl_picture picture; /* the image as it was shown last */
     struct tl_backdrop backdrop;
     struct tl_encoding encoding;
@@ -41,17 +49,20 @@ bool tl_present_create(struct tl_present *present, tl_gpu *gpu, tl_error *error)
 void tl_present_release(struct tl_present *present);
 bool tl_present_reload(struct tl_present *present, tl_error *error); /* its shaders */
 
-/* Sizes in pixels. A whole number of samples a pixel side: their box filter; else render/present/resample.h,
- * on the CPU, where it takes a third of the time that software GL would. */
+/* Sizes in pixels. `before`: the image becomes the mean of what is made and so many that were made before it,
+ * of the same size and on the same side; 0: what is made. A whole number of samples a pixel side: their box
+ * filter; else render/present/resample.h, on the CPU, where it takes a third of the time that software GL
+ * would. */
 void tl_present_resolve(struct tl_present *present, tl_gpu *gpu, const tl_texture *lights,
-                        const tl_texture *points, int width, int height);
+                        const tl_texture *points, int width, int height, int before);
 
 /* The same for light on the CPU, [rows][columns][4]: premultiplied by the coverage in alpha. */
 void tl_present_resolve_texels(struct tl_present *present, const float *texels, int columns, int rows,
-                               int width, int height);
+                               int width, int height, int before);
 
-/* Begins an image that is made on the CPU: tl_linear_image_begin_cpu. */
-float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height);
+/* Begins an image that is made on the CPU, as tl_linear_image_begin_cpu; the second call ends it. */
+float *tl_present_begin_cpu_image(struct tl_present *present, int width, int height, int before);
+void tl_present_end_cpu_image(struct tl_present *present);
 /* Takes an image that was made elsewhere: F32 RGBA, rows downwards. */
 void tl_present_set_image(struct tl_present *present, const tl_image *image);
 

@@ -7,6 +7,8 @@
 #include "render/scene/camera.h"
 #include "render/scene/lamp.h"
 
+#define TL_FRAME_SHIFTS 16
+
 /* Read-only inputs of one frame. */
 typedef struct tl_frame {
     struct tl_camera camera;
@@ -18,8 +20,10 @@ typedef struct tl_frame {
     const struct tl_lamp *lamps;
     size_t lamp_count; /* at most TL_LAMPS_MAX */
     double time_s;
-    bool aovs;  /* keep the samples that render/inspect/aovs.h reads */
-    bool still; /* a still image: every round is completed, however long that takes */
+    bool aovs;   /* keep the samples that render/inspect/aovs.h reads */
+    bool still;  /* a still image: every round is completed, however long that takes */
+    bool smooth; /* while nothing changes, the mean of TL_FRAME_SHIFTS images, each shifted by a part of a
+                    pixel: edges lose their steps. Methods that average light in passes draw one. */
 } tl_frame;
 
 #endif

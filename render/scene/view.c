@@ -35,3 +35,17 @@ struct tl_view tl_view_make(const struct tl_camera *camera, int width, int heigh
                             .near_m = near_m,
                             .far_m = far_m};
 }
+
+struct tl_view tl_view_shift(const struct tl_view *view, float right, float up)
+{
+    struct tl_view shifted = *view;
+    /* Clip coordinates are multiples of w: so are the shifts added to them. */
+    for (int column = 0; column < 4; column++) {
+        float w = view->view_projection.raw[column][3];
+        shifted.view_projection.raw[column][0] += right * w;
+        shifted.view_projection.raw[column][1] += up * w;
+    }
+    shifted.forward = glms_vec3_sub(shifted.forward, glms_vec3_scale(view->right, right));
+    shifted.forward = glms_vec3_sub(shifted.forward, glms_vec3_scale(view->up, up));
+    return shifted;
+}

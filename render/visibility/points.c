@@ -30,6 +30,7 @@ struct tl_points {
 
     struct tl_cache_probes probes;
     uint32_t *seen;   /* [probes]: frame when last visible */
+    uint32_t since;   /* those count as visible that were so since this frame */
     uint32_t *slots;  /* [clusters]: where its values are; NO_SLOT: nowhere yet */
     uint32_t *active; /* [active_count]: clusters with visible probes */
     size_t active_count, visible_count;
@@ -199,6 +200,10 @@ static void follow_changes(tl_points *points, const struct tl_points_request *re
            (size_t)request->regions->count * sizeof *request->regions->items);
     points->frame++;
     points->motion += request->moved || points->motion == 0;
+    /* Images at rest that are shifted by parts of a pixel see a few triangles more or less: what one of them
+     * sees has its rounds in all. */
+    if (request->samples || request->moved || request->only_camera || points->carried)
+        points->since = points->frame;
 }
 
 static void mark_sample(tl_points *points, const struct tl_points_request *request, size_t index)
@@ -273,7 +278,7 @@ static uint32_t visible_members(const tl_points *points, size_t cluster)
 {
     uint32_t members = 0;
     for (size_t i = 0; i < TL_CLUSTER; i++)
-        members |= (uint32_t)(points->seen[cluster * TL_CLUSTER + i] == points->frame) << i;
+        members |= (uint32_t)(points->seen[cluster * TL_CLUSTER + i] >= points->since) << i;
     return members;
 }
 

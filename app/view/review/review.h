@@ -53,6 +53,13 @@ struct tl_review_times {       /* of the last frame that had such a part */
     double longest_ms;
 };
 
+/* How images at rest are drawn. */
+struct tl_review_rest {
+    struct tl_quality levels;
+    int samples;     /* a pixel side */
+    bool is_shifted; /* the mean of shifted images: tl_frame.smooth */
+};
+
 /* Motion without input. */
 struct tl_review_motion {
     bool turntable, environment;
@@ -131,7 +138,9 @@ struct tl_review {
     tl_quality_governor *governor;
     struct tl_quality_choice quality_choice; /* of the last image */
     bool is_budgeted, is_new;                /* the last image: drawn within the budget; not presented yet */
-    bool is_exact;                           /* ...: drawn at full quality however long that took */
+    bool is_exact;                           /* ...: drawn for a file, however long that took */
+    bool is_resting;                         /* ...: one of those that refine the picture at rest */
+    struct tl_review_rest rest;
     tl_history *history;
 
     bool playing, closing, help_shown, reads_out;

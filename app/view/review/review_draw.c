@@ -15,8 +15,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The time that an image may take, which limits its quality: the budget, TL_REST_MS, or any. */
-enum image_time { TIME_BUDGET, TIME_REST, TIME_UNLIMITED };
+#define REST_SIDE 2 /* samples a pixel side, unless they take too long */
+
+/* What an image is for, which limits its time, and so its quality: the budget, TL_REST_MS, or none. */
+enum image_use { IMAGE_IN_MOTION, IMAGE_AT_REST, IMAGE_FIRST, IMAGE_SAVED };
 
 static const char *base_name(const char *path)
 {
@@ -162,11 +164,12 @@ static void step(struct tl_review *review)
     review->times.cloth = 1e3 * (tl_clock_s() - now_s);
 }
 
-static bool draw_b(struct tl_review *review, const struct tl_settings *settings, tl_error *error)
+static bool draw_b(struct tl_review *review, const struct tl_settings *settings, bool smooth, tl_error *error)
 {
     if (!tl_session_apply(review->session, settings, error))
         return false;
     tl_frame frame = tl_session_frame(review->session);
+    frame.smooth = smooth;
     const struct tl_render_settings render = tl_settings_render(settings);
     return tl_renderer_draw(review->renderer, &frame, &render, error);
 }
@@ -181,29 +184,39 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
         tl_quality_governor_choose(review->governor, review->renderer, &coming, settings);
 }
 
-/* The levels of an image at rest, and more samples a pixel than a preset for motion asks for, so that edges
- * have no steps; but for scenes in which these would take long. */
-static void choose_rest(struct tl_review *review, struct tl_settings *settings)
+/* The levels of an image at rest, and the samples that it needs so that edges have no steps: more a pixel
+ * than a preset for motion asks for, or, where these would hold a gesture up, images that are shifted by
+ * parts of a pixel one after the other. The choice stands until something changes: another one would begin
+ * again. */
+static void choose_rest(struct tl_review *review, struct tl_settings *settings, bool goes_on)
 {
-    const int smooth = 2, asked = settings->image.supersample;
+    struct tl_review_rest *rest = &review->rest;
+    const int asked = settings->image.supersample;
     const tl_frame coming = tl_session_frame(review->session);
-    settings->image.supersample = asked > smooth ? asked : smooth;
-    struct tl_quality_rest rest = tl_quality_governor_rest(review->renderer, &coming, settings);
-    if (rest.is_slow) {
-        settings->image.supersample = asked;
-        rest = tl_quality_governor_rest(review->renderer, &coming, settings);
+    if (!goes_on) {
+        settings->image.supersample = asked > REST_SIDE ? asked : REST_SIDE;
+        struct tl_quality_rest chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
+        *rest = (struct tl_review_rest){.samples = settings->image.supersample};
+        if (chosen.is_slow && settings->light.visibility == TL_VISIBILITY_RAYS) {
+            *rest = (struct tl_review_rest){.samples = asked, .is_shifted = true};
+            settings->image.supersample = asked;
+            chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
+        }
+        rest->levels = chosen.levels;
     }
-    review->quality_choice.levels = rest.levels;
+    settings->image.supersample = rest->samples;
+    review->quality_choice.levels = rest->levels;
 }
 
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
  * are compared. */
-static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum image_time time,
+static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum image_use use,
                        tl_error *error)
 {
     struct tl_quality *levels = &review->quality_choice.levels;
     struct tl_settings smooth = *settings;
-    bool is_budgeted = time == TIME_BUDGET;
+    bool is_budgeted = use == IMAGE_IN_MOTION;
+    bool goes_on = review->is_resting && !review->changed && !review->image_is_old;
     review->times.lap_s = tl_clock_s();
     if (!is_budgeted)
         *levels = (struct tl_quality){{0}};
@@ -213,31 +226,34 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
         return false;
     if (is_budgeted)
         choose_levels(review, settings);
-    if (time == TIME_REST) {
-        choose_rest(review, &smooth);
-        settings = &smooth;
-    }
+    if (use == IMAGE_AT_REST)
+        choose_rest(review, &smooth, goes_on);
+    if (use == IMAGE_SAVED && smooth.image.supersample < REST_SIDE)
+        smooth.image.supersample = REST_SIDE;
+    settings = &smooth;
     b = tl_quality_apply(levels, settings);
     if (!tl_session_apply(review->session, &b, error))
         return false;
     tl_review_lap(review, "settings and levels");
     if (is_step_due(review))
         step(review);
+    const bool is_shifted = use == IMAGE_AT_REST && review->rest.is_shifted;
     double started_s = tl_clock_s();
     if (review->wipe.renderer) {
         const struct tl_settings other = tl_review_settings_a(review, settings),
                                  a = tl_quality_apply(levels, &other);
-        if (!tl_review_draw_a(review, &a, error))
+        if (!tl_review_draw_a(review, &a, is_shifted, error))
             return false;
         review->times.began_s += tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
     }
-    if (!draw_b(review, &b, error))
+    if (!draw_b(review, &b, is_shifted, error))
         return false;
     review->times.draw = 1e3 * (tl_clock_s() - started_s);
     review->drawn_count++;
     review->is_new = true;
     review->is_budgeted = is_budgeted;
-    review->is_exact = time == TIME_UNLIMITED;
+    review->is_resting = use == IMAGE_AT_REST;
+    review->is_exact = use == IMAGE_SAVED;
     tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
              tl_session_frame_number(review->session), review->times.draw);
     return true;
@@ -256,7 +272,7 @@ static void accept_settings(struct tl_review *review, const struct tl_settings *
 }
 
 /* Draws `wanted`. When that fails, reports it and draws `good` instead; false only when that fails too. */
-static bool redraw(struct tl_review *review, enum image_time time, tl_error *error)
+static bool redraw(struct tl_review *review, enum image_use use, tl_error *error)
 {
     int width, height;
     bool is_another = review->changed || review->image_is_old; /* new content, rather than a refinement */
@@ -264,7 +280,7 @@ static bool redraw(struct tl_review *review, enum image_time time, tl_error *err
     review->wanted.image.width = width;
     review->wanted.image.height = height;
     struct tl_settings followed = tl_review_drawable_settings(review);
-    if (!draw_image(review, &followed, time, error)) {
+    if (!draw_image(review, &followed, use, error)) {
         if (tl_interrupted())
             return false;
         tl_review_report_error(review, error);
@@ -272,13 +288,13 @@ static bool redraw(struct tl_review *review, enum image_time time, tl_error *err
         review->good.image.width = width;
         review->good.image.height = height;
         review->wanted = review->good;
-        if (!draw_image(review, &review->good, time, error))
+        if (!draw_image(review, &review->good, use, error))
             return false;
     } else {
         accept_settings(review, &followed);
     }
     review->changed = review->image_is_old = false;
-    int redraws_min = time == TIME_BUDGET || !is_another
+    int redraws_min = use == IMAGE_IN_MOTION || !is_another
                           ? 1
                           : 2; /* ImGui needs a second frame to find the size of new texts */
     review->redraws = review->redraws > redraws_min ? review->redraws : redraws_min;
@@ -290,10 +306,15 @@ bool tl_review_is_sharp(const struct tl_review *review)
     return review->drawn_count > 0 && !review->is_budgeted;
 }
 
+bool tl_review_draw_first(struct tl_review *review, tl_error *error)
+{
+    return redraw(review, IMAGE_FIRST, error);
+}
+
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
     bool is_done = review->is_exact && !review->changed && !review->image_is_old;
-    return is_done || redraw(review, TIME_UNLIMITED, error);
+    return is_done || redraw(review, IMAGE_SAVED, error);
 }
 
 bool tl_review_is_at_rest(const struct tl_review *review)
@@ -319,5 +340,12 @@ bool tl_review_update_image(struct tl_review *review, tl_error *error)
     bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
     if (!is_due && !improves && tl_review_is_sharp(review) && !review->playing && !review->loader)
         prepare_motion(review);
-    return waits || !is_due || redraw(review, tl_review_is_moving(review) ? TIME_BUDGET : TIME_REST, error);
+    if (waits || !is_due)
+        return true;
+    if (!redraw(review, tl_review_is_moving(review) ? IMAGE_IN_MOTION : IMAGE_AT_REST, error))
+        return false;
+    if (review->is_resting && tl_review_is_at_rest(review))
+        tl_debug("view: at rest with image %d: samples a pixel side %d, %s", review->drawn_count,
+                 review->rest.samples, review->rest.is_shifted ? "shifted" : "not shifted");
+    return true;
 }

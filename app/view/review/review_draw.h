@@ -11,9 +11,12 @@
 bool tl_review_update_image(struct tl_review *review, tl_error *error);
 /* Whether the image is one of a rest: every pixel drawn, edges smoothed. */
 bool tl_review_is_sharp(const struct tl_review *review);
-/* Draws an image at the quality of the settings, as `toile render` does, unless there is one. */
+/* Draws the first image, in the settings as they are. */
+bool tl_review_draw_first(struct tl_review *review, tl_error *error);
+/* Draws an image for a file at the quality of the settings, as `toile render` does, and with smooth edges;
+ * unless there is one. */
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error);
-/* Whether drawing again would not refine the image: its jittered rounds are averaged. */
+/* Whether drawing again would not refine the image: its rounds and its shifted images are averaged. */
 bool tl_review_is_at_rest(const struct tl_review *review);
 
 /* Ends a part of the current frame other than drawing; --verbose logs the longest part of a slow frame. */

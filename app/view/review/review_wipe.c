@@ -101,7 +101,8 @@ void tl_review_swap(struct tl_review *review)
 }
 
 /* A's own session shows what it holds in B's view: its camera, environment and lamps. */
-bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, tl_error *error)
+bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, bool smooth,
+                      tl_error *error)
 {
     const struct tl_review_wipe *wipe = &review->wipe;
     const struct tl_render_settings render = tl_settings_render(settings);
@@ -109,7 +110,8 @@ bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settin
     if (!wipe->session) {
         if (!tl_session_apply(review->session, settings, error))
             return false;
-        const tl_frame shared = tl_session_frame(review->session);
+        tl_frame shared = tl_session_frame(review->session);
+        shared.smooth = smooth;
         return tl_renderer_draw(wipe->renderer, &shared, &render, error);
     }
     tl_settings_take(tl_session_settings(wipe->session), &own,
@@ -123,6 +125,7 @@ bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settin
     const tl_frame a = tl_session_frame(wipe->session);
     frame.surfaces = a.surfaces;
     frame.surface_count = a.surface_count;
+    frame.smooth = smooth;
     return tl_renderer_draw(wipe->renderer, &frame, &render, error);
 }
 

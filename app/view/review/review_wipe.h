@@ -13,9 +13,11 @@ void tl_review_swap(struct tl_review *review);           /* A becomes B */
 /* Keeps for A, while something is compared and A has no session of its own, the session that B has left, and
  * nulls *left. To be called before review->draped is B's. */
 void tl_review_keep_for_a(struct tl_review *review, tl_session **left);
-/* Draws A in the settings of tl_review_settings_a, with its own levels of quality. B's session has been
- * brought to the frame to be drawn. Errors: as tl_session_go_to, tl_session_apply and tl_renderer_draw. */
-bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, tl_error *error);
+/* Draws A in the settings of tl_review_settings_a, with its own levels of quality; `shifts` as tl_frame has
+ * it. B's session has been brought to the frame to be drawn. Errors: as tl_session_go_to, tl_session_apply
+ * and tl_renderer_draw. */
+bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, bool smooth,
+                      tl_error *error);
 /* Moves the line between them to a share of the view's width. */
 void tl_review_move_wipe(struct tl_review *review, float place);
 /* The line's column in a view of this width, pixels; 0 when nothing is compared. */

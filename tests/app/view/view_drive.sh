@@ -26,6 +26,8 @@ scene dress
 $TOILE view scene.yaml --verbose --screenshots shots >out 2>log &
 viewer=$!
 logged "view: ready"
+logged "view: at rest with image"
+! grep "view: at rest with image" log | grep -v "side 2\|, shifted" || fail "edges at rest have steps"
 shoot # 1
 
 drag 1 450 300 600 340
