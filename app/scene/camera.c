@@ -38,35 +38,71 @@ static vec3s spread_direction(int i)
     return (vec3s){{across * sinf(angle), height, across * cosf(angle)}};
 }
 
-void tl_framing_add(struct tl_framing *framing, const vec3s *points, size_t count)
+/* Keeps the most distant of the points, and of those that are kept, in each direction. */
+static int keep_furthest(vec3s kept[TL_FRAMING_POINTS], int kept_count, const vec3s *points, size_t count)
 {
     for (int i = 0; count > 0 && i < TL_FRAMING_POINTS; i++) {
-        vec3s direction = spread_direction(i), *furthest = &framing->points[i];
-        if (framing->count == 0)
+        vec3s direction = spread_direction(i), *furthest = &kept[i];
+        if (kept_count == 0)
             *furthest = points[0];
         for (size_t k = 0; k < count; k++)
             if (glms_vec3_dot(points[k], direction) > glms_vec3_dot(*furthest, direction))
                 *furthest = points[k];
     }
-    struct tl_box box = tl_box_of(points, count);
-    framing->box = framing->count > 0 ? tl_box_of_both(framing->box, box) : box;
-    framing->count = TL_FRAMING_POINTS;
+    return count > 0 ? TL_FRAMING_POINTS : kept_count;
 }
 
-/* How much of the allowed part of the picture is filled from a distance of the box's middle. */
+void tl_framing_add(struct tl_framing *framing, const vec3s *points, size_t count)
+{
+    struct tl_box box = tl_box_of(points, count);
+    framing->box = framing->count > 0 ? tl_box_of_both(framing->box, box) : box;
+    framing->count = keep_furthest(framing->points, framing->count, points, count);
+}
+
+void tl_framing_add_head(struct tl_framing *framing, const vec3s *points, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        if (points[k].y > framing->box.upper.y)
+            framing->head_count = keep_furthest(framing->head, framing->head_count, &points[k], 1);
+}
+
+/* Places in the picture seen from a distance of the box's middle, in half heights from its centre. */
+struct extent {
+    float lowest, highest, widest;
+};
+
+static struct extent extent_of(const vec3s *points, int count, const struct axes *axes, vec3s middle,
+                               float distance, float tangent)
+{
+    struct extent extent = {INFINITY, -INFINITY, 0};
+    for (int i = 0; i < count; i++) {
+        vec3s from = glms_vec3_sub(points[i], middle);
+        float reach = (distance - glms_vec3_dot(from, axes->back)) * tangent;
+        float up = glms_vec3_dot(from, axes->up) / reach;
+        extent.lowest = fminf(extent.lowest, up);
+        extent.highest = fmaxf(extent.highest, up);
+        extent.widest = fmaxf(extent.widest, fabsf(glms_vec3_dot(from, axes->across)) / reach);
+    }
+    return extent;
+}
+
+/* How much of the allowed part of the picture is filled. */
 static float fill_of(const struct tl_framing *framing, const struct axes *axes, vec3s middle, float distance,
                      float tangent, float aspect)
 {
-    float lowest = INFINITY, highest = -INFINITY, widest = 0;
-    for (int i = 0; i < framing->count; i++) {
-        vec3s from = glms_vec3_sub(framing->points[i], middle);
-        float reach = (distance - glms_vec3_dot(from, axes->back)) * tangent;
-        float up = glms_vec3_dot(from, axes->up) / reach;
-        lowest = fminf(lowest, up);
-        highest = fmaxf(highest, up);
-        widest = fmaxf(widest, fabsf(glms_vec3_dot(from, axes->across)) / (reach * aspect));
-    }
-    return fmaxf(0.5f * (highest - lowest) / framing->share, widest / WIDEST);
+    struct extent own = extent_of(framing->points, framing->count, axes, middle, distance, tangent),
+                  head = extent_of(framing->head, framing->head_count, axes, middle, distance, tangent);
+    float fill = fmaxf(0.5f * (own.highest - own.lowest) / framing->share, own.widest / (aspect * WIDEST));
+    return fmaxf(fill, 0.5f * (head.highest - own.lowest) / TL_CAMERA_BODY);
+}
+
+/* The box's middle, or a point above it from which what stands out above is in the picture. */
+static vec3s middle_of(const struct tl_framing *framing, const struct axes *axes, vec3s middle,
+                       float distance, float tangent)
+{
+    struct extent head = extent_of(framing->head, framing->head_count, axes, middle, distance, tangent);
+    float above = fmaxf(head.highest - TL_CAMERA_BODY, 0) * distance * tangent;
+    return glms_vec3_add(middle, glms_vec3_scale(axes->up, above));
 }
 
 static float fitting_distance(const struct tl_framing *framing, const struct axes *axes, vec3s middle,
@@ -100,8 +136,10 @@ struct tl_camera tl_camera_frame(const struct tl_camera_params *params, const st
     struct axes axes = axes_of(params);
     bool framed = params->distance_m <= 0;
     vec3s middle = glms_vec3_scale(glms_vec3_add(framing->box.lower, framing->box.upper), 0.5f);
-    vec3s target = tl_camera_is_placed(params) ? target_of(params) : middle;
     float distance = framed ? fitting_distance(framing, &axes, middle, fov_y, aspect) : params->distance_m;
+    if (framed)
+        middle = middle_of(framing, &axes, middle, distance, tanf(0.5f * fov_y));
+    vec3s target = tl_camera_is_placed(params) ? target_of(params) : middle;
     float reach = glms_vec3_norm(glms_vec3_sub(framing->box.upper, framing->box.lower));
     return (struct tl_camera){
         .eye = glms_vec3_add(target, glms_vec3_scale(axes.back, distance)),

@@ -19,15 +19,20 @@ struct tl_framing {
     float share; /* of the picture's height that it shall fill */
     int count;
     vec3s points[TL_FRAMING_POINTS];
+    int head_count; /* of what stands out above and is shown whole, together within TL_CAMERA_BODY */
+    vec3s head[TL_FRAMING_POINTS];
 };
 /* Adds a thing, by its positions; a framing of zeros and a share is empty. */
 void tl_framing_add(struct tl_framing *framing, const vec3s *points, size_t count);
+/* Adds those of the points that are higher than what is framed as what stands out above it. */
+void tl_framing_add_head(struct tl_framing *framing, const vec3s *points, size_t count);
 /* Of a box, for which a cylinder about it stands: it is framed alike from all sides. */
 struct tl_framing tl_framing_of_box(struct tl_box box, float share);
 
 /* The camera of the frame. With distance_m = 0 what is framed fills its share of the height of an image of
  * the given aspect (width / height), or less where nine tenths of its width are filled. With a distance but
- * no target the eye looks at the box's middle from there. */
+ * no target the eye looks at the box's middle from there. What stands out above is in the picture: the eye
+ * looks higher, and from further away where that is not enough. */
 struct tl_camera tl_camera_frame(const struct tl_camera_params *params, const struct tl_framing *framing,
                                  float aspect);
 

@@ -160,6 +160,9 @@ static struct tl_box box_of_moving(const struct tl_moving *moving)
  * it: a head that is cut off looks like a mistake, the foot of a dress form does not. */
 #define FRAMED_WITH_BODY 1.35f
 
+/* A head that stands out of its garment by less than this is framed with it, for the same reason. */
+#define FRAMED_WITH_HEAD 0.6f
+
 /* Of garment and body. */
 static struct tl_box box_of_scene(const tl_session *session)
 {
@@ -185,6 +188,10 @@ static void frame_garment(tl_session *session)
         add_framed(&session->framed, &session->dress);
     if (session->avatar && with_body)
         add_framed(&session->framed, &session->body);
+    float above = all.upper.y - garment.upper.y, height = garment.upper.y - garment.lower.y;
+    if (session->avatar && !with_body && above < FRAMED_WITH_HEAD * height)
+        tl_framing_add_head(&session->framed, session->body.positions,
+                            session->body.model->mesh.vertex_count);
 }
 
 struct tl_session_models tl_session_models(const tl_session *session)
