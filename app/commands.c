@@ -25,10 +25,12 @@ static const struct tl_command commands[] = {
     {"render", "render [SCENE] -o OUT.exr|OUT.png [OPTIONS]",
      "Renders frames without a screen: .exr holds linear radiance and coverage, .png the picture as "
      "displayed.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES | TL_FLAGS_AOV, tl_command_render},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES | TL_FLAGS_AOV | TL_FLAGS_SHARD,
+     tl_command_render},
     {"fly", "fly [SCENE] -o FOLDER [--budget MS] [--path FILE.yaml] [--frames N] [OPTIONS]",
      "Flies round the moving garment and records every frame: FOLDER/frames.csv, summary.json, report.html.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_FLY | TL_FLAGS_BUDGET, tl_command_fly},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_FLY | TL_FLAGS_BUDGET | TL_FLAGS_SHARD,
+     tl_command_fly},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET, tl_command_plan},
@@ -57,7 +59,7 @@ static const struct tl_command commands[] = {
     {"sheet", "sheet [SCENE] -o OUT.png|FOLDER [OPTIONS]",
      "Draws a contact sheet: garments x fabrics or colourways down, environments x views across, as one "
      "image or as a folder with a page. After an interruption the same command continues.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_SHEET, tl_command_sheet},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_SHEET | TL_FLAGS_SHARD, tl_command_sheet},
     {"compare", "compare TESTED REFERENCE [--mask FILE] [--json] [--ldr|--hdr]",
      "Prints how much two images differ: relative RMSE, mean FLIP, largest difference.",
      TL_FLAGS_JSON | TL_FLAGS_METRIC, tl_command_compare},

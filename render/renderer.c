@@ -201,6 +201,7 @@ void tl_renderer_forget(tl_renderer *renderer)
     renderer->rest = (struct tl_rest){0};
     tl_points_destroy(&renderer->resources.points); /* visibility at points refines earlier values */
     renderer->resources.points = tl_points_create();
+    tl_shadow_maps_forget(renderer->resources.maps); /* some are older than the frame */
     tl_bounce_release(&renderer->resources.bounce);
     tl_ratios_release(&renderer->resources.ratios); /* half of them are of the frame before */
 }

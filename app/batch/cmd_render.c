@@ -28,6 +28,8 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
     if (!tl_path_has_extension(arguments->output, "exr") && !tl_path_has_extension(arguments->output, "png"))
         return tl_fail(error, TL_USAGE, "%s: unknown kind of image: end the name in .exr or .png",
                        arguments->output);
+    if (arguments->shards && !arguments->frames_given)
+        return tl_fail(error, TL_USAGE, "--shard: shares out the frames of a range: add --frames A:B");
     if (arguments->aovs && !tl_path_has_extension(arguments->output, "exr"))
         return tl_fail(error, TL_USAGE, "%s: --aov needs a file that holds layers: end the name in .exr",
                        arguments->output);
@@ -42,17 +44,21 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
 
 static bool render_frames(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error)
 {
-    int first = arguments->first_frame, last = arguments->last_frame;
+    int first = arguments->first_frame + arguments->shard, last = arguments->last_frame;
+    int step = arguments->shards ? arguments->shards : 1;
+    if (first <= last)
+        last -= (last - first) % step; /* the shard's own last frame */
     struct tl_progress progress =
         tl_progress_begin(first == 0 && last == 0 ? "rendering" : "simulating and rendering");
     bool done = true;
     /* Frames before the first are simulated but not drawn: the cloth's state follows from all steps before
      * it. */
-    for (int frame = 0; done && frame <= last; frame++) {
+    for (int frame = 0; done && first <= last && frame <= last; frame++) {
         if (frame > 0)
             done = tl_session_advance(headless->session, error);
-        if (done && frame >= first) {
+        if (done && frame >= first && (frame - first) % step == 0) {
             char *path = frame_path(arguments, frame);
+            tl_renderer_forget(headless->renderer); /* a frame does not depend on those drawn before it */
             done = (arguments->frames_given ? tl_headless_draw(headless, error)
                                             : tl_headless_draw_still(headless, error)) &&
                    tl_save_frame(headless, path, error);

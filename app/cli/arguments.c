@@ -21,6 +21,7 @@ enum flag_kind {
     FLAG_SIZE,
     FLAG_FRAME,
     FLAG_FRAMES,
+    FLAG_SHARD,
     FLAG_LDR,
     FLAG_HDR,
 };
@@ -145,6 +146,8 @@ static const struct flag flags_known[] = {
      "measure every Nth frame against the ray-traced one: FLIP of the garment and of its worst 5 %"},
     {"--hash", TL_FLAGS_FLY, FLAG_SWITCH, AT(hash), NULL, NULL,
      "record every image's hash, for a replay to compare"},
+    {"--shard", TL_FLAGS_SHARD, FLAG_SHARD, 0, NULL, "I/N",
+     "do part I of N, from 0: N runs, on as many machines as there are, make what one makes (docs/farm.md)"},
     {"--clear", TL_FLAGS_CLEAR, FLAG_SWITCH, AT(clear), NULL, NULL, "remove all of them"},
     {"--quiet", 0, FLAG_SWITCH, AT(quiet), NULL, NULL, "print errors only"},
     {"--verbose", 0, FLAG_SWITCH, AT(verbose), NULL, NULL, "print more"},
@@ -229,6 +232,16 @@ static bool read_frames(const char *text, struct tl_arguments *out, tl_error *er
     return true;
 }
 
+static bool read_shard(const char *text, struct tl_arguments *out, tl_error *error)
+{
+    const char *rest = "";
+    if (!read_whole("--shard", text, &rest, 0, &out->shard, NULL) || *rest != '/' ||
+        !read_whole("--shard", rest + 1, NULL, out->shard + 1, &out->shards, NULL))
+        return tl_fail(error, TL_USAGE, "--shard: \"%s\": expected I/N with I from 0 to N - 1, as in 0/7",
+                       text);
+    return true;
+}
+
 static bool take_flag(const struct flag *flag, const char *value, struct tl_arguments *out, tl_error *error)
 {
     void *field = (char *)out + flag->offset;
@@ -261,6 +274,8 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return true;
     case FLAG_FRAMES:
         return read_frames(value, out, error);
+    case FLAG_SHARD:
+        return read_shard(value, out, error);
     case FLAG_LDR:
         out->hdr = 0;
         return true;

@@ -31,6 +31,7 @@ enum tl_flag_set {
     TL_FLAGS_FLY = 1 << 16,     /* --frames N --path --video --against --replay --oracle --hash */
     TL_FLAGS_BUDGET = 1 << 17,  /* --budget MS */
     TL_FLAGS_CLEAR = 1 << 18,   /* --clear */
+    TL_FLAGS_SHARD = 1 << 19,   /* --shard I/N */
 };
 
 struct tl_arguments {
@@ -54,6 +55,7 @@ struct tl_arguments {
     double repeat_mm, height_mm;
     int first_frame, last_frame;
     int frame_count, every, oracle_every;
+    int shard, shards; /* this run does the parts shard, shard + shards, ... */
     int max_frames;
     int map_size;
     int hdr;           /* -1 by content, 0 --ldr, 1 --hdr */

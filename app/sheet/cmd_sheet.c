@@ -44,6 +44,15 @@ static bool is_done(const struct work *work, size_t row, size_t column)
     return done;
 }
 
+/* Whether this run is to draw it: shards have blocks of cells, so that a row is draped by few of them. */
+static bool is_wanted(const struct work *work, size_t row, size_t column)
+{
+    size_t cells = work->plan.row_count * work->plan.column_count;
+    size_t shards = work->arguments->shards ? (size_t)work->arguments->shards : 1;
+    bool mine = cell_of(work, row, column) * shards / cells == (size_t)work->arguments->shard;
+    return mine && !is_done(work, row, column);
+}
+
 /* ---- Drawing ---- */
 
 /* Whether the drape can be kept: only the appearance differs. */
@@ -145,7 +154,7 @@ static bool refuse_row(struct work *work, size_t row, const tl_error *error)
 {
     tl_warn("sheet: %s: %s", work->plan.rows[row].slug, error->message);
     for (size_t column = 0; column < work->plan.column_count; column++)
-        if (!is_done(work, row, column) && !refuse(work, row, column, error))
+        if (is_wanted(work, row, column) && !refuse(work, row, column, error))
             return false;
     return concerns_one_cell(error);
 }
@@ -175,8 +184,8 @@ static bool make_row(struct work *work, size_t row, struct tl_progress *progress
 {
     bool begun = false;
     for (size_t column = 0; column < work->plan.column_count; column++) {
-        if (is_done(work, row, column)) {
-            work->kept++;
+        if (!is_wanted(work, row, column)) {
+            work->kept += is_done(work, row, column);
             continue;
         }
         if (tl_interrupted())
@@ -196,7 +205,7 @@ static size_t count_wanted(const struct work *work)
     size_t wanted = 0;
     for (size_t row = 0; row < work->plan.row_count; row++)
         for (size_t column = 0; column < work->plan.column_count; column++)
-            wanted += !is_done(work, row, column);
+            wanted += is_wanted(work, row, column);
     return wanted;
 }
 
@@ -309,13 +318,22 @@ static bool begin(struct work *work, tl_error *error)
         return false;
     work->refused = TL_NEW_ARRAY(bool, work->plan.row_count * work->plan.column_count);
     work->folder = tl_format("%s%s", output, work->is_image ? ".cells" : "");
-    work->store = tl_contact_store_open(work->folder, error);
+    work->store = tl_contact_store_open(work->folder, work->arguments->shard, work->arguments->shards, error);
     return work->store != NULL;
 }
 
 static bool finish(struct work *work, tl_error *error)
 {
     const char *output = work->arguments->output;
+    if (work->arguments->shards) {
+        tl_info(
+            "sheet: shard %d of %d: %zu cells drawn, %zu kept, %zu refused: the same command without --shard "
+            "puts the sheet together",
+            work->arguments->shard, work->arguments->shards, work->drawn, work->kept, work->refused_count);
+        return work->refused_count == 0 ||
+               tl_fail(error, TL_UNSTABLE, "sheet: %zu cells were refused: repair what is named above",
+                       work->refused_count);
+    }
     if (!(work->is_image ? compose(work, output, error)
                          : tl_folder_print(work->folder, "index.html", work, write_page, error)))
         return false;

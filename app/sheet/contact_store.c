@@ -7,6 +7,8 @@
 
 #include <cjson/cJSON.h>
 
+#include <dirent.h>
+#include <fnmatch.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +18,10 @@
 
 struct tl_contact_store {
     char *folder;
-    cJSON *manifest; /* {"contact_sheet": {NAME: HASH}} */
+    char *name;      /* of the manifest that this process writes */
+    cJSON *manifest; /* {"contact_sheet": {NAME: HASH}}; a hash of "": its picture is being replaced */
     cJSON *cells;
+    cJSON *common; /* of a shard: the entries of the manifest that all have; else NULL */
 };
 
 static bool fail_manifest(const char *path, tl_error *error)
@@ -27,33 +31,96 @@ static bool fail_manifest(const char *path, tl_error *error)
                    path);
 }
 
-static bool read_manifest(const char *path, tl_contact_store *store, tl_error *error)
+static void set_entry(cJSON *cells, const char *name, const char *hash)
 {
-    char *text;
-    size_t size;
-    if (!tl_file_read_small(path, MANIFEST_BYTES, &text, &size, error))
-        return false;
-    store->manifest = cJSON_ParseWithLength(text, size);
-    free(text);
-    store->cells = cJSON_GetObjectItemCaseSensitive(store->manifest, "contact_sheet");
-    return cJSON_IsObject(store->cells) || fail_manifest(path, error);
+    cJSON_DeleteItemFromObjectCaseSensitive(cells, name);
+    cJSON_AddStringToObject(cells, name, hash);
 }
 
-tl_contact_store *tl_contact_store_open(const char *folder, tl_error *error)
+/* Adds the entries of a manifest, if it is there. Where two disagree about a picture, neither is right. */
+static bool read_cells(const char *folder, const char *name, cJSON *cells, tl_error *error)
+{
+    char *path = tl_format("%s/%s", folder, name), *text = NULL;
+    size_t size = 0;
+    bool there = tl_file_exists(path),
+         read = !there || tl_file_read_small(path, MANIFEST_BYTES, &text, &size, error);
+    cJSON *manifest = there && read ? cJSON_ParseWithLength(text, size) : NULL;
+    const cJSON *found = cJSON_GetObjectItemCaseSensitive(manifest, "contact_sheet"), *cell;
+    if (there && read && !cJSON_IsObject(found))
+        read = fail_manifest(path, error);
+    found = read ? found : NULL;
+    cJSON_ArrayForEach(cell, found)
+    {
+        const char *hash = cJSON_IsString(cell) ? cell->valuestring : "";
+        const cJSON *other = cJSON_GetObjectItemCaseSensitive(cells, cell->string);
+        set_entry(cells, cell->string, other && strcmp(other->valuestring, hash) != 0 ? "" : hash);
+    }
+    cJSON_Delete(manifest);
+    free(text);
+    free(path);
+    return read;
+}
+
+static void write_manifest(const void *what, FILE *out)
+{
+    char *text = cJSON_Print(what);
+    fprintf(out, "%s\n", text);
+    cJSON_free(text);
+}
+
+static bool save_manifest(const tl_contact_store *store, tl_error *error)
+{
+    return tl_folder_print(store->folder, store->name, store->manifest, write_manifest, error);
+}
+
+static void remove_file(const char *folder, const char *name)
+{
+    char *path = tl_format("%s/%s", folder, name);
+    unlink(path);
+    free(path);
+}
+
+static int is_of_shard(const struct dirent *entry)
+{
+    return fnmatch("manifest.*-*.json", entry->d_name, 0) == 0;
+}
+
+/* The manifests of shards become part of the store's own, which is written before they are removed. */
+static bool take_shards(tl_contact_store *store, tl_error *error)
+{
+    struct dirent **found = NULL;
+    int count = scandir(store->folder, &found, is_of_shard, alphasort);
+    cJSON *cells = cJSON_CreateObject();
+    const cJSON *cell;
+    bool taken = true;
+    for (int i = 0; taken && i < count; i++)
+        taken = read_cells(store->folder, found[i]->d_name, cells, error);
+    cJSON_ArrayForEach(cell, cells) set_entry(store->cells, cell->string, cell->valuestring);
+    taken = taken && (count <= 0 || save_manifest(store, error));
+    for (int i = 0; i < count; i++) {
+        if (taken)
+            remove_file(store->folder, found[i]->d_name);
+        free(found[i]);
+    }
+    free(found);
+    cJSON_Delete(cells);
+    return taken;
+}
+
+tl_contact_store *tl_contact_store_open(const char *folder, int shard, int shards, tl_error *error)
 {
     if (!tl_folder_make(folder, error))
         return NULL;
     tl_contact_store *store = TL_NEW(tl_contact_store);
     store->folder = tl_copy_string(folder);
-    char *path = tl_format("%s/" TL_CONTACT_MANIFEST, folder);
-    bool opened = true;
-    if (tl_file_exists(path)) {
-        opened = read_manifest(path, store, error);
-    } else {
-        store->manifest = cJSON_CreateObject();
-        store->cells = cJSON_AddObjectToObject(store->manifest, "contact_sheet");
-    }
-    free(path);
+    store->name =
+        shards > 0 ? tl_format("manifest.%d-%d.json", shard, shards) : tl_copy_string(TL_CONTACT_MANIFEST);
+    store->manifest = cJSON_CreateObject();
+    store->cells = cJSON_AddObjectToObject(store->manifest, "contact_sheet");
+    store->common = shards > 0 ? cJSON_CreateObject() : NULL;
+    bool opened = read_cells(folder, store->name, store->cells, error) &&
+                  (shards > 0 ? read_cells(folder, TL_CONTACT_MANIFEST, store->common, error)
+                              : take_shards(store, error));
     if (!opened)
         tl_contact_store_close(&store);
     return store;
@@ -65,6 +132,8 @@ void tl_contact_store_close(tl_contact_store **handle)
     if (!store)
         return;
     cJSON_Delete(store->manifest);
+    cJSON_Delete(store->common);
+    free(store->name);
     free(store->folder);
     free(store);
     *handle = NULL;
@@ -80,6 +149,7 @@ bool tl_contact_store_has(const tl_contact_store *store, const char *name, uint6
     char wanted[20];
     print_hash(hash, wanted);
     const cJSON *known = cJSON_GetObjectItemCaseSensitive(store->cells, name);
+    known = known ? known : cJSON_GetObjectItemCaseSensitive(store->common, name);
     if (!cJSON_IsString(known) || strcmp(known->valuestring, wanted) != 0)
         return false;
     char *path = tl_format("%s/%s", store->folder, name);
@@ -88,28 +158,20 @@ bool tl_contact_store_has(const tl_contact_store *store, const char *name, uint6
     return there;
 }
 
-static void write_manifest(const void *what, FILE *out)
+static bool set_hash(tl_contact_store *store, const char *name, const char *hash, tl_error *error)
 {
-    char *text = cJSON_Print(what);
-    fprintf(out, "%s\n", text);
-    cJSON_free(text);
+    set_entry(store->cells, name, hash);
+    return save_manifest(store, error);
 }
 
-static bool save_manifest(const tl_contact_store *store, tl_error *error)
-{
-    return tl_folder_print(store->folder, TL_CONTACT_MANIFEST, store->manifest, write_manifest, error);
-}
-
-/* The old entry is removed before its picture is replaced. The program may be stopped at any point without
+/* The old hash is removed before its picture is replaced. The program may be stopped at any point without
  * leaving a hash in the manifest that belongs to another picture. */
 bool tl_contact_store_put(tl_contact_store *store, const char *name, uint64_t hash, const tl_image *picture,
                           tl_error *error)
 {
-    if (cJSON_HasObjectItem(store->cells, name)) {
-        cJSON_DeleteItemFromObjectCaseSensitive(store->cells, name);
-        if (!save_manifest(store, error))
-            return false;
-    }
+    bool known = cJSON_HasObjectItem(store->cells, name) || cJSON_HasObjectItem(store->common, name);
+    if (known && !set_hash(store, name, "", error))
+        return false;
     char *path = tl_format("%s/%s", store->folder, name);
     bool saved = tl_image_save_png(path, picture, error);
     free(path);
@@ -117,15 +179,7 @@ bool tl_contact_store_put(tl_contact_store *store, const char *name, uint64_t ha
         return false;
     char text[20];
     print_hash(hash, text);
-    cJSON_AddStringToObject(store->cells, name, text);
-    return save_manifest(store, error);
-}
-
-static void remove_file(const char *folder, const char *name)
-{
-    char *path = tl_format("%s/%s", folder, name);
-    unlink(path);
-    free(path);
+    return set_hash(store, name, text, error);
 }
 
 void tl_contact_store_remove(tl_contact_store **store)

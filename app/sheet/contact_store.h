@@ -10,9 +10,11 @@
 
 typedef struct tl_contact_store tl_contact_store;
 
-/* Opens the folder and reads its manifest; creates the folder where there is none. Errors: NULL; TL_INPUT for
- * a file manifest.json that is not a sheet's. */
-tl_contact_store *tl_contact_store_open(const char *folder, tl_error *error);
+/* Opens the folder and reads its manifest; creates the folder where there is none. Shard `shard` of `shards`
+ * > 1 has a manifest of its own, manifest.SHARD-SHARDS.json, because several processes write at the same
+ * time; with 0 shards the manifests of shards are taken into the one that all have, and removed. Errors:
+ * NULL; TL_INPUT for a manifest that is not a sheet's. */
+tl_contact_store *tl_contact_store_open(const char *folder, int shard, int shards, tl_error *error);
 /* Frees the store and nulls the handle, which may be null; the folder stays. */
 void tl_contact_store_close(tl_contact_store **handle);
 

@@ -191,6 +191,11 @@ vec3s tl_region_seen_direction(const struct tl_regions *regions, int i, int roun
                                fraction(begin_v + round * step_v));
 }
 
+void tl_shadow_maps_forget(tl_shadow_maps *maps)
+{
+    maps->drawn_before = false;
+}
+
 static void choose_due(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
     maps->drawn_before = maps->drawn_before && maps->regions_revision == request->regions_revision;

@@ -56,6 +56,8 @@ void tl_shadow_maps_destroy(tl_shadow_maps **maps);
 /* Draws the regions' maps whose turn it is, and every sun's; then blurs variance maps that were drawn, in
  * place. */
 void tl_shadow_maps_draw(tl_shadow_maps *maps, const struct tl_shadow_request *request);
+/* The next draw draws every map. */
+void tl_shadow_maps_forget(tl_shadow_maps *maps);
 void tl_shadow_maps_blur(tl_shadow_maps *maps, const struct tl_shadow_request *request);
 
 /* Returns whether maps wait for their turn. Such maps show an earlier state, along the views that they were

@@ -29,6 +29,14 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
 {
     if (!arguments->output)
         return tl_fail(error, TL_USAGE, "fly: no folder named: add -o FOLDER");
+    if (arguments->shards && !arguments->oracle_every)
+        return tl_fail(error, TL_USAGE,
+                       "--shard: each shard flies all frames, and shares the comparison: add --oracle N");
+    if (arguments->shards && arguments->budget_ms > 0)
+        return tl_fail(
+            error, TL_USAGE,
+            "--shard: a budget chooses levels by measured time, in each shard others: fly once, then "
+            "--replay that folder");
     if (arguments->replay && (arguments->budget_ms > 0 || arguments->path))
         return tl_fail(error, TL_USAGE, "--replay: takes its levels and its path from %s: leave %s out",
                        arguments->replay, arguments->path ? "--path" : "--budget");
@@ -130,7 +138,8 @@ static bool check_kept(const struct flying *flying, tl_error *error)
 {
     const struct tl_image_params *image = &flying->settings.image;
     int every = flying->options.oracle_every;
-    size_t kept = every ? ((size_t)flying->options.frames - 1) / (size_t)every : 0;
+    size_t compared = every ? ((size_t)flying->options.frames - 1) / (size_t)every : 0;
+    size_t kept = (compared + (size_t)flying->options.shards - 1) / (size_t)flying->options.shards;
     const size_t pixel_bytes = 4 * sizeof(float) + 3; /* linear RGBA, and as shown */
     size_t bytes = kept * (size_t)image->width * (size_t)image->height * pixel_bytes;
     return bytes <= LIMIT_KEPT_BYTES ||
@@ -155,6 +164,8 @@ static bool prepare(struct flying *flying, struct tl_headless *headless, struct 
     options->budget_ms = arguments->replay ? flying->replay.flight.budget_ms : arguments->budget_ms;
     options->hash = arguments->hash || arguments->replay;
     options->oracle_every = arguments->oracle_every;
+    options->shard = arguments->shard;
+    options->shards = arguments->shards ? arguments->shards : 1;
     options->replay = arguments->replay ? &flying->replay.flight : NULL;
     return check_kept(flying, error);
 }

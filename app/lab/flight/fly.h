@@ -78,6 +78,7 @@ struct tl_fly_options {
     bool hash;                      /* of every image */
     int oracle_every;               /* frames N, 2 N ...; 0: never. The first frame is none of them: it has
                                        not moved, and is at full quality whatever the budget */
+    int shard, shards;              /* of the frames to compare every shards-th, from shard; 0, 1: all */
     const struct tl_flight *replay; /* levels are taken from here; NULL: chosen */
     tl_video *video;                /* gets every image; NULL: none */
 };

@@ -325,12 +325,12 @@ static void a_folder_remembers(void **state)
     (void)state;
     tl_error error = {0};
     tl_image picture = tl_canvas_create(4, 4, 0xff0000);
-    tl_contact_store *store = tl_contact_store_open(FOLDER, &error);
+    tl_contact_store *store = tl_contact_store_open(FOLDER, 0, 0, &error);
     assert_ok(store != NULL, error);
     assert_ok(tl_contact_store_put(store, "a.png", 1, &picture, &error), error);
     assert_ok(tl_contact_store_put(store, "b.png", 2, &picture, &error), error);
     tl_contact_store_close(&store);
-    store = tl_contact_store_open(FOLDER, &error);
+    store = tl_contact_store_open(FOLDER, 0, 0, &error);
     assert_ok(store != NULL, error);
     assert_true(tl_contact_store_has(store, "a.png", 1));
     assert_false(tl_contact_store_has(store, "a.png", 2));
@@ -345,6 +345,42 @@ static void a_folder_remembers(void **state)
     tl_image_release(&picture);
 }
 
+/* Shards write at the same time, each a manifest of its own; the next run without shards has them all. A
+ * picture of which two manifests say different things is drawn again, and so is one that was being replaced.
+ */
+static void shards_add_up(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_image picture = tl_canvas_create(4, 4, 0xff0000);
+    tl_contact_store *all = tl_contact_store_open(FOLDER, 0, 0, &error);
+    assert_ok(all && tl_contact_store_put(all, "old.png", 1, &picture, &error), error);
+    assert_ok(tl_contact_store_put(all, "new.png", 1, &picture, &error), error);
+    tl_contact_store_close(&all);
+    tl_contact_store *shards[2];
+    for (int i = 0; i < 2; i++) {
+        shards[i] = tl_contact_store_open(FOLDER, i, 2, &error);
+        assert_ok(shards[i] != NULL, error);
+        assert_true(tl_contact_store_has(shards[i], "old.png", 1));
+        assert_ok(tl_contact_store_put(shards[i], i ? "b.png" : "a.png", 5, &picture, &error), error);
+        assert_ok(tl_contact_store_put(shards[i], "both.png", 6 + (uint64_t)i, &picture, &error), error);
+    }
+    assert_ok(tl_contact_store_put(shards[1], "new.png", 2, &picture, &error), error);
+    assert_false(tl_contact_store_has(shards[1], "new.png", 1));
+    assert_false(tl_contact_store_has(shards[0], "b.png", 5)); /* it is the other's */
+    tl_contact_store_close(&shards[0]);
+    tl_contact_store_close(&shards[1]);
+    all = tl_contact_store_open(FOLDER, 0, 0, &error);
+    assert_ok(all != NULL, error);
+    assert_true(tl_contact_store_has(all, "a.png", 5) && tl_contact_store_has(all, "b.png", 5));
+    assert_true(tl_contact_store_has(all, "old.png", 1) && tl_contact_store_has(all, "new.png", 2));
+    assert_false(tl_contact_store_has(all, "both.png", 6) || tl_contact_store_has(all, "both.png", 7));
+    assert_false(tl_file_exists(FOLDER "/manifest.0-2.json") || tl_file_exists(FOLDER "/manifest.1-2.json"));
+    tl_contact_store_remove(&all);
+    assert_false(tl_file_exists(FOLDER));
+    tl_image_release(&picture);
+}
+
 static void a_strange_manifest_is_refused(void **state)
 {
     (void)state;
@@ -356,7 +392,7 @@ static void a_strange_manifest_is_refused(void **state)
         assert_non_null(file);
         fputs(texts[i], file);
         fclose(file);
-        assert_null(tl_contact_store_open(FOLDER, &error));
+        assert_null(tl_contact_store_open(FOLDER, 0, 0, &error));
         assert_non_null(strstr(error.message, FOLDER "/manifest.json"));
     }
     remove(FOLDER "/manifest.json");
@@ -378,6 +414,7 @@ int main(void)
         cmocka_unit_test(words_and_pictures_are_in_their_places),
         cmocka_unit_test(a_folder_remembers),
         cmocka_unit_test(a_strange_manifest_is_refused),
+        cmocka_unit_test(shards_add_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
