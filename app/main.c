@@ -4,6 +4,7 @@
 #include "app/drape/cache.h"
 #include "config/interrupt.h"
 #include "config/log.h"
+#include "config/memory.h"
 
 #include <locale.h>
 #include <malloc.h>
@@ -42,6 +43,7 @@ static bool run(int argc, char **argv, tl_error *error)
             tl_log_set_level(TL_LOG_QUIET);
         else if (arguments.verbose)
             tl_log_set_level(TL_LOG_DEBUG);
+        tl_memory_allow(arguments.memory_bytes);
         use_cache(&arguments);
         done = command->run(&arguments, error);
         tl_cache_use(NULL, 0);

@@ -47,6 +47,12 @@ bool tl_file_exists(const char *path)
     return stat(path, &status) == 0;
 }
 
+size_t tl_file_size(const char *path)
+{
+    struct stat status;
+    return stat(path, &status) == 0 ? (size_t)status.st_size : 0;
+}
+
 bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error)
 {
     return tl_file_read_small(path, TL_LIMIT_FILE_BYTES, data, size, error);
@@ -55,7 +61,7 @@ bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error)
 bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *size, tl_error *error)
 {
     struct stat status = {0};
-    if (!check_status(path, limit, &status, error))
+    if (!check_status(path, limit, &status, error) || !tl_memory_ask(path, (uint64_t)status.st_size, error))
         return false;
     FILE *stream = fopen(path, "rb");
     if (!stream)

@@ -26,6 +26,8 @@ bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *siz
 bool tl_file_check(const char *path, tl_error *error);
 
 bool tl_file_exists(const char *path);
+/* Bytes; 0 for a file that cannot be found. */
+size_t tl_file_size(const char *path);
 
 struct tl_writer {
     char *path;      /* final name */

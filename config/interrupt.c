@@ -13,6 +13,13 @@ static _Thread_local const atomic_bool *thread_flag;
 /* Fixed storage, so that the handler needs nothing but unlink and _exit, which are async-signal-safe. */
 static char guarded[GUARDS][PATH_MAX];
 
+void tl_interrupt_remove_guarded(void)
+{
+    for (int i = 0; i < GUARDS; i++)
+        if (guarded[i][0])
+            unlink(guarded[i]);
+}
+
 static void on_signal(int number)
 {
     (void)number;
@@ -22,9 +29,7 @@ static void on_signal(int number)
     if (atomic_compare_exchange_strong(&first_ns, &seen_ns, now_ns) ||
         now_ns - seen_ns < TL_INTERRUPT_TWICE_MS * 1000000LL)
         return;
-    for (int i = 0; i < GUARDS; i++)
-        if (guarded[i][0])
-            unlink(guarded[i]);
+    tl_interrupt_remove_guarded();
     _exit(130);
 }
 

@@ -24,4 +24,7 @@ void tl_interrupt_by(const atomic_bool *flag);
 void tl_interrupt_guard(const char *temporary);
 void tl_interrupt_unguard(const char *temporary);
 
+/* Removes them, when the program ends in the middle of its work. Async-signal-safe. */
+void tl_interrupt_remove_guarded(void);
+
 #endif

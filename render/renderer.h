@@ -33,6 +33,10 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error);
 /* Releases a renderer and sets the pointer to NULL; NULL is accepted. */
 void tl_renderer_destroy(tl_renderer **renderer);
 
+/* Asks for the memory that drawing takes with these settings, besides that of the scene (config/memory.h).
+ * Before the first draw: afterwards it is in use. Errors: false, with `error` set. */
+bool tl_renderer_ask(const struct tl_render_settings *settings, tl_error *error);
+
 /* Draws a frame into the renderer's own HDR target and makes it the last frame.
  *
  * Errors: false, with `error` set. A camera without an upright direction, and sizes beyond what GL can hold

@@ -4,6 +4,7 @@
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
 #include "config/file.h"
+#include "config/memory.h"
 #include "render/inspect/aovs.h"
 #include "render/metrics/compare.h"
 
@@ -20,8 +21,12 @@ static bool load_linear(const char *path, tl_image *out, tl_error *error)
     tl_image encoded;
     if (!tl_image_load(path, &encoded, error))
         return false;
-    *out = tl_image_create(encoded.width, encoded.height, encoded.channels, TL_IMAGE_F32);
     size_t texels = (size_t)encoded.width * (size_t)encoded.height;
+    if (!tl_memory_ask(path, texels * (size_t)encoded.channels * sizeof(float), error)) {
+        tl_image_release(&encoded);
+        return false;
+    }
+    *out = tl_image_create(encoded.width, encoded.height, encoded.channels, TL_IMAGE_F32);
     int channels = encoded.channels, colours = channels < 3 ? 1 : 3;
     for (size_t i = 0; i < texels; i++)
         for (int c = 0; c < channels; c++) {

@@ -116,7 +116,8 @@ static bool convert(const struct tl_arguments *arguments, enum tl_layout layout,
                     const struct tl_sphere_map *from, tl_error *error)
 {
     struct tl_sphere_map to;
-    if (!find_target(arguments, from, layout, &to, error))
+    if (!find_target(arguments, from, layout, &to, error) ||
+        !tl_memory_ask(arguments->output, tl_convert_bytes(from, &to), error))
         return false;
     double worst;
     tl_image image = tl_image_convert(source, from, &to, &worst);

@@ -100,7 +100,11 @@ static void describe_stitches(cJSON *object, tl_model *model)
 
 void tl_info_describe_garment(cJSON *object, tl_model *model)
 {
-    add_count(object, "crossings", tl_crossings_of_mesh(&model->mesh, model->mesh.positions, NULL));
+    bool complete;
+    add_count(object, "crossings",
+              tl_crossings_of_mesh(&model->mesh, model->mesh.positions, NULL, &complete));
+    if (!complete)
+        cJSON_AddStringToObject(object, "crossings_note", "at least: its triangles lie in one heap");
     describe_rest(object, model);
     if (model->stitch_count > 0)
         describe_stitches(object, model);

@@ -4,6 +4,7 @@
 #include "config/options.h"
 #include "config/words.h"
 
+#include <ctype.h>
 #include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -16,6 +17,7 @@ enum flag_kind {
     FLAG_WHOLE, /* from 1 */
     FLAG_MM,
     FLAG_MS,
+    FLAG_BYTES,
     FLAG_ASSIGN, /* sets the option named in `key` */
     FLAG_SET,
     FLAG_SIZE,
@@ -149,6 +151,8 @@ static const struct flag flags_known[] = {
     {"--shard", TL_FLAGS_SHARD, FLAG_SHARD, 0, NULL, "I/N",
      "do part I of N, from 0: N runs, on as many machines as there are, make what one makes (docs/farm.md)"},
     {"--clear", TL_FLAGS_CLEAR, FLAG_SWITCH, AT(clear), NULL, NULL, "remove all of them"},
+    {"--memory", 0, FLAG_BYTES, AT(memory_bytes), NULL, "SIZE",
+     "how much memory may be taken, as in 500M or 8G; else nearly all that the machine or the container has"},
     {"--quiet", 0, FLAG_SWITCH, AT(quiet), NULL, NULL, "print errors only"},
     {"--verbose", 0, FLAG_SWITCH, AT(verbose), NULL, NULL, "print more"},
     {"--help", 0, FLAG_SWITCH, AT(help), NULL, NULL, "explain the command and list its options"},
@@ -202,6 +206,20 @@ static bool read_number(const char *flag, const char *text, const char *unit, do
     return (stop != text && !*stop && *out >= lowest && *out <= highest) ||
            tl_fail(error, TL_USAGE, "%s: \"%s\": expected %s, from %.10g to %.10g", flag, text, unit, lowest,
                    highest);
+}
+
+/* A number of binary units: K, M, G or T. */
+static bool read_bytes(const char *flag, const char *text, uint64_t *out, tl_error *error)
+{
+    static const char units[] = "KMGT";
+    char *stop;
+    double value = strtod(text, &stop);
+    const char *unit = *stop ? strchr(units, toupper((unsigned char)*stop)) : NULL;
+    if (stop == text || !unit || stop[1] != '\0' || !(value > 0) || value >= 1e6)
+        return tl_fail(error, TL_USAGE, "%s: \"%s\": expected a number and K, M, G or T, as in 500M or 8G",
+                       flag, text);
+    *out = (uint64_t)(value * (double)((uint64_t)1 << (10 * (unit - units + 1))));
+    return true;
 }
 
 static void assign(struct tl_arguments *out, char *assignment)
@@ -258,6 +276,8 @@ static bool take_flag(const struct flag *flag, const char *value, struct tl_argu
         return read_number(flag->name, value, "millimetres", 1e-3, 1e4, field, error);
     case FLAG_MS:
         return read_number(flag->name, value, "milliseconds", 0.1, 1e6, field, error);
+    case FLAG_BYTES:
+        return read_bytes(flag->name, value, field, error);
     case FLAG_ASSIGN:
         assign(out, tl_format("%s=%s", flag->key, value));
         return true;

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define TL_POSITIONALS_MAX 64
 
@@ -51,6 +52,7 @@ struct tl_arguments {
         const char *garments, *fabrics, *colourways, *environments, *views;
     } sheet;
     /* 0: not given */
+    uint64_t memory_bytes;
     double budget_ms;
     double repeat_mm, height_mm;
     int first_frame, last_frame;

@@ -42,6 +42,9 @@ bool tl_headless_garment_settings(const struct tl_arguments *arguments, struct t
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error)
 {
     *headless = (struct tl_headless){.settings = *settings};
+    const struct tl_render_settings drawn = tl_settings_render(&headless->settings);
+    if (!tl_renderer_ask(&drawn, error))
+        return false;
     headless->gpu = tl_gpu_create_headless(error);
     headless->renderer = headless->gpu ? tl_renderer_create(headless->gpu, error) : NULL;
     headless->session = headless->renderer ? tl_session_create(&headless->settings, error) : NULL;

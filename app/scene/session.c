@@ -422,7 +422,7 @@ static const bool *crossed_of_garment(tl_session *session)
     if (!session->crossed.triangles)
         session->crossed.triangles = TL_NEW_ARRAY(bool, mesh->index_count / 3);
     if (session->crossed.revision != session->dress.motion_revision)
-        tl_crossings_of_mesh(mesh, session->dress.positions, session->crossed.triangles);
+        tl_crossings_of_mesh(mesh, session->dress.positions, session->crossed.triangles, NULL);
     session->crossed.revision = session->dress.motion_revision;
     return session->crossed.triangles;
 }

@@ -7,6 +7,9 @@
 
 static void note(char ***list, size_t *count, const char *format, va_list arguments)
 {
+    const size_t most = 200; /* a damaged file may have a note for each of its bytes */
+    if (*count == most)
+        return;
     char text[256];
     vsnprintf(text, sizeof text, format, arguments);
     for (size_t i = 0; i < *count; i++)

@@ -177,7 +177,8 @@ struct gltf_image {
 };
 
 typedef struct gltf_document {
-    const char *path; /* for messages; borrowed */
+    const char *path;  /* for messages; borrowed */
+    size_t file_bytes; /* of the document and the files that it names */
     size_t buffer_count, view_count, accessor_count, primitive_count, mesh_count, node_count, skin_count,
         channel_count, animation_count, material_count, image_count, root_count, used_count, variant_count;
     const struct gltf_buffer *buffers;

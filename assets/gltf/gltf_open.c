@@ -1,6 +1,7 @@
 #include "assets/gltf/gltf_internal.h"
 
 #include "config/file.h"
+#include "config/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -49,10 +50,15 @@ static bool find_chunks(const char *path, const uint8_t *data, size_t size, stru
     return true;
 }
 
-/* The parser is recursive, so depth is limited; real files are nested a dozen levels deep. */
-static bool is_nested_too_deep(const uint8_t *json, size_t size)
+/* What JSON text costs the parser, which is recursive and makes a tree of all values. */
+struct json_facts {
+    int depth;
+    size_t objects, commas;
+};
+
+static struct json_facts json_facts_of(const uint8_t *json, size_t size)
 {
-    const int limit = 128;
+    struct json_facts facts = {0};
     int depth = 0;
     bool quoted = false;
     for (size_t i = 0; i < size; i++) {
@@ -64,12 +70,29 @@ static bool is_nested_too_deep(const uint8_t *json, size_t size)
         } else if (json[i] == '"')
             quoted = true;
         else if (json[i] == '{' || json[i] == '[') {
-            if (++depth > limit)
-                return true;
+            depth++;
+            facts.depth = depth > facts.depth ? depth : facts.depth;
+            facts.objects += json[i] == '{';
         } else if (json[i] == '}' || json[i] == ']')
             depth--;
+        else
+            facts.commas += json[i] == ',';
     }
-    return false;
+    return facts;
+}
+
+/* Real files are nested a dozen levels deep. The bytes are those that tinygltf was measured to take for an
+ * element of a list and for a node, in both of its trees. */
+static bool check_json(const char *path, const struct chunks *chunks, tl_error *error)
+{
+    const int deepest = 128;
+    const uint64_t value_bytes = 192, object_bytes = 1024;
+    struct json_facts facts = json_facts_of(chunks->json, chunks->json_size);
+    if (facts.depth > deepest)
+        return tl_fail(error, TL_INPUT, "%s: its JSON is nested more than %d deep: export it again", path,
+                       deepest);
+    return tl_memory_ask_for_file(path, chunks->json_size,
+                                  facts.commas * value_bytes + facts.objects * object_bytes, error);
 }
 
 bool gltf_open(const char *path, gltf_document *out, tl_error *error)
@@ -92,9 +115,7 @@ bool gltf_open(const char *path, gltf_document *out, tl_error *error)
     if (start == chunks.json_size || chunks.json[start] != '{')
         tl_fail(error, TL_INPUT, "%s: is not glTF: neither a GLB nor a JSON object: export it as glTF 2.0",
                 path);
-    else if (is_nested_too_deep(chunks.json, chunks.json_size))
-        tl_fail(error, TL_INPUT, "%s: its JSON is nested more than 128 deep: export it again", path);
-    else {
+    else if (check_json(path, &chunks, error)) {
         const char *json = (const char *)chunks.json;
         char *prepared = gltf_prepare_json(json, chunks.json_size);
         opened = gltf_parse(path, prepared ? prepared : json, prepared ? strlen(prepared) : chunks.json_size,

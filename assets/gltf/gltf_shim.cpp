@@ -1,6 +1,7 @@
 extern "C" {
 #include "assets/gltf/gltf_internal.h"
 #include "config/file.h"
+#include "config/memory.h"
 }
 
 #include <tiny_gltf.h>
@@ -11,6 +12,7 @@ extern "C" {
 #include <cstring>
 #include <exception>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -52,12 +54,23 @@ std::string keep_path(const std::string &path, void *)
     return path;
 }
 
-bool read_file(std::vector<unsigned char> *out, std::string *message, const std::string &path, void *)
+/* The files that a document names. It may name one file many times, and tinygltf reads it each time. */
+struct Named {
+    const char *path;      /* the document's */
+    size_t bytes;          /* of the document and of the files, each once */
+    size_t repeated_bytes; /* of the files that were read again */
+    std::set<std::string> paths;
+};
+
+bool read_file(std::vector<unsigned char> *out, std::string *message, const std::string &path, void *user)
 {
+    Named *named = static_cast<Named *>(user);
     char *data;
     size_t size;
     tl_error error;
-    if (!tl_file_read(path.c_str(), &data, &size, &error)) {
+    (named->paths.insert(path).second ? named->bytes : named->repeated_bytes) += tl_file_size(path.c_str());
+    if (!tl_memory_ask_for_file(named->path, named->bytes, named->repeated_bytes, &error) ||
+        !tl_file_read(path.c_str(), &data, &size, &error)) {
         if (message)
             *message = error.message;
         return false;
@@ -545,7 +558,8 @@ bool gltf_parse(const char *path, const char *json, size_t json_size, const uint
         owner = new Owner;
         tinygltf::TinyGLTF parser;
         parser.SetImageLoader(keep_image, nullptr);
-        parser.SetFsCallbacks({file_exists, keep_path, read_file, nullptr, nullptr});
+        Named named = {path, json_size + binary_size, 0, {}};
+        parser.SetFsCallbacks({file_exists, keep_path, read_file, nullptr, &named});
         std::string complaint, warning;
         std::vector<char> glb = make_glb(json, json_size, binary, binary_size);
         if (parser.LoadBinaryFromMemory(&owner->model, &complaint, &warning,
@@ -557,6 +571,7 @@ bool gltf_parse(const char *path, const char *json, size_t json_size, const uint
             copy_looks(*owner);
             point_to(*owner, *out);
             out->path = path;
+            out->file_bytes = named.bytes;
             out->owner = owner;
             return true;
         }

@@ -18,15 +18,8 @@ struct gltf_unpacked {
     struct gltf_primitive *primitives;
     uint8_t **blobs; /* the decompressed bytes */
     size_t blob_count;
-    size_t byte_count, byte_limit; /* of all blobs */
+    size_t byte_count; /* of all blobs */
 };
-
-/* meshoptimizer's smallest streams: a block of 256 vertices has 4 bytes of headers for each byte of a vertex;
- * an index has a third of a byte. Each stream of a file is used once, so the same holds for their sum; the
- * first megabytes are free, for Draco's streams (draco_shim.cpp) too. */
-#define BYTES_PER_BYTE 64
-#define BYTES_ALWAYS   ((size_t)1 << 26)
-#define BYTES_MAX      ((size_t)1 << 31)
 
 void gltf_unpack_release(gltf_document *document)
 {
@@ -100,14 +93,8 @@ static void begin(gltf_document *document, size_t packed_views, size_t draco_pri
     unpacked->accessors = TL_NEW_ARRAY(struct gltf_accessor, document->accessor_count + added);
     unpacked->primitives = TL_NEW_ARRAY(struct gltf_primitive, document->primitive_count);
     unpacked->blobs = (uint8_t **)tl_alloc(packed_views + added, sizeof *unpacked->blobs);
-    size_t packed = 0;
-    for (size_t i = 0; i < document->buffer_count; i++) {
+    for (size_t i = 0; i < document->buffer_count; i++)
         unpacked->buffers[i] = document->buffers[i];
-        packed += document->buffers[i].size;
-    }
-    unpacked->byte_limit = packed < (BYTES_MAX - BYTES_ALWAYS) / BYTES_PER_BYTE
-                               ? BYTES_ALWAYS + packed * BYTES_PER_BYTE
-                               : BYTES_MAX;
     for (size_t i = 0; i < document->view_count; i++)
         unpacked->views[i] = document->views[i];
     for (size_t i = 0; i < document->accessor_count; i++)
@@ -123,14 +110,8 @@ static void begin(gltf_document *document, size_t packed_views, size_t draco_pri
 /* Whether `bytes` more may be decompressed. */
 static bool has_room(const gltf_document *document, size_t bytes, tl_error *error)
 {
-    const struct gltf_unpacked *unpacked = document->unpacked;
-    size_t limit = unpacked->byte_limit;
-    if (unpacked->byte_count <= limit && bytes <= limit - unpacked->byte_count)
-        return true;
-    return tl_fail(error, TL_INPUT,
-                   "%s: its compressed streams claim more than %zu MB: the file is damaged, export it again "
-                   "or without compression",
-                   document->path, limit >> 20);
+    return tl_memory_ask_for_file(document->path, document->file_bytes,
+                                  document->unpacked->byte_count + bytes, error);
 }
 
 /* Adds bytes, which the document owns from now on, as a buffer; its index. */

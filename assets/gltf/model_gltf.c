@@ -102,6 +102,22 @@ static struct rig_influence influence_of(const struct gltf_vertices *primitive, 
     return influence;
 }
 
+/* Asks for the vertices and indices so far and those to be added. Many nodes may show one mesh. */
+static bool ask_for(const struct gltf_builder *builder, size_t vertices, size_t indices, tl_error *error)
+{
+    const tl_mesh *mesh = &builder->model->mesh;
+    const uint64_t capacity = 2; /* arrays that grow have twice the size at most */
+    uint64_t vertex_bytes =
+        sizeof *mesh->uvs + 4 * sizeof(vec3s) + sizeof(float) + sizeof(struct rig_influence);
+    uint64_t all_vertices = mesh->vertex_count + vertices, all_indices = mesh->index_count + indices;
+    if (all_vertices > TL_LIMIT_MESH_VERTICES || all_indices > TL_LIMIT_MESH_INDICES)
+        return tl_fail(error, TL_INPUT, "%s: has more than %zu vertices or %zu triangles: simplify it",
+                       builder->document->path, TL_LIMIT_MESH_VERTICES, TL_LIMIT_MESH_INDICES / 3);
+    return tl_memory_ask_for_file(
+        builder->document->path, builder->document->file_bytes,
+        capacity * (all_vertices * vertex_bytes + all_indices * sizeof *mesh->indices), error);
+}
+
 static void reserve(struct gltf_builder *builder, size_t vertices, size_t indices)
 {
     tl_mesh *mesh = &builder->model->mesh;
@@ -195,10 +211,8 @@ static bool append_primitive(struct gltf_builder *builder, const struct gltf_pri
     if (!gltf_primitive_read_indices(document, from, primitive, error))
         return false;
     size_t added = shared ? 0 : primitive->vertex_count;
-    if (mesh->vertex_count + added > TL_LIMIT_MESH_VERTICES ||
-        mesh->index_count + primitive->index_count > TL_LIMIT_MESH_INDICES)
-        return tl_fail(error, TL_INPUT, "%s: has more than %zu vertices or %zu triangles: simplify it",
-                       document->path, TL_LIMIT_MESH_VERTICES, TL_LIMIT_MESH_INDICES / 3);
+    if (!ask_for(builder, added, primitive->index_count, error))
+        return false;
     if (primitive->index_count == 0)
         return true;
     reserve(builder, added, primitive->index_count);
@@ -426,9 +440,8 @@ bool gltf_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_e
     for (size_t i = 0; i < document.skin_count; i++)
         builder.skin_slots[i] = NO_SLOT;
     note_extensions(&document, out);
-    bool loaded = rig_read(&document, out->rig, error);
+    bool loaded = rig_read(&document, out->rig, error) && model_read_materials(&document, out, error);
     if (loaded) {
-        model_read_materials(&document, out);
         loaded = add_scene(&builder, error) && finish(&builder, wanted, error) &&
                  model_read_variants(&document, builder.sources, out, error);
     }

@@ -80,7 +80,8 @@ struct texture_reader {
     tl_model *model;
     struct texture_loaded *loaded;
     size_t loaded_count;
-    uint64_t texel_count; /* decoded so far */
+    uint64_t decoded_bytes; /* of all maps so far */
+    bool is_full;           /* they are more than the file may take: no more are decoded */
 };
 
 /* Points `map` to the texture's image, decoded for that use; `roughness`: the factor of a gloss map. Returns
@@ -90,8 +91,9 @@ const struct texture_loaded *texture_read_map(struct texture_reader *reader,
                                               float roughness, struct tl_map *map);
 
 /* Fills the model's materials and images: one tl_material for each of the file's, then a default one. An
- * image that is missing or cannot be decoded is noted, and its map left out. */
-void model_read_materials(const gltf_document *document, tl_model *model);
+ * image that is missing or cannot be decoded is noted, and its map left out. Fails when there are more
+ * materials than a file of its size may have. */
+bool model_read_materials(const gltf_document *document, tl_model *model, tl_error *error);
 
 /* Fills the model's variants; its mesh must have its parts. sources [mesh.part_count]: each part's primitive.
  */

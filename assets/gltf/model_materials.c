@@ -103,9 +103,13 @@ static tl_material read_material(struct texture_reader *textures, const struct g
     return to;
 }
 
-void model_read_materials(const gltf_document *document, tl_model *model)
+bool model_read_materials(const gltf_document *document, tl_model *model, tl_error *error)
 {
     size_t count = document->material_count;
+    const size_t map_bytes = sizeof(struct texture_loaded) + sizeof(tl_image);
+    if (!tl_memory_ask_for_file(document->path, document->file_bytes,
+                                count * (MAPS_MAX * map_bytes + sizeof(tl_material)), error))
+        return false;
     struct texture_reader textures = {.document = document,
                                       .model = model,
                                       .loaded = TL_NEW_ARRAY(struct texture_loaded, MAPS_MAX * count)};
@@ -116,4 +120,5 @@ void model_read_materials(const gltf_document *document, tl_model *model)
         model->materials[i] = read_material(&textures, &document->materials[i], i);
     model->materials[count] = tl_material_default("default");
     free(textures.loaded);
+    return true;
 }

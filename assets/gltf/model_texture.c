@@ -148,12 +148,17 @@ static const struct texture_loaded *load_image(struct texture_reader *reader, in
     struct texture_loaded *fresh = &reader->loaded[reader->loaded_count++];
     *fresh = (struct texture_loaded){.source = source, .use = use, .roughness = roughness};
     tl_image decoded;
-    if (!decode(reader, source, &decoded))
+    if (reader->is_full || !decode(reader, source, &decoded))
         return fresh;
     /* A few bytes may decode to a huge plain image, and many materials may use it: the sum is limited. */
-    reader->texel_count += (uint64_t)decoded.width * (uint64_t)decoded.height;
-    if (reader->texel_count > TL_LIMIT_IMAGE_TEXELS) {
-        model_ignore(reader->model, "maps beyond %zu texels in all", TL_LIMIT_IMAGE_TEXELS);
+    const uint64_t copies = 2; /* the decoder's, and a map made of it */
+    tl_error error;
+    reader->decoded_bytes +=
+        copies * (uint64_t)decoded.width * (uint64_t)decoded.height * (uint64_t)decoded.channels;
+    if (!tl_memory_ask_for_file(reader->document->path, reader->document->file_bytes, reader->decoded_bytes,
+                                &error)) {
+        model_ignore(reader->model, "further maps: %s", error.message);
+        reader->is_full = true;
         tl_image_release(&decoded);
         return fresh;
     }

@@ -13,7 +13,6 @@ extern "C" {
 #include <exception>
 #include <new>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 namespace
@@ -28,6 +27,7 @@ struct Builder {
     Mesh mesh;
     std::vector<uint32_t> source;                /* of each mesh vertex: its vertex in the source */
     std::unordered_map<uint64_t, unsigned> uses; /* triangles at each side */
+    std::vector<unsigned> faces;                 /* of each vertex of the source */
     size_t refused = 0;
 };
 
@@ -50,12 +50,16 @@ OpenMesh::VertexHandle add_vertex(Builder &builder, uint32_t vertex)
 
 void add_face(Builder &builder, const uint32_t *v)
 {
+    /* OpenMesh goes round a vertex for each face that it gets, which takes the square of their number. */
+    const unsigned most_faces = 128;
     OpenMesh::VertexHandle corners[3];
+    bool crowded = false;
     for (size_t k = 0; k < 3; k++) {
         corners[k] = OpenMesh::VertexHandle(static_cast<int>(v[k]));
         builder.uses[key_of(v[k], v[(k + 1) % 3])]++;
+        crowded |= builder.faces[v[k]]++ >= most_faces;
     }
-    if (builder.mesh.add_face(corners, 3).is_valid())
+    if (!crowded && builder.mesh.add_face(corners, 3).is_valid())
         return;
     builder.refused++;
     for (size_t k = 0; k < 3; k++)
@@ -66,6 +70,7 @@ void add_face(Builder &builder, const uint32_t *v)
 void build(Builder &builder, const tl_loop_source &source)
 {
     omerr().disable(); /* refused faces are counted */
+    builder.faces.resize(source.vertex_count);
     builder.mesh.reserve(source.vertex_count, 3 * source.triangle_count, source.triangle_count);
     for (size_t i = 0; i < source.vertex_count; i++)
         add_vertex(builder, static_cast<uint32_t>(i));
@@ -107,28 +112,44 @@ std::vector<Side> collect(const Builder &builder)
 
 /* Leaves out sides that no side leads to or from, such as a fin's, and those that only these lead to or from:
  * they are parts of no loop. */
-std::vector<Side> prune(std::vector<Side> sides)
+std::vector<Side> prune(const std::vector<Side> &sides)
 {
-    for (bool changed = true; changed;) {
-        std::unordered_set<uint32_t> begins, ends;
-        for (const Side &side : sides) {
-            begins.insert(side.from);
-            ends.insert(side.to);
+    std::unordered_map<uint32_t, std::vector<size_t>> leaving, arriving; /* sides of each vertex */
+    std::unordered_map<uint32_t, size_t> begins, ends;                   /* how many of them are left */
+    for (size_t i = 0; i < sides.size(); i++) {
+        leaving[sides[i].from].push_back(i);
+        arriving[sides[i].to].push_back(i);
+        begins[sides[i].from]++;
+        ends[sides[i].to]++;
+    }
+    std::vector<bool> dropped(sides.size());
+    std::vector<size_t> open;
+    auto examine = [&](size_t i) {
+        if (!dropped[i] && (ends[sides[i].from] == 0 || begins[sides[i].to] == 0)) {
+            dropped[i] = true;
+            open.push_back(i);
         }
-        std::vector<size_t> number(sides.size(), NONE);
-        std::vector<Side> kept;
-        for (size_t i = 0; i < sides.size(); i++) {
-            if (!ends.count(sides[i].from) || !begins.count(sides[i].to))
-                continue;
+    };
+    for (size_t i = 0; i < sides.size(); i++)
+        examine(i);
+    while (!open.empty()) {
+        const Side &side = sides[open.back()];
+        open.pop_back();
+        if (--begins[side.from] == 0)
+            std::for_each(arriving[side.from].begin(), arriving[side.from].end(), examine);
+        if (--ends[side.to] == 0)
+            std::for_each(leaving[side.to].begin(), leaving[side.to].end(), examine);
+    }
+    std::vector<size_t> number(sides.size(), NONE);
+    std::vector<Side> kept;
+    for (size_t i = 0; i < sides.size(); i++)
+        if (!dropped[i]) {
             number[i] = kept.size();
             kept.push_back(sides[i]);
         }
-        for (Side &side : kept)
-            side.next = side.next == NONE ? NONE : number[side.next];
-        changed = kept.size() < sides.size();
-        sides = std::move(kept);
-    }
-    return sides;
+    for (Side &side : kept)
+        side.next = side.next == NONE ? NONE : number[side.next];
+    return kept;
 }
 
 /* Where a refused face ended a line, joins it to a side that begins there and that none leads to. */

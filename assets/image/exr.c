@@ -109,33 +109,25 @@ static bool check_window(struct exr_reader *reader, tl_error *error)
     int64_t width = (int64_t)part->max_x - part->min_x + 1, height = (int64_t)part->max_y - part->min_y + 1;
     if (!tl_image_size_check(source->path, width, height, error))
         return false;
-    /* The tightest codecs shrink a texel of three floats to about a hundredth of a byte. Small images are let
-     * through: what they cost is bearable. */
-    const uint64_t bearable_texels = 1 << 22, texels_per_byte = 128;
-    uint64_t texels = (uint64_t)width * (uint64_t)height;
-    if (texels > bearable_texels && texels / texels_per_byte > source->size)
-        return tl_fail(error, TL_INPUT,
-                       "%s: claims %lld x %lld texels but has only %zu bytes: fetch or write it again",
-                       source->path, (long long)width, (long long)height, source->size);
     reader->width = (int)width;
     reader->height = (int)height;
     return true;
 }
 
-/* The library decodes all channels of up to 256 rows, or of a tile, at a time. Deflate shrinks at most 1032
- * times. */
-static bool check_chunk(const struct exr_reader *reader, tl_error *error)
+/* The image, planes of as many floats where the channels are not colours of full size, and the chunks that
+ * the library decodes at a time: all channels of up to 256 rows, or of a tile, in three buffers (packed,
+ * unpacked, and as the codec has them). */
+static bool check_cost(const struct exr_reader *reader, tl_error *error)
 {
-    const uint64_t bearable_bytes = 1 << 27, bytes_per_byte = 1032, rows = 256;
+    const uint64_t rows = 256, buffers = 3, channels = 4;
     const struct tl_exr_part *part = &reader->part;
-    uint64_t height = (uint64_t)reader->height;
-    uint64_t texels = part->is_tiled ? (uint64_t)part->tile_width * (uint64_t)part->tile_height
-                                     : (uint64_t)reader->width * (height < rows ? height : rows);
-    uint64_t bytes = texels * part->texel_bytes; /* below 2^30 x 2^32 */
-    if (bytes > bearable_bytes && bytes / bytes_per_byte > reader->source->size)
-        return fail_damaged(reader->source, "its rows or tiles claim more bytes than the file can hold",
-                            error);
-    return true;
+    uint64_t width = (uint64_t)reader->width, height = (uint64_t)reader->height;
+    uint64_t chunk = part->is_tiled ? (uint64_t)part->tile_width * (uint64_t)part->tile_height
+                                    : width * (height < rows ? height : rows);
+    return tl_memory_ask_for_file(reader->source->path, reader->source->size,
+                                  width * height * channels * sizeof(float) * (reader->luminance ? 2 : 1) +
+                                      buffers * chunk * part->texel_bytes, /* below 2^30 x 2^32 */
+                                  error);
 }
 
 static const struct tl_exr_channel *find_channel(const struct tl_exr_part *part, const char *name)
@@ -282,7 +274,7 @@ static bool load_part(struct exr_reader *reader, tl_image *out, tl_error *error)
 {
     if (reader->part.index < 0)
         return tl_fail(error, TL_INPUT, "%s: holds deep data only: flatten it first", reader->source->path);
-    if (!check_window(reader, error) || !check_chunk(reader, error) || !choose_channels(reader, error))
+    if (!check_window(reader, error) || !choose_channels(reader, error) || !check_cost(reader, error))
         return false;
     if (reader->wanted && !reader->planes[0].channel)
         return true;

@@ -143,12 +143,9 @@ bool tl_radiance_decode(const char *name, const void *data, size_t size, tl_imag
     struct rgbe_header header;
     if (!read_header(name, &reader, &header, error))
         return false;
-    /* A run of at most 127 texels takes 8 bytes. Small images are not checked: they cost little. */
-    const uint64_t bearable_texels = 1 << 22, texels_per_byte = 16;
-    uint64_t texels = (uint64_t)header.width * (uint64_t)header.height;
-    if (texels > bearable_texels && texels / texels_per_byte > size)
-        return tl_fail(error, TL_INPUT, "%s: claims %d x %d texels but has only %zu bytes: fetch it again",
-                       name, header.width, header.height, size);
+    if (!tl_memory_ask_for_file(name, size,
+                                (uint64_t)header.width * (uint64_t)header.height * 3 * sizeof(float), error))
+        return false;
     tl_image image = tl_image_create(header.width, header.height, 3, TL_IMAGE_F32);
     uint8_t *row = TL_NEW_ARRAY(uint8_t, 4 * (size_t)header.width);
     int read = 0;

@@ -70,6 +70,7 @@ static int drop_message(TIFF *tiff, void *user, const char *module, const char *
 static TIFF *open_memory(struct memory *memory)
 {
     TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options, 1 << 27); /* of rows, tiles and tags */
     TIFFOpenOptionsSetErrorHandlerExtR(options, take_message, memory);
     TIFFOpenOptionsSetWarningHandlerExtR(options, drop_message, NULL);
     TIFF *tiff = TIFFClientOpenExt("image", "rm", memory, read_memory, refuse_write, seek_memory,
@@ -90,8 +91,9 @@ static bool fail_damaged(const char *name, const struct memory *memory, tl_error
                    memory->message[0] ? memory->message : "no reason is given");
 }
 
-/* No compression of TIFF's is stronger than deflate's, 1032:1; a byte may hold 8 texels. */
-#define TEXELS_PER_BYTE ((uint64_t)1032 * 8)
+/* Bytes a texel: the library's form, the image that is made of it, and rows or tiles as the file has them,
+ * which are limited by themselves. */
+#define BYTES_PER_TEXEL 8
 
 static bool check_size(const char *name, TIFF *tiff, size_t size, uint32_t *width, uint32_t *height,
                        tl_error *error)
@@ -99,12 +101,8 @@ static bool check_size(const char *name, TIFF *tiff, size_t size, uint32_t *widt
     *width = *height = 0;
     TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, width);
     TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, height);
-    if (!tl_image_size_check(name, *width, *height, error))
-        return false;
-    return (uint64_t)*width * *height <= (uint64_t)size * TEXELS_PER_BYTE ||
-           tl_fail(error, TL_INPUT,
-                   "%s: claims %u x %u texels but has only %zu bytes: fetch or write it again", name, *width,
-                   *height, size);
+    return tl_image_size_check(name, *width, *height, error) &&
+           tl_memory_ask_for_file(name, size, (uint64_t)*width * *height * BYTES_PER_TEXEL, error);
 }
 
 static TIFF *open_checked(const char *name, struct memory *memory, uint32_t *width, uint32_t *height,

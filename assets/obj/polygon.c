@@ -1,13 +1,19 @@
 #include "assets/obj/polygon.h"
 
+#include "config/memory.h"
+
 #include <stdbool.h>
+#include <stdlib.h>
 
 /* A polygon projected along its normal. */
+struct point {
+    double x, y;
+};
 struct outline {
-    const vec3s *corners;
-    vec3s right, up;
-    uint32_t *left; /* corners not yet cut off, in order */
+    struct point *points; /* of all corners */
+    uint32_t *left;       /* corners not yet cut off, in order */
     size_t count;
+    size_t tests_left; /* of corners against triangles */
 };
 
 /* Newell's: the sum of the cross products of its edges is twice its area, for any flat polygon. */
@@ -20,36 +26,36 @@ static vec3s area_vector(const vec3s *corners, size_t count)
     return sum;
 }
 
+/* Twice the area of a triangle, positive when it turns to the left. */
 static double turn(const struct outline *outline, uint32_t a, uint32_t b, uint32_t c)
 {
-    vec3s ab = glms_vec3_sub(outline->corners[b], outline->corners[a]);
-    vec3s ac = glms_vec3_sub(outline->corners[c], outline->corners[a]);
-    return (double)glms_vec3_dot(ab, outline->right) * (double)glms_vec3_dot(ac, outline->up) -
-           (double)glms_vec3_dot(ab, outline->up) * (double)glms_vec3_dot(ac, outline->right);
+    const struct point *p = outline->points;
+    return (p[b].x - p[a].x) * (p[c].y - p[a].y) - (p[b].y - p[a].y) * (p[c].x - p[a].x);
 }
 
 /* Whether corner `at` is an ear: it and its neighbours form a left-turning triangle that holds no other
  * corner. */
-static bool is_ear(const struct outline *outline, size_t at)
+static bool is_ear(struct outline *outline, size_t at)
 {
     size_t count = outline->count;
-    uint32_t a = outline->left[(at + count - 1) % count], b = outline->left[at],
-             c = outline->left[(at + 1) % count];
-    if (!(turn(outline, a, b, c) > 0))
-        return false;
-    for (size_t i = 0; i < count; i++) {
+    uint32_t a = outline->left[at > 0 ? at - 1 : count - 1], b = outline->left[at],
+             c = outline->left[at + 1 < count ? at + 1 : 0];
+    bool ear = turn(outline, a, b, c) > 0;
+    size_t i = 0;
+    for (; ear && i < count; i++) {
         uint32_t p = outline->left[i];
-        if (p != a && p != b && p != c && turn(outline, a, b, p) >= 0 && turn(outline, b, c, p) >= 0 &&
-            turn(outline, c, a, p) >= 0)
-            return false;
+        ear = p == a || p == b || p == c || turn(outline, a, b, p) < 0 || turn(outline, b, c, p) < 0 ||
+              turn(outline, c, a, p) < 0;
     }
-    return true;
+    outline->tests_left -= i + 1 < outline->tests_left ? i + 1 : outline->tests_left;
+    return ear;
 }
 
-/* The first ear from `from` on, or `from` when there is none: the polygon is degenerate or crosses itself. */
-static size_t find_ear(const struct outline *outline, size_t from)
+/* The first ear from `from` on, or `from` when there is none (the polygon is degenerate or crosses itself) or
+ * all tests are used up. */
+static size_t find_ear(struct outline *outline, size_t from)
 {
-    for (size_t i = 0; i < outline->count; i++) {
+    for (size_t i = 0; i < outline->count && outline->tests_left > 0; i++) {
         size_t at = (from + i) % outline->count;
         if (is_ear(outline, at))
             return at;
@@ -57,17 +63,30 @@ static size_t find_ear(const struct outline *outline, size_t from)
     return from % outline->count;
 }
 
+/* A polygon that does not cross itself takes at most about count^2 / 2 tests. One that does may have no ear
+ * at most steps, which would take count^3. */
+static size_t tests_for(size_t count)
+{
+    const size_t for_small = 4096;
+    return for_small + count * count;
+}
+
 void tl_polygon_cut(const vec3s *corners, size_t count, uint32_t *triangles, uint32_t *scratch)
 {
     vec3s normal = glms_vec3_normalize(area_vector(corners, count));
-    vec3s right = glms_vec3_ortho(normal);
-    struct outline outline = {.corners = corners,
-                              .right = glms_vec3_normalize(right),
-                              .up = glms_vec3_cross(normal, glms_vec3_normalize(right)),
+    vec3s right = glms_vec3_normalize(glms_vec3_ortho(normal)), up = glms_vec3_cross(normal, right);
+    struct outline outline = {.points = TL_NEW_ARRAY(struct point, count),
                               .left = scratch,
-                              .count = count};
-    for (size_t i = 0; i < count; i++)
+                              .count = count,
+                              .tests_left = tests_for(count)};
+    for (size_t i = 0; i < count; i++) {
+        for (int c = 0; c < 3; c++) {
+            double from_first = (double)corners[i].raw[c] - (double)corners[0].raw[c];
+            outline.points[i].x += from_first * (double)right.raw[c];
+            outline.points[i].y += from_first * (double)up.raw[c];
+        }
         scratch[i] = (uint32_t)i;
+    }
     /* Moves on two corners after each cut: ears are taken from all around, not as a fan from one corner. */
     for (size_t at = 1; outline.count >= 3; at++) {
         at = find_ear(&outline, at);
@@ -78,4 +97,5 @@ void tl_polygon_cut(const vec3s *corners, size_t count, uint32_t *triangles, uin
         for (size_t i = at; i < outline.count; i++)
             outline.left[i] = outline.left[i + 1];
     }
+    free(outline.points);
 }

@@ -23,8 +23,9 @@ struct mtl_reader {
     tl_model *model;
     char **image_paths; /* [model->image_count] */
     size_t image_capacity;
-    uint64_t texel_count; /* decoded so far */
-    tl_material *current; /* NULL: one that no face uses */
+    uint64_t decoded_bytes, file_bytes; /* of all pictures so far */
+    bool is_full;                       /* they are more than the files may take: no more are decoded */
+    tl_material *current;               /* NULL: one that no face uses */
 };
 
 static float unit(float value)
@@ -118,9 +119,25 @@ static char *picture_path(const char *library, const char *name)
     return path;
 }
 
+/* Asks for all pictures so far and this one. A material file may name one small picture by many paths, so
+ * that the sizes of different files alone are added. */
+static bool ask_for(struct mtl_reader *reader, const char *path, const tl_image *image, tl_error *error)
+{
+    const uint64_t copies = 2; /* the decoder's */
+    reader->decoded_bytes +=
+        copies * (uint64_t)image->width * (uint64_t)image->height * (uint64_t)image->channels;
+    reader->file_bytes += tl_file_size(path);
+    reader->is_full =
+        !tl_memory_ask_for_file(reader->text.path, reader->file_bytes, reader->decoded_bytes, error);
+    return !reader->is_full;
+}
+
 static const tl_image *load_picture(struct mtl_reader *reader, const char *name, bool linear)
 {
-    char *path = picture_path(reader->text.path, name);
+    char *named = picture_path(reader->text.path, name), *real = realpath(named, NULL);
+    char *path = real ? real : named; /* one name for one file */
+    if (real)
+        free(named);
     tl_model *model = reader->model;
     for (size_t i = 0; i < model->image_count; i++)
         if (strcmp(reader->image_paths[i], path) == 0 && model->images[i].linear == linear) {
@@ -129,14 +146,10 @@ static const tl_image *load_picture(struct mtl_reader *reader, const char *name,
         }
     tl_error error;
     tl_image image = {0};
-    bool full = reader->texel_count > TL_LIMIT_IMAGE_TEXELS || model->image_count == reader->image_capacity;
-    if (!full && !tl_image_load(path, &image, &error)) {
-        model_ignore(model, "%s", error.message);
+    if (reader->is_full || model->image_count == reader->image_capacity)
         goto failed;
-    }
-    reader->texel_count += (uint64_t)image.width * (uint64_t)image.height;
-    if (full || reader->texel_count > TL_LIMIT_IMAGE_TEXELS) {
-        model_ignore(model, "maps beyond %zu texels in all", TL_LIMIT_IMAGE_TEXELS);
+    if (!tl_image_load(path, &image, &error) || !ask_for(reader, path, &image, &error)) {
+        model_ignore(model, "%s", error.message);
         goto failed;
     }
     image.linear = linear;

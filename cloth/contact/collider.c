@@ -285,8 +285,10 @@ static bool build_scene(tl_collider *collider, tl_error *error)
 {
     collider->device = rtcNewDevice("threads=1");
     if (!collider->device)
-        return tl_fail(error, TL_DEVICE, "Embree cannot start (error %d): reinstall libembree3",
-                       (int)rtcGetDeviceError(NULL));
+        return tl_fail(
+            error, TL_DEVICE,
+            "Embree cannot start (error %d; 4: too little memory): free some memory, or reinstall libembree3",
+            (int)rtcGetDeviceError(NULL));
     collider->geometry = rtcNewGeometry(collider->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryTimeStepCount(collider->geometry, 2);
     for (unsigned pose = 0; pose < 2; pose++)

@@ -46,14 +46,30 @@ bool tl_triangles_cross(const uint32_t a[3], const uint32_t b[3], const vec3d *x
     return a_side_crosses(a, b, x) || a_side_crosses(b, a, x);
 }
 
+/* The limit of each task: none where all tasks together find at most `limit` pairs, else an equal share.
+ * Found by one thread, so that the pairs that are tested do not depend on the number of threads. */
+static size_t limit_of_tasks(const struct tl_near_tree *tree, size_t limit)
+{
+    struct tl_near_pairs pairs = {.limit = limit};
+    for (size_t task = 0; task < tree->task_count && pairs.limit > 0; task++) {
+        tl_near_tree_pairs(tree, task, &pairs);
+        pairs.limit -= pairs.count < pairs.limit ? pairs.count : pairs.limit;
+    }
+    bool within = pairs.limit > 0;
+    tl_near_pairs_release(&pairs);
+    return within ? 0 : limit / tree->task_count + 1;
+}
+
 void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x,
                        struct tl_near_pairs *out)
 {
     tl_near_tree_refit(tree, topology, x, NULL, NULL);
+    const size_t limit = out->limit > 0 ? limit_of_tasks(tree, out->limit) : 0;
     struct tl_near_pairs *found = TL_NEW_ARRAY(struct tl_near_pairs, tree->task_count);
 #pragma omp parallel for schedule(dynamic) if (topology->vertex_count >= TL_NEAR_PARALLEL_VERTICES)
     for (size_t task = 0; task < tree->task_count; task++) {
         struct tl_near_pairs *pairs = &found[task];
+        pairs->limit = limit;
         tl_near_tree_pairs(tree, task, pairs);
         size_t kept = 0;
         for (size_t i = 0; i < pairs->count; i++) {
@@ -66,8 +82,10 @@ void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topo
         pairs->count = kept;
     }
     out->count = 0;
+    out->cut_short = false;
     for (size_t task = 0; task < tree->task_count; task++) {
         tl_near_pairs_append(out, &found[task]);
+        out->cut_short |= found[task].cut_short;
         tl_near_pairs_release(&found[task]);
     }
     free(found);
@@ -97,14 +115,16 @@ size_t tl_crossings_count(struct tl_near_tree *tree, const struct tl_topology *t
     return count;
 }
 
-size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed)
+size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed, bool *complete)
 {
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
     size_t places = tl_weld_positions(positions, mesh->vertex_count, weld);
     struct tl_topology topology =
         tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, places);
     vec3d *x = TL_NEW_ARRAY(vec3d, places);
-    struct tl_near_pairs pairs = {0};
+    /* A triangle's box overlaps those of about a dozen neighbours, a few times as many in layered cloth. */
+    const size_t for_small = 1 << 20, of_triangle = 32;
+    struct tl_near_pairs pairs = {.limit = for_small + of_triangle * topology.triangle_count};
     for (size_t i = 0; i < mesh->vertex_count; i++)
         x[weld[i]] = vec3d_from(positions[i]);
     if (topology.triangle_count > 0)
@@ -115,6 +135,8 @@ size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *c
         for (int side = 0; side < 2; side++)
             crossed[topology.source[pairs.pairs[i][side]]] = true;
     size_t count = pairs.count;
+    if (complete)
+        *complete = !pairs.cut_short;
     tl_near_pairs_release(&pairs);
     tl_topology_release(&topology);
     free(x);

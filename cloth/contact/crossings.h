@@ -18,7 +18,8 @@ bool tl_segment_crosses(vec3d p, vec3d q, vec3d a, vec3d b, vec3d c);
 /* Whether two triangles of a mesh cross. */
 bool tl_triangles_cross(const uint32_t a[3], const uint32_t b[3], const vec3d *x);
 
-/* Replaces `out` by the crossing pairs, each once, in an order that depends on the tree only. `tree` is that
+/* Replaces `out` by the crossing pairs, each once, in an order that depends on the tree only. Where more than
+ * out->limit pairs of boxes overlap, only about as many are tested, and out->cut_short is set. `tree` is that
  * of the topology and is refitted to `x`. Takes 2 ms for 6,000 triangles. */
 void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x,
                        struct tl_near_pairs *out);
@@ -27,9 +28,10 @@ void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topo
  * is as for tl_crossings_find; NULL: one is built, which takes longer than the search. */
 size_t tl_crossings_count(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x);
 
-/* The same for a mesh whose vertices are at `positions` [vertex_count]; those at the same place are one.
- * Where `crossed` is not NULL, sets crossed[t] for each triangle [index_count / 3] that crosses another one,
- * and clears it for all others. 8 ms for 6,000 triangles. */
-size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed);
+/* The same for a mesh whose vertices are at `positions` [vertex_count]; those at the same place are one. Of a
+ * mesh whose triangles all lie in one heap, which is a damaged file, only some pairs are tested: *complete is
+ * false then; NULL is accepted. Where `crossed` is not NULL, sets crossed[t] for each triangle [index_count /
+ * 3] that crosses another one, and clears it for all others. 8 ms for 6,000 triangles. */
+size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed, bool *complete);
 
 #endif

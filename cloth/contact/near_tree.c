@@ -249,7 +249,7 @@ static void add_leaves(const struct tl_near_tree *tree, uint32_t a, uint32_t b, 
 
 static void descend(const struct tl_near_tree *tree, uint32_t a, uint32_t b, struct tl_near_pairs *out)
 {
-    if (!boxes_overlap(&tree->nodes[a], &tree->nodes[b]))
+    if (!boxes_overlap(&tree->nodes[a], &tree->nodes[b]) || (out->limit > 0 && out->count >= out->limit))
         return;
     if (a >= tree->leaf_count) {
         add_leaves(tree, a, b, out);
@@ -266,4 +266,5 @@ void tl_near_tree_pairs(const struct tl_near_tree *tree, size_t task, struct tl_
 {
     out->count = 0;
     descend(tree, tree->tasks[task][0], tree->tasks[task][1], out);
+    out->cut_short = out->limit > 0 && out->count >= out->limit;
 }

@@ -51,6 +51,8 @@ void tl_near_tree_refit(struct tl_near_tree *tree, const struct tl_topology *top
 
 struct tl_near_pairs {
     size_t count, capacity;
+    size_t limit;         /* a task ends soon after so many pairs; 0: it finds all */
+    bool cut_short;       /* it did end so */
     uint32_t (*pairs)[2]; /* triangles */
 };
 

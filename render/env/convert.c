@@ -431,6 +431,16 @@ static double convert(const tl_image *image, const struct tl_sphere_map *from, c
     return worst;
 }
 
+uint64_t tl_convert_bytes(const struct tl_sphere_map *from, const struct tl_sphere_map *to)
+{
+    /* A list of shares has up to twice the size that it needs. A texel has about as many shares as the texels
+     * of the finer map that it covers, and those that its sides cut. */
+    const uint64_t side_bytes = 3 * sizeof(double), share_bytes = 2 * 2 * 2 * sizeof(struct texel_share),
+                   target_bytes = 3 * (sizeof(double) + sizeof(float));
+    return (texel_count(from) + texel_count(to)) * (side_bytes + share_bytes) +
+           texel_count(to) * target_bytes;
+}
+
 tl_image tl_image_convert(const tl_image *image, const struct tl_sphere_map *from,
                           const struct tl_sphere_map *to, double *error)
 {

@@ -18,6 +18,8 @@ int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to);
  * cube of size 1: 1e-2). Memory: 12 bytes for each pair of texels that overlap and 24 bytes for each texel.
  * Reports progress. Returns an image without texels when interrupted (config/interrupt.h). */
 #define TL_CONVERT_ERROR 1e-3
+/* Bytes that it takes at most, its result included. */
+uint64_t tl_convert_bytes(const struct tl_sphere_map *from, const struct tl_sphere_map *to);
 tl_image tl_image_convert(const tl_image *image, const struct tl_sphere_map *from,
                           const struct tl_sphere_map *to, double *error);
 

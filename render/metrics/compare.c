@@ -5,6 +5,7 @@
 #include "config/memory.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Below this range the filters of FLIP are narrower than a pixel; above it they only cost time (a phone in
@@ -151,12 +152,23 @@ static bool frame_of(const tl_image *image, double pixels_per_degree, struct tl_
                    PIXELS_PER_DEGREE_MIN, PIXELS_PER_DEGREE_MAX);
 }
 
+/* Besides the two images: both as colours and coverage, what FLIP takes, its map and the luminances. */
+static bool ask_for(const struct tl_flip_frame *frame, tl_error *error)
+{
+    const uint64_t plain_bytes = 3 * sizeof(float) + sizeof(bool), map_bytes = 2 * sizeof(float);
+    uint64_t pixels = (uint64_t)frame->width * (uint64_t)frame->height;
+    char what[64];
+    snprintf(what, sizeof what, "compare: images of %d x %d", frame->width, frame->height);
+    return tl_memory_ask(what, pixels * (2 * plain_bytes + map_bytes) + tl_flip_bytes(frame), error);
+}
+
 bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,
                       struct tl_comparison *out, tl_error *error)
 {
     *out = (struct tl_comparison){0};
     struct tl_flip_frame frame;
-    if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error))
+    if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error) ||
+        !ask_for(&frame, error))
         return false;
 
     struct plain test = {0}, reference = {0};
@@ -216,7 +228,8 @@ bool tl_image_compare_object(const tl_image *a, const tl_image *b, const tl_imag
 {
     *out = (struct tl_object_error){.flip_mean = NAN, .flip_worst = NAN};
     struct tl_flip_frame frame;
-    if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error))
+    if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error) ||
+        !ask_for(&frame, error))
         return false;
     if (mask->width != a->width || mask->height != a->height)
         return tl_fail(error, TL_INPUT,

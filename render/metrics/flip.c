@@ -369,6 +369,12 @@ static void raise_map(const struct analysis *test, const struct analysis *refere
     }
 }
 
+uint64_t tl_flip_bytes(const struct tl_flip_frame *frame)
+{
+    const uint64_t images = 2;
+    return images * PLANE_COUNT * sizeof(float) * (uint64_t)frame->width * (uint64_t)frame->height;
+}
+
 static void raise_by_displays(const struct tl_flip_frame *frame, const float *test, const float *reference,
                               const struct display displays[], int display_count, float *map)
 {

@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 /* 3840 pixels over 0.7 m, seen from 0.7 m. */
 #define TL_FLIP_PIXELS_PER_DEGREE 67.0206
@@ -18,6 +19,9 @@ struct tl_flip_frame {
     int width, height;
     double pixels_per_degree;
 };
+
+/* Bytes that the functions below take besides their arguments. */
+uint64_t tl_flip_bytes(const struct tl_flip_frame *frame);
 
 /* LDR-FLIP; values are clamped to [0, 1]. `map` is [height][width]. */
 void tl_flip_ldr(const struct tl_flip_frame *frame, const float *test, const float *reference, float *map);

@@ -63,8 +63,10 @@ tl_trace *tl_trace_create(tl_error *error)
     tl_trace *trace = TL_NEW(tl_trace);
     trace->device = rtcNewDevice("threads=1");
     if (!trace->device) {
-        tl_fail(error, TL_DEVICE, "Embree cannot start (error %d): reinstall libembree3",
-                (int)rtcGetDeviceError(NULL));
+        tl_fail(
+            error, TL_DEVICE,
+            "Embree cannot start (error %d; 4: too little memory): free some memory, or reinstall libembree3",
+            (int)rtcGetDeviceError(NULL));
         free(trace);
         return NULL;
     }

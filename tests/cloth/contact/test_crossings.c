@@ -135,7 +135,8 @@ static void test_real_garment(void **state)
     check_count("casual suit", &topology, x, 100);
     /* As a mesh: the same pairs, and each marked triangle crosses some other one. */
     bool *crossed = TL_NEW_ARRAY(bool, mesh->index_count / 3);
-    assert_int_equal(tl_crossings_of_mesh(mesh, mesh->positions, crossed), oracle_crossings(&topology, x));
+    assert_int_equal(tl_crossings_of_mesh(mesh, mesh->positions, crossed, NULL),
+                     oracle_crossings(&topology, x));
     for (size_t t = 0; t < topology.triangle_count; t++) {
         bool crosses = false;
         for (size_t other = 0; other < topology.triangle_count && !crosses; other++)

@@ -1,0 +1,59 @@
+/* The C library's allocating functions for the whole program, the libraries that it uses included: when one
+ * of them fails, the program ends as it does for tl_alloc (config/memory.h). Otherwise a failure would end in
+ * whatever each library makes of it: a crash inside the GL driver, an abort, an exit status of 1.
+ *
+ * The program's definitions take the place of the C library's in every shared library (glibc manual,
+ * "Replacing malloc"); the memory is still the C library's own, so free() stays its own too. Sanitizers
+ * define these functions themselves. */
+#include "config/memory.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+
+/* Declared by no header of glibc, but exported by it. */
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+
+static void *or_end(void *memory, size_t size)
+{
+    if (!memory && size > 0)
+        tl_memory_exhausted(size);
+    return memory;
+}
+
+__attribute__((weak)) void *malloc(size_t size)
+{
+    return or_end(__libc_malloc(size), size);
+}
+
+__attribute__((weak)) void *calloc(size_t count, size_t size)
+{
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes))
+        bytes = SIZE_MAX;
+    return or_end(__libc_calloc(count, size), bytes);
+}
+
+__attribute__((weak)) void *realloc(void *memory, size_t size)
+{
+    return or_end(__libc_realloc(memory, size), size);
+}
+
+__attribute__((weak)) void *aligned_alloc(size_t alignment, size_t size)
+{
+    return or_end(__libc_memalign(alignment, size), size);
+}
+
+__attribute__((weak)) int posix_memalign(void **out, size_t alignment, size_t size)
+{
+    if (alignment == 0 || alignment % sizeof(void *) != 0 || (alignment & (alignment - 1)) != 0)
+        return EINVAL;
+    *out = aligned_alloc(alignment, size);
+    return 0;
+}
+
+#endif
