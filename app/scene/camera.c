@@ -67,14 +67,14 @@ void tl_framing_add_head(struct tl_framing *framing, const vec3s *points, size_t
 }
 
 /* Places in the picture seen from a distance of the box's middle, in half heights from its centre. */
-struct extent {
+struct picture_extent {
     float lowest, highest, widest;
 };
 
-static struct extent extent_of(const vec3s *points, int count, const struct axes *axes, vec3s middle,
-                               float distance, float tangent)
+static struct picture_extent extent_of(const vec3s *points, int count, const struct axes *axes, vec3s middle,
+                                       float distance, float tangent)
 {
-    struct extent extent = {INFINITY, -INFINITY, 0};
+    struct picture_extent extent = {INFINITY, -INFINITY, 0};
     for (int i = 0; i < count; i++) {
         vec3s from = glms_vec3_sub(points[i], middle);
         float reach = (distance - glms_vec3_dot(from, axes->back)) * tangent;
@@ -90,8 +90,9 @@ static struct extent extent_of(const vec3s *points, int count, const struct axes
 static float fill_of(const struct tl_framing *framing, const struct axes *axes, vec3s middle, float distance,
                      float tangent, float aspect)
 {
-    struct extent own = extent_of(framing->points, framing->count, axes, middle, distance, tangent),
-                  head = extent_of(framing->head, framing->head_count, axes, middle, distance, tangent);
+    struct picture_extent own = extent_of(framing->points, framing->count, axes, middle, distance, tangent),
+                          head =
+                              extent_of(framing->head, framing->head_count, axes, middle, distance, tangent);
     float fill = fmaxf(0.5f * (own.highest - own.lowest) / framing->share, own.widest / (aspect * WIDEST));
     return fmaxf(fill, 0.5f * (head.highest - own.lowest) / TL_CAMERA_BODY);
 }
@@ -100,7 +101,8 @@ static float fill_of(const struct tl_framing *framing, const struct axes *axes, 
 static vec3s middle_of(const struct tl_framing *framing, const struct axes *axes, vec3s middle,
                        float distance, float tangent)
 {
-    struct extent head = extent_of(framing->head, framing->head_count, axes, middle, distance, tangent);
+    struct picture_extent head =
+        extent_of(framing->head, framing->head_count, axes, middle, distance, tangent);
     float above = fmaxf(head.highest - TL_CAMERA_BODY, 0) * distance * tangent;
     return glms_vec3_add(middle, glms_vec3_scale(axes->up, above));
 }
