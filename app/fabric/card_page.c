@@ -200,10 +200,11 @@ static void put_colours(const struct tl_card *card, cairo_t *cairo, double x)
     put(cairo, x, SWATCH_Y + 36, &(const struct text){.size = 2.4, .width = RIGHT - x, .colour = GREY}, text);
 }
 
-/* Three digits, without an exponent. */
+/* Three digits, without an exponent; what four decimals cannot show is 0. */
 static void format_value(double value, char *out, size_t size)
 {
-    int decimals = value <= 0 ? 0 : 2 - (int)floor(log10(value) + 1e-9);
+    const double shown = 0.5e-4;
+    int decimals = value < shown ? 0 : 2 - (int)floor(log10(value) + 1e-9);
     snprintf(out, size, "%.*f", decimals < 0 ? 0 : decimals > 4 ? 4 : decimals, value);
 }
 
