@@ -135,7 +135,7 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
     tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
     if (cloth->params.self_contact) {
         tl_apart_carry(&cloth->apart, &apart, &cloth->particles);
-        tl_apart_truncate(&cloth->apart, &apart, cloth->particles.previous, NULL, &cloth->particles);
+        tl_apart_truncate(&cloth->apart, &apart, cloth->particles.previous, &cloth->particles);
     }
 }
 
@@ -383,10 +383,10 @@ static void release_caught(tl_cloth *cloth, const tl_collider *collider)
                           &cloth->particles, cloth->contacts.slipped);
 }
 
-static bool is_torn(const tl_cloth *cloth, bool *torn)
+static bool is_torn(const tl_cloth *cloth)
 {
     return tl_caught_tears(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
-                           cloth->particles.x, torn);
+                           cloth->particles.x);
 }
 
 /* Cloth that a moving avatar has caught may have to go where other cloth is: it pushes that aside, in at most
@@ -397,52 +397,39 @@ static bool is_torn(const tl_cloth *cloth, bool *torn)
  * nothing is inside and no edge is torn. Returns whether some vertices cannot be outside of the avatar and on
  * their side of other cloth. */
 static bool make_way(tl_cloth *cloth, const tl_collider *collider, const struct tl_contact_params *contact,
-                     vec3d *from, bool *inside)
+                     vec3d *from)
 {
     struct tl_particles *particles = &cloth->particles;
     const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
     bool any = true;
-    for (int round = 0; round < MAKE_WAY_ROUNDS && (any || is_torn(cloth, NULL)); round++) {
+    for (int round = 0; round < MAKE_WAY_ROUNDS && (any || is_torn(cloth)); round++) {
         release_caught(cloth, collider);
         tl_apart_push(&cloth->apart, &apart, particles);
-        tl_apart_truncate(&cloth->apart, &apart, from, NULL, particles);
+        tl_apart_truncate(&cloth->apart, &apart, from, particles);
         memcpy(from, particles->x, particles->count * sizeof *from);
-        memset(inside, 0, particles->count * sizeof *inside);
-        any = tl_contacts_lift(&cloth->contacts, contact, particles, inside);
+        any = tl_contacts_lift(&cloth->contacts, contact, particles);
     }
     return any;
 }
 
-/* Lets cloth that is torn all the same slip through other cloth. Returns whether there is any. */
-static bool let_slip(tl_cloth *cloth, const tl_collider *collider, const struct tl_contact_params *contact,
-                     bool *passes)
-{
-    if (!is_torn(cloth, passes))
-        return false;
-    release_caught(cloth, collider);
-    (void)tl_contacts_lift(&cloth->contacts, contact, &cloth->particles, passes);
-    return true;
-}
-
-/* Moves cloth outside that a step has left inside the avatar, and keeps it on its side of other cloth. What
- * cannot be both stays outside, and is untangled later; so is what would tear. */
+/* Moves cloth outside that a step has left inside the avatar, and keeps it on its side of other cloth. Where
+ * it cannot be both, as between an arm and a hip that pass through each other, the avatar lets it go. */
 static void keep_outside(tl_cloth *cloth, const tl_collider *collider,
                          const struct tl_contact_params *contact)
 {
     struct tl_particles *particles = &cloth->particles;
     size_t count = particles->count;
-    bool *inside = TL_NEW_ARRAY(bool, count), passes = false;
+    bool pressed = false;
     vec3d *from = TL_NEW_ARRAY(vec3d, count);
     memcpy(from, particles->x, count * sizeof *from);
     release_caught(cloth, collider);
     tl_contacts_enforce(&cloth->contacts, contact, particles);
-    if (tl_collider_travel(collider) > 0 && cloth->contacts.caught_count > 0) {
-        passes = make_way(cloth, collider, contact, from, inside);
-        passes = let_slip(cloth, collider, contact, inside) || passes;
-    }
+    if (tl_collider_travel(collider) > 0 && cloth->contacts.caught_count > 0)
+        pressed = make_way(cloth, collider, contact, from);
     const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
-    tl_apart_truncate(&cloth->apart, &apart, from, passes ? inside : NULL, particles);
-    free(inside);
+    tl_apart_truncate(&cloth->apart, &apart, from, particles);
+    if (pressed)
+        tl_contacts_let_go(&cloth->contacts, contact, particles);
     free(from);
 }
 

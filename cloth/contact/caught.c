@@ -27,21 +27,17 @@ static bool shorten(const uint32_t edge[2], double rest, double limit, struct tl
 }
 
 bool tl_caught_tears(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
-                     const vec3d *x, bool *torn)
+                     const vec3d *x)
 {
-    bool tears = false;
     for (size_t t = 0; t < topology->triangle_count; t++)
         for (int corner = 0; corner < 3; corner++) {
             int next = (corner + 1) % 3;
             uint32_t a = topology->triangles[t][corner], b = topology->triangles[t][next];
             double length = (double)glms_vec2_distance(rest[t][corner], rest[t][next]);
-            if (length > shortest && vec3d_distance(x[a], x[b]) > TORN_STRETCH * length) {
-                tears = true;
-                if (torn)
-                    torn[a] = torn[b] = true;
-            }
+            if (length > shortest && vec3d_distance(x[a], x[b]) > TORN_STRETCH * length)
+                return true;
         }
-    return tears;
+    return false;
 }
 
 static bool sweep(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest, double limit,

@@ -21,9 +21,8 @@
 void tl_caught_release(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
                        struct tl_particles *particles, bool *slipped);
 
-/* Whether an edge is three times as long as at rest: other cloth has kept it from slipping free. Sets the
- * flags of both ends of each such edge in `torn` [vertex], if that is not NULL. */
+/* Whether an edge is three times as long as at rest: other cloth has kept it from slipping free. */
 bool tl_caught_tears(const struct tl_topology *topology, const vec2s (*rest)[3], double shortest,
-                     const vec3d *x, bool *torn);
+                     const vec3d *x);
 
 #endif

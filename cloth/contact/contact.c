@@ -23,6 +23,9 @@
  * inside another part of the avatar, the share is halved and the move repeated. */
 #define OUTSIDE_SHARE 0.5
 #define OUTSIDE_TRIES 8
+/* Seconds for which the avatar lets a particle go that has no place outside of it. An arm that swings past a
+ * hip moves on by its own width meanwhile. */
+#define RELEASED_S 0.1
 
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3])
 {
@@ -32,6 +35,7 @@ struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const 
     contacts.caught = TL_NEW_ARRAY(bool, contacts.particle_count);
     contacts.pinched = TL_NEW_ARRAY(bool, contacts.particle_count);
     contacts.slipped = TL_NEW_ARRAY(bool, contacts.particle_count);
+    contacts.released_s = TL_NEW_ARRAY(double, contacts.particle_count);
     for (size_t i = 0; i < contacts.particle_count; i++)
         contacts.allowed_depth[i] = HUGE_VAL;
     size_t count = contacts.particle_count + contacts.sample_count;
@@ -49,6 +53,7 @@ void tl_contacts_release(struct tl_contacts *contacts)
     free(contacts->caught);
     free(contacts->pinched);
     free(contacts->slipped);
+    free(contacts->released_s);
     *contacts = (struct tl_contacts){0};
 }
 
@@ -169,6 +174,7 @@ void tl_contacts_forget(struct tl_contacts *contacts)
         contacts->caches[i].query_phase = HUGE_VAL;
         contacts->caches[i].near = false;
     }
+    memset(contacts->released_s, 0, contacts->particle_count * sizeof *contacts->released_s);
     contacts->collider = NULL;
 }
 
@@ -192,6 +198,12 @@ void tl_contacts_update(struct tl_contacts *contacts, const vec3d *x, double thi
     }
 }
 
+/* The signed distance that a particle must have at least: 0, or less for old penetration. */
+static double deepest_allowed(const struct tl_contacts *contacts, size_t i, double thickness)
+{
+    return fmin(thickness - contacts->allowed_depth[i], 0);
+}
+
 /* Moves one particle outside along the normal of its nearest point, until a query finds it no deeper than
  * allowed; returns whether it was moved. Its velocity keeps no part into the surface. Between two parts of
  * the avatar a move may enter the other part, so the target height is halved after each try. */
@@ -199,7 +211,7 @@ static bool move_outside(struct tl_contacts *contacts, size_t i, double thicknes
                          struct tl_particles *particles)
 {
     struct tl_contact_cache *cache = &contacts->caches[i];
-    double deepest = fmin(thickness - contacts->allowed_depth[i], 0), share = OUTSIDE_SHARE;
+    double deepest = deepest_allowed(contacts, i, thickness), share = OUTSIDE_SHARE;
     for (int tries = 0; tries <= OUTSIDE_TRIES; tries++) {
         vec3d x = particles->x[i], v = particles->v[i];
         if (cache->query_phase != phase || vec3d_distance(cache->query_point, x) > 0)
@@ -221,6 +233,37 @@ static void mark_caught(struct tl_contacts *contacts, size_t i)
     contacts->caught[i] = true;
 }
 
+static bool is_released(const struct tl_contacts *contacts, size_t particle)
+{
+    return contacts->released_s[particle] > 0;
+}
+
+static bool is_sample_released(const struct tl_contacts *contacts, const struct tl_contact_sample *sample)
+{
+    const uint32_t *v = sample->vertices;
+    return is_released(contacts, v[0]) || is_released(contacts, v[1]) || is_released(contacts, v[2]);
+}
+
+/* Index as of tl_contacts_planes. */
+static bool is_any_released(const struct tl_contacts *contacts, size_t index)
+{
+    return index < contacts->particle_count
+               ? is_released(contacts, index)
+               : is_sample_released(contacts, &contacts->samples[index - contacts->particle_count]);
+}
+
+/* What is outside again is held outside. What is still inside when its time is over comes out at
+ * push_out_speed. */
+static void follow_released(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
+                            vec3d x)
+{
+    struct tl_contact_cache *cache = &contacts->caches[i];
+    query(contacts->collider, step->thickness_m, step->phase, x, cache);
+    double distance = distance_to(cache, x, step->phase);
+    contacts->allowed_depth[i] = fmax(step->thickness_m - distance, 0);
+    contacts->released_s[i] = distance < 0 ? contacts->released_s[i] - step->h : 0;
+}
+
 /* Enforces one particle. With a valid plane of a resting avatar, no old penetration and no second part
  * nearby, the substeps have enforced everything already, and no query is made. */
 static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
@@ -231,6 +274,10 @@ static void enforce_one(struct tl_contacts *contacts, size_t i, const struct tl_
     contacts->allowed_depth[i] = fmax(contacts->allowed_depth[i] - step->push_out_speed * step->h, 0);
     if (!(particles->w[i] > 0) && !particles->driven[i])
         return;
+    if (is_released(contacts, i)) {
+        follow_released(contacts, i, step, particles->x[i]);
+        return;
+    }
     bool slipped = contacts->slipped[i],
          plane_is_lost = slipped || is_stale(cache, travel, step->phase, particles->x[i]);
     cache->near = cache->near && !slipped; /* its old anchor no longer bounds the search */
@@ -252,7 +299,7 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
 }
 
 bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_params *step,
-                      struct tl_particles *particles, bool *lifted)
+                      struct tl_particles *particles)
 {
     bool any = false;
     if (!contacts->collider)
@@ -260,7 +307,7 @@ bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_para
     double travel = tl_collider_travel(contacts->collider);
     for (size_t i = 0; i < contacts->particle_count; i++) {
         struct tl_contact_cache *cache = &contacts->caches[i];
-        if (!(particles->w[i] > 0) && !particles->driven[i])
+        if ((!(particles->w[i] > 0) && !particles->driven[i]) || is_released(contacts, i))
             continue;
         bool slipped = contacts->slipped[i];
         contacts->slipped[i] = false;
@@ -272,9 +319,23 @@ bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_para
         if (!move_outside(contacts, i, step->thickness_m, step->phase, particles))
             continue;
         mark_caught(contacts, i);
-        lifted[i] = any = true;
+        any = true;
     }
     return any;
+}
+
+void tl_contacts_let_go(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                        const struct tl_particles *particles)
+{
+    for (size_t i = 0; i < contacts->particle_count; i++) {
+        struct tl_contact_cache *cache = &contacts->caches[i];
+        if (!cache->near || !(particles->w[i] > 0) || is_released(contacts, i))
+            continue;
+        query(contacts->collider, step->thickness_m, step->phase, particles->x[i], cache);
+        if (distance_to(cache, particles->x[i], step->phase) <
+            deepest_allowed(contacts, i, step->thickness_m))
+            contacts->released_s[i] = RELEASED_S;
+    }
 }
 
 /* The ground is the plane y = 0 and does not move. */
@@ -357,10 +418,13 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
     if (!surroundings.collider)
         return;
     for (size_t i = 0; i < contacts->sample_count; i++)
-        solve_sample(&surroundings, &contacts->samples[i], &contacts->caches[contacts->particle_count + i],
-                     params, particles);
+        if (!is_sample_released(contacts, &contacts->samples[i]))
+            solve_sample(&surroundings, &contacts->samples[i],
+                         &contacts->caches[contacts->particle_count + i], params, particles);
     for (size_t i = 0; i < particles->count; i++) {
         struct tl_contact_cache *cache = &contacts->caches[i];
+        if (is_released(contacts, i))
+            continue;
         if (particles->w[i] > 0)
             particles->x[i] = keep_out(&surroundings, cache, particles->x[i], particles->previous[i], params);
         else if (particles->driven[i])
@@ -448,7 +512,7 @@ size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_
 {
     const struct surroundings surroundings = surroundings_of(contacts->collider);
     size_t count = 0;
-    if (!surroundings.collider)
+    if (!surroundings.collider || is_any_released(contacts, particle))
         return 0;
     struct tl_contact_cache *cache = &contacts->caches[particle];
     if (is_stale(cache, surroundings.travel, params->phase_before, x))

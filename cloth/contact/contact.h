@@ -38,6 +38,7 @@ struct tl_contacts {
                         its initial penetration less the part removed so far; HUGE_VAL: not measured yet */
     bool *slipped; /* [particle_count] moved by cloth/contact/caught.h, which ignores the planes; cleared by
                 tl_contacts_enforce and tl_contacts_lift */
+    double *released_s;  /* [particle_count] for which contact is still left out (tl_contacts_let_go) */
     size_t caught_count; /* particles caught in this frame */
     uint64_t revision;   /* of the collider when the caches were filled */
     const tl_collider *collider;
@@ -120,9 +121,15 @@ void tl_contacts_enforce(struct tl_contacts *contacts, const struct tl_contact_p
                          struct tl_particles *particles);
 
 /* Moves particles outside that were moved into the avatar after tl_contacts_enforce of the same step, and
- * marks them as caught. Returns whether there were any; sets their flags in `lifted` [particle_count]. */
+ * marks them as caught. Returns whether there were any. */
 bool tl_contacts_lift(struct tl_contacts *contacts, const struct tl_contact_params *step,
-                      struct tl_particles *particles, bool *lifted);
+                      struct tl_particles *particles);
+
+/* Leaves out contact with the avatar, for a tenth of a second or until they are outside again, of particles
+ * that are inside after all: the avatar has left no place for them, as between an arm and a hip that pass
+ * through each other. Call it last in a step. */
+void tl_contacts_let_go(struct tl_contacts *contacts, const struct tl_contact_params *step,
+                        const struct tl_particles *particles);
 
 /* Projects a point that moved from `before` to `x` to the outer side of a plane, and applies Coulomb
  * friction. The plane passes at `thickness_m` above the point `surface`, which moved there from

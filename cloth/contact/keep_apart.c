@@ -191,7 +191,6 @@ static vec3d bounded(vec3d d, double radius, const struct tl_apart_plane *planes
 struct truncation {
     bool rim, stopped;
     bool over; /* a vertex that wants to leave its ball, or far past a plane, was left where it is */
-    bool let_go;
     bool sunk; /* a vertex was moved into the body */
 };
 
@@ -225,22 +224,20 @@ static void truncate_one(const struct tl_apart *apart, const struct tl_apart_par
 }
 
 static struct truncation truncate_all(const struct tl_apart *apart, const struct tl_apart_params *params,
-                                      const bool *free, vec3d *x)
+                                      vec3d *x)
 {
     size_t count = apart->near.topology->vertex_count;
-    bool rim = false, stopped = false, over = false, let_go = false, sunk = false;
-#pragma omp parallel for reduction(|| : rim, stopped, over, let_go, sunk) if (count >= TL_PARALLEL_VERTICES)
+    bool rim = false, stopped = false, over = false, sunk = false;
+#pragma omp parallel for reduction(|| : rim, stopped, over, sunk) if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
-        struct truncation seen = {.let_go = free && free[i]};
-        if (!seen.let_go)
-            truncate_one(apart, params, i, &x[i], &seen);
+        struct truncation seen = {0};
+        truncate_one(apart, params, i, &x[i], &seen);
         rim = rim || seen.rim;
         stopped = stopped || seen.stopped;
         over = over || seen.over;
-        let_go = let_go || seen.let_go;
         sunk = sunk || seen.sunk;
     }
-    return (struct truncation){rim, stopped, over, let_go, sunk};
+    return (struct truncation){rim, stopped, over, sunk};
 }
 
 /* ---- Planes that move ---- */
@@ -287,8 +284,7 @@ static void stop_planes(struct tl_apart *apart, const bool *held)
 
 /* Finds displacements `kept` [vertex] that all moving planes allow; returns whether each vertex has one, and
  * marks in `held` those that have none. */
-static bool find_displacements(const struct tl_apart *apart, const vec3d *x, const bool *exempt, vec3d *kept,
-                               bool *held)
+static bool find_displacements(const struct tl_apart *apart, const vec3d *x, vec3d *kept, bool *held)
 {
     bool found = true;
     size_t count = apart->near.topology->vertex_count;
@@ -299,7 +295,7 @@ static bool find_displacements(const struct tl_apart *apart, const vec3d *x, con
         bool stopped = false;
         vec3d d = vec3d_sub(tl_affine_undo(&apart->back, x[i]), apart->base[i]);
         kept[i] = bounded(d, apart->radius[i], planes, plane_count, &stopped);
-        if ((exempt && exempt[i]) || held[i] || is_kept(kept[i], apart->radius[i], planes, plane_count))
+        if (held[i] || is_kept(kept[i], apart->radius[i], planes, plane_count))
             continue;
         held[i] = true;
         found = false;
@@ -309,19 +305,17 @@ static bool find_displacements(const struct tl_apart *apart, const vec3d *x, con
 
 /* Afterwards the window's planes hold no more. Its contacts serve the next substep too, which makes a window
  * when it ends. */
-static void truncate_moving(struct tl_apart *apart, const struct tl_apart_params *params, const bool *exempt,
-                            vec3d *x, struct truncation *seen)
+static void truncate_moving(struct tl_apart *apart, const struct tl_apart_params *params, vec3d *x,
+                            struct truncation *seen)
 {
     size_t count = apart->near.topology->vertex_count;
     bool *held = TL_NEW_ARRAY(bool, count);
     vec3d *kept = TL_NEW_ARRAY(vec3d, count);
     for (uint32_t k = 0; k < apart->plane_first[count]; k++)
         apart->planes[k].room += apart->planes[k].gain;
-    for (int round = 1; !find_displacements(apart, x, exempt, kept, held); round++)
+    for (int round = 1; !find_displacements(apart, x, kept, held); round++)
         stop_planes(apart, round < HOLD_ROUNDS ? held : NULL);
     for (size_t i = 0; i < count; i++) {
-        if (exempt && exempt[i])
-            continue;
         vec3d result = tl_affine_apply(&apart->moved, vec3d_add(apart->base[i], kept[i]));
         seen->sunk |= sinks(params, i, x[i], result);
         x[i] = result;
@@ -332,32 +326,30 @@ static void truncate_moving(struct tl_apart *apart, const struct tl_apart_params
 }
 
 static struct truncation truncate_widely(struct tl_apart *apart, const struct tl_apart_params *params,
-                                         const bool *exempt, const vec3d *from, bool still, vec3d *x)
+                                         const vec3d *from, bool still, vec3d *x)
 {
     tl_apart_widen(apart, params, from, x, still);
-    struct truncation seen = truncate_all(apart, params, exempt, x);
+    struct truncation seen = truncate_all(apart, params, x);
     if (seen.over)
-        truncate_moving(apart, params, exempt, x, &seen);
+        truncate_moving(apart, params, x, &seen);
     return seen;
 }
 
 void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
-                       const bool *free, struct tl_particles *particles)
+                       struct tl_particles *particles)
 {
     if (!apart->current)
         return;
     struct truncation seen = {.over = apart->spent};
     if (!apart->spent)
-        seen = truncate_all(apart, params, free, particles->x);
+        seen = truncate_all(apart, params, particles->x);
     bool over = seen.over, sunk;
     if (over)
-        seen = truncate_widely(apart, params, free, from, false, particles->x);
+        seen = truncate_widely(apart, params, from, false, particles->x);
     sunk = seen.sunk;
     if (sunk)
-        seen = truncate_widely(apart, params, free, from, true, particles->x);
+        seen = truncate_widely(apart, params, from, true, particles->x);
     apart->late = apart->late || ((over || sunk) && from != particles->previous);
-    apart->clean = apart->clean && !seen.let_go;
-    apart->current = apart->current && !seen.let_go;
     apart->rim = apart->rim || seen.rim;
     apart->stopped = apart->stopped || seen.stopped;
 }

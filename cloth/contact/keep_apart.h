@@ -159,9 +159,8 @@ void tl_apart_set_time(struct tl_apart *apart, double time_s);
  * plane, a new window is made first, about the positions `from` and as wide as the ways from there, so that
  * only what would meet on these ways is held back. Where vertices are far past a plane of that too, planes
  * move on with their pairs (keep_apart.c). `from` are particles->previous within a substep; after it, the
- * positions that the last truncation left. If there are `free` ones (NULL: none), these are left where they
- * are, and crossings are searched from then on until there are none. */
+ * positions that the last truncation left.*/
 void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
-                       const bool *free, struct tl_particles *particles);
+                       struct tl_particles *particles);
 
 #endif

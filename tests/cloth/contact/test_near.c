@@ -363,7 +363,7 @@ static void test_two_triangles(void **state)
             for (int i = 0; i < 6; i++)
                 particles.x[i] = vec3d_add(vec3d_muladd(before[i], common, params.h), scattered(&seed, 1));
             tl_apart_solve(&apart, &params, &particles);
-            tl_apart_truncate(&apart, &params, particles.previous, NULL, &particles);
+            tl_apart_truncate(&apart, &params, particles.previous, &particles);
             assert_int_equal(oracle_crossings(&scene.topology, particles.x), 0);
             for (int i = 0; i < 6; i++)
                 moved_far += vec3d_distance(before[i], particles.x[i]) > 1e-4;
@@ -395,7 +395,7 @@ static void shake(struct scene *scene, uint32_t seed, double size, int steps)
         for (size_t i = 0; i < count; i++)
             particles.x[i] = vec3d_add(particles.x[i], scattered(&seed, size));
         tl_apart_solve(&apart, &params, &particles);
-        tl_apart_truncate(&apart, &params, particles.previous, NULL, &particles);
+        tl_apart_truncate(&apart, &params, particles.previous, &particles);
         for (size_t i = 0; i < count; i++)
             particles.v[i] = vec3d_scale(vec3d_sub(particles.x[i], particles.previous[i]), 1 / params.h);
         assert_int_equal(oracle_crossings(&scene->topology, particles.x), 0);
@@ -434,7 +434,7 @@ static void test_free_ways(void **state)
         for (int i = 0; i < 6; i++)
             particles.x[i].x += params.h * particles.v[i].x;
         tl_apart_solve(&apart, &params, &particles);
-        tl_apart_truncate(&apart, &params, particles.previous, NULL, &particles);
+        tl_apart_truncate(&apart, &params, particles.previous, &particles);
         for (int i = 0; i < 6; i++)
             assert_near(particles.x[i].x, x[i].x + step * params.h * particles.v[i].x, 1e-12);
     }
