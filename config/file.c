@@ -3,12 +3,17 @@
 #include "config/interrupt.h"
 #include "config/memory.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
+
+#define STALE_S         3600
+#define MKSTEMP_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
 
 static bool check_status(const char *path, uint64_t limit, struct stat *status, tl_error *error)
 {
@@ -96,6 +101,30 @@ static bool is_device(const char *path)
     return stat(path, &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
+/* Removes temporary files of `path` that a killed process left: those that nobody has written to for an hour.
+ */
+static void sweep(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    char *folder = slash ? tl_format("%.*s/", (int)(slash - path), path) : tl_copy_string("./");
+    size_t length = strlen(name);
+    DIR *entries = opendir(folder);
+    for (struct dirent *entry; entries && (entry = readdir(entries));) {
+        struct stat status;
+        const char *end = entry->d_name + length;
+        if (strncmp(entry->d_name, name, length) != 0 || end[0] != '.' ||
+            strspn(end + 1, MKSTEMP_LETTERS) != 6 || strcmp(end + 7, ".tmp") != 0)
+            continue;
+        char *left = tl_format("%s%s", folder, entry->d_name);
+        if (lstat(left, &status) == 0 && S_ISREG(status.st_mode) && time(NULL) - status.st_mtime > STALE_S)
+            unlink(left);
+        free(left);
+    }
+    if (entries)
+        closedir(entries);
+    free(folder);
+}
+
 bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error)
 {
     *writer = (struct tl_writer){0};
@@ -109,6 +138,7 @@ bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error
         writer->temporary = tl_copy_string(path);
         writer->stream = fopen(path, "wb");
     } else {
+        sweep(path);
         writer->temporary = tl_format("%s.XXXXXX.tmp", path);
         int descriptor = mkstemps(writer->temporary, 4);
         writer->stream = descriptor < 0 ? NULL : fdopen(descriptor, "wb");

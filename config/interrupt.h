@@ -1,8 +1,8 @@
-/* Ctrl-C: the first SIGINT or SIGTERM sets a flag that long loops poll. A second one, TL_INTERRUPT_TWICE_MS
- * later or more, removes the temporary files of open tl_writers and ends the program with status 130. A
- * signal that comes sooner is taken for the same request: timeout and some job runners signal a process and
- * then its process group, which reaches this process twice. A thread can be given a flag of its own, which
- * cancels that thread's work alone. Threads: any. */
+/* Ctrl-C: the first SIGINT, SIGTERM or SIGHUP (unless nohup ignores it) sets a flag that long loops poll. A
+ * second one, TL_INTERRUPT_TWICE_MS later or more, removes the temporary files of open tl_writers and ends
+ * the program with status 130. A signal that comes sooner is taken for the same request: timeout and some job
+ * runners signal a process and then its process group, which reaches this process twice. A thread can be
+ * given a flag of its own, which cancels that thread's work alone. Threads: any. */
 #ifndef TOILE_CONFIG_INTERRUPT_H
 #define TOILE_CONFIG_INTERRUPT_H
 

@@ -175,9 +175,13 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
     /* Shadow maps that wait for their turn are out of date, so they do not count as valid. */
     tl_bits waiting =
         tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
+    tl_bits facts = tl_frame_facts(frame, settings);
+    /* A view that shows visibility after light in motion: nothing has moved, but samples have no points. */
+    if (!(facts & TL_BIT(TL_SCENE_RATIOS)) && !tl_points_taps(renderer->resources.points))
+        waiting |= TL_BIT(TL_MADE_POINTS);
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->resources.valid & ~waiting,
-                                  .scene = tl_frame_facts(frame, settings),
+                                  .scene = facts,
                                   .wanted = wanted,
                                   .scene_fact_names = tl_scene_fact_names,
                                   .resource_names = tl_resource_names};

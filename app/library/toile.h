@@ -7,8 +7,8 @@
  * Units: metres, seconds; world axes are right-handed, +Y up. Images have linear Rec. 709 colours.
  *
  * Errors: a function that can fail returns false or NULL and fills the toile_error, which may be NULL: a code
- * and one line that names what, where and the remedy. Out of memory is no such error: it ends the process
- * (abort), as do the libraries below where they cannot go on.
+ * and one line that names what, where and the remedy. Out of memory is no such error: one line on standard
+ * error, and the process ends (exit status 2), as do the libraries below where they cannot go on.
  *
  * Ownership: toile_load makes a scene, toile_destroy frees it. Strings and buffers that are passed in are not
  * kept.

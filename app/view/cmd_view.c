@@ -98,6 +98,7 @@ static bool run(struct tl_review *review, int max_frames, tl_error *error)
         tl_review_handle_events(review);
         if (!is_minimised(review) && !run_one_frame(review, max_frames > 0, error))
             return false;
+        tl_journal_sync(review->journal);
         tl_review_trim_memory(review);
     }
     return true;
@@ -140,6 +141,8 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
     if (review->closing || !is_restored || tl_interrupted())
         return false;
     tl_warn("view: the last review cannot be restored (%s): opening the built-in one", error->message);
+    tl_journal_set_aside(&review->journal);
+    tl_history_destroy(&review->history);
     if (!tl_headless_settings(review->arguments, &review->wanted, error))
         return false;
     review->wanted.camera = restored.camera;
@@ -152,6 +155,8 @@ static bool open_review(struct tl_review *review, tl_error *error)
     if (!tl_headless_settings(arguments, &review->wanted, error))
         return false;
     bool is_restored = tl_review_restore_state(review);
+    int steps = tl_review_recover(review);
+    is_restored = is_restored || steps >= 0;
     if (arguments->budget_ms > 0)
         review->params.budget_ms = (float)arguments->budget_ms;
     if (!open_window(review, error))
@@ -161,7 +166,8 @@ static bool open_review(struct tl_review *review, tl_error *error)
         return false;
     if (!open_scene(review, is_restored, error))
         return false;
-    review->history = tl_history_create(&review->wanted);
+    if (!review->history)
+        review->history = tl_history_create(&review->wanted);
     review->governor = tl_quality_governor_create((double)review->params.budget_ms);
     tl_review_add_environment(review, "studio");
     tl_review_add_environment(review, review->wanted.scene.environment);
@@ -171,16 +177,23 @@ static bool open_review(struct tl_review *review, tl_error *error)
     if (!tl_review_draw_first(review, error))
         return false;
     tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->gpu));
-    if (is_draft)
+    bool is_recovered = review->journal != NULL;
+    tl_review_begin_journal(review);
+    if (is_recovered)
+        tl_review_report(review, "recovered, %d step%s: the last window did not close", steps,
+                         steps == 1 ? "" : "s");
+    else if (is_draft)
         tl_review_report(review, "no graphics card: preset draft instead of review, for speed; H lists keys");
     else if (!is_restored)
         tl_review_report(review, "H lists keys and gestures");
     return true;
 }
 
-static void close_review(struct tl_review *review)
+/* A window that was not closed by its user keeps its journal. */
+static void close_review(struct tl_review *review, bool keeps_journal)
 {
     tl_review_save_state(review);
+    tl_journal_close(&review->journal, keeps_journal);
     tl_review_end_comparison(review);
     tl_renderer_destroy(&review->renderer);
     tl_panel_destroy(&review->panel);
@@ -230,7 +243,7 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
     review->redraws = 1;
     review->reported_frame = -1;
     review->output_folder = arguments->screenshots ? arguments->screenshots : ".";
-    bool done = open_review(review, error);
+    bool done = open_review(review, error), loading = !done;
     if (done) {
         size_t bytes_before = tl_review_resident_bytes();
         done = run(review, arguments->max_frames, error);
@@ -239,7 +252,7 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
         tl_info("view: closed while the scene was loaded");
         done = true;
     }
-    close_review(review);
+    close_review(review, !done || loading);
     free(review);
     return done;
 }

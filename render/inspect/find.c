@@ -59,10 +59,12 @@ static void describe_visibility(const struct tl_inspect_request *request, size_t
 {
     struct tl_seen_regions regions;
     size_t stride;
+    const struct tl_taps *taps = tl_points_taps(request->points);
+    if (!taps)
+        return;
     tl_seen_regions_make(request->regions, request->environment_yaw, &regions);
     const uint16_t *values = tl_points_values(request->points, &stride);
-    struct tl_seen seen =
-        tl_seen_at(&regions, values, stride, &tl_points_taps(request->points)[sample], out->smooth);
+    struct tl_seen seen = tl_seen_at(&regions, values, stride, &taps[sample], out->smooth);
     out->has_visibility = true;
     out->visibility = seen.visibility;
     out->strongest_region = seen.strongest;

@@ -550,7 +550,7 @@ const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
 
 const struct tl_taps *tl_points_taps(const tl_points *points)
 {
-    return points->taps;
+    return points->sample_count > 0 ? points->taps : NULL;
 }
 
 uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t vertex, bool back)

@@ -7,12 +7,14 @@
 #include "config/memory.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <ftw.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 
 #define FOLDER TOILE_SCRATCH_DIR "/file"
 
@@ -113,6 +115,31 @@ static void test_reading_is_refused(void **state)
     /* A file that claims 5 GiB, with holes, is refused by its length before memory is asked for. */
     assert_int_equal(truncate(FOLDER "/a", (off_t)5 << 30), 0);
     refuse_read(FOLDER "/a", FOLDER "/a: is larger than 4096 MiB: make it smaller");
+}
+
+static void set_age(const char *path, long seconds)
+{
+    struct timespec times[2] = {{.tv_sec = time(NULL) - seconds}, {.tv_sec = time(NULL) - seconds}};
+    write_text(path, "x");
+    assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
+}
+
+/* What a killed process left beside its target goes with the next write; the files of a process that may
+ * still be at work, of another target, and of other names stay. */
+static void test_stale_temporary_files_go(void **state)
+{
+    (void)state;
+    static const char *const stays[] = {FOLDER "/a.png.Young1.tmp", FOLDER "/b.png.Stale1.tmp",
+                                        FOLDER "/a.png.Stale.tmp", FOLDER "/a.png.my-own.tmp",
+                                        FOLDER "/a.pngxStale1.tmp"};
+    set_age(FOLDER "/a.png.Stale1.tmp", 4000);
+    set_age(stays[0], 3000);
+    for (size_t i = 1; i < TL_COUNT(stays); i++)
+        set_age(stays[i], 4000);
+    write_text(FOLDER "/a.png", "new");
+    assert_false(tl_file_exists(FOLDER "/a.png.Stale1.tmp"));
+    for (size_t i = 0; i < TL_COUNT(stays); i++)
+        assert_true(tl_file_exists(stays[i]));
 }
 
 static void test_abandoned_write_leaves_the_old_file(void **state)
@@ -305,6 +332,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_write_and_read, begin),
         cmocka_unit_test_setup(test_reading_is_refused, begin),
+        cmocka_unit_test_setup(test_stale_temporary_files_go, begin),
         cmocka_unit_test_setup(test_abandoned_write_leaves_the_old_file, begin),
         cmocka_unit_test_setup(test_closed_stream, begin),
         cmocka_unit_test_setup(test_writing_is_refused, begin),

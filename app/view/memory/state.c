@@ -54,8 +54,7 @@ static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
     return TABLES;
 }
 
-/* The second fabric's weave and the colourways are not in a table: they are loaded again by their names. */
-static bool follow_names(struct tl_settings *settings, tl_error *error)
+bool tl_state_follow_names(struct tl_settings *settings, tl_error *error)
 {
     struct tl_material_params material = settings->overlay;
     if (!tl_settings_apply_overlay(settings, settings->scene.overlay_fabric, error))
@@ -76,7 +75,7 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
     if (!tl_file_exists(file))
         return true;
     if (!tl_options_read_yaml_file(bindings, count, file, error) ||
-        (read.review.has_settings && !follow_names(&read.settings, error)))
+        (read.review.has_settings && !tl_state_follow_names(&read.settings, error)))
         return false;
     *out = read;
     return true;

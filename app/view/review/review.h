@@ -24,6 +24,7 @@
 #include "app/scene/path.h"
 #include "app/scene/session.h"
 #include "app/view/memory/history.h"
+#include "app/view/memory/journal.h"
 #include "app/view/memory/recent.h"
 #include "app/view/memory/saved_views.h"
 #include "app/view/memory/state.h"
@@ -142,6 +143,7 @@ struct tl_review {
     bool is_resting;                         /* ...: one of those that refine the picture at rest */
     struct tl_review_rest rest;
     tl_history *history;
+    tl_journal *journal; /* NULL: no state is kept */
 
     bool playing, closing, help_shown, reads_out;
     double next_step_s; /* while playing: time of the next simulated frame */

@@ -393,16 +393,18 @@ static bool is_within_gesture(const struct tl_review *review)
 
 void tl_review_note_edit(struct tl_review *review)
 {
-    if (!review->changed && !review->loader && !is_within_gesture(review))
-        tl_history_note(review->history, &review->good);
+    if (review->changed || review->loader || is_within_gesture(review))
+        return;
+    bool is_edit = tl_history_note(review->history, &review->good);
+    tl_journal_note(review->journal, &review->good, is_edit);
 }
 
 void tl_review_undo(struct tl_review *review, bool redo)
 {
     /* `wanted` may hold an edit that has not been noted: its gesture has just ended, or it is still loading.
      */
-    if (!tl_review_moves_itself(review))
-        tl_history_note(review->history, &review->wanted);
+    if (!tl_review_moves_itself(review) && tl_history_note(review->history, &review->wanted))
+        tl_journal_note(review->journal, &review->wanted, true);
     const struct tl_settings *edit =
         redo ? tl_history_redo(review->history) : tl_history_undo(review->history);
     if (!edit) {
@@ -412,6 +414,7 @@ void tl_review_undo(struct tl_review *review, bool redo)
     struct tl_settings before = review->wanted;
     tl_history_restore(edit, &review->wanted);
     review->changed = true;
+    tl_journal_undo(review->journal, redo, &review->wanted);
     char *text =
         redo ? tl_history_describe(&before, &review->wanted) : tl_history_describe(&review->wanted, &before);
     tl_review_report(review, redo ? "redone: %s" : "undone: %s", text);

@@ -5,11 +5,13 @@
 #include "assets/model.h"
 #include "assets/pattern/pattern.h"
 #include "config/file.h"
+#include "config/hash.h"
 #include "config/log.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static char *state_file(const struct tl_review *review)
 {
@@ -70,6 +72,42 @@ bool tl_review_restore_state(struct tl_review *review)
     if (is_restored)
         review->wanted = state.settings;
     return is_restored;
+}
+
+/* Of the words of the command line, and of the folder that they are read from. */
+static uint64_t hash_of_command(const struct tl_arguments *arguments)
+{
+    uint64_t hash = TL_HASH_START;
+    for (size_t i = 0; i < arguments->positional_count; i++)
+        hash = tl_hash(hash, arguments->positionals[i], strlen(arguments->positionals[i]) + 1);
+    for (size_t i = 0; i < arguments->assignment_count; i++)
+        hash = tl_hash(hash, arguments->assignments[i], strlen(arguments->assignments[i]) + 1);
+    char *folder = hash == TL_HASH_START ? NULL : getcwd(NULL, 0);
+    if (folder)
+        hash = tl_hash(hash, folder, strlen(folder));
+    free(folder);
+    return hash;
+}
+
+int tl_review_recover(struct tl_review *review)
+{
+    struct tl_recovered recovered;
+    if (review->state_folder)
+        review->journal =
+            tl_journal_recover(review->state_folder, hash_of_command(review->arguments), &recovered);
+    if (!review->journal)
+        return -1;
+    review->wanted = recovered.settings;
+    review->history = recovered.history;
+    return (int)recovered.steps;
+}
+
+void tl_review_begin_journal(struct tl_review *review)
+{
+    tl_journal_resume(review->journal);
+    if (!review->journal && review->state_folder)
+        review->journal =
+            tl_journal_begin(review->state_folder, hash_of_command(review->arguments), &review->good);
 }
 
 void tl_review_save_state(struct tl_review *review)

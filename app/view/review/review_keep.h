@@ -8,6 +8,12 @@
 /* Restores the window's options and, when the command line names neither a scene nor an option, the settings.
  * True when `wanted` was replaced. A file that cannot be read is reported as a warning. */
 bool tl_review_restore_state(struct tl_review *review);
+/* Takes over a review that did not close, of the same command line, if there is one: `wanted`, history and
+ * journal are then those that it left. Returns the number of its steps; -1: there is none. */
+int tl_review_recover(struct tl_review *review);
+/* The first image is shown: the journal goes on, or begins. */
+void tl_review_begin_journal(struct tl_review *review);
+
 /* Saves them; a failure is a warning. */
 void tl_review_save_state(struct tl_review *review);
 

@@ -1,5 +1,6 @@
 #include "app/view/window/window.h"
 
+#include "config/error.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -7,9 +8,11 @@
 #include <GLFW/glfw3.h>
 
 #include <ctype.h>
+#include <dlfcn.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 struct tl_window {
     GLFWwindow *handle;
@@ -159,11 +162,33 @@ static void ask_for_context(void)
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
 }
 
+/* The display is gone: Xlib would print its own lines and exit. Nothing of GL or X may be called any more. */
+static int end_without_display(void *display)
+{
+    (void)display;
+    static const char line[] =
+        "toile: view: the display was lost: `toile view` recovers this review where there is one\n";
+    ssize_t written = write(STDERR_FILENO, line, sizeof line - 1);
+    (void)written;
+    _exit(tl_exit_status(TL_DEVICE));
+}
+
+/* GLFW links Xlib where it draws by X, and has no function for this. */
+static void expect_loss_of_display(void)
+{
+    typedef int handler(void *display);
+    handler *(*set_handler)(handler *);
+    *(void **)&set_handler = dlsym(RTLD_DEFAULT, "XSetIOErrorHandler");
+    if (set_handler)
+        set_handler(end_without_display);
+}
+
 tl_window *tl_window_create(const char *title, int width, int height, tl_error *error)
 {
     tl_window *window = TL_NEW(tl_window);
     last_glfw_message[0] = '\0';
     glfwSetErrorCallback(store_glfw_message);
+    expect_loss_of_display();
     if (!glfwInit()) {
         tl_fail(error, TL_DEVICE,
                 "no window can be opened (%s): run on a desktop or under Xvfb, or use `toile render`",
