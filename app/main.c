@@ -2,6 +2,7 @@
  * line. */
 #include "app/commands.h"
 #include "app/drape/cache.h"
+#include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -44,6 +45,8 @@ static bool run(int argc, char **argv, tl_error *error)
         else if (arguments.verbose)
             tl_log_set_level(TL_LOG_DEBUG);
         tl_memory_allow(arguments.memory_bytes);
+        if (arguments.allow_outside)
+            tl_path_allow_outside();
         use_cache(&arguments);
         done = command->run(&arguments, error);
         tl_cache_use(NULL, 0);
@@ -72,10 +75,61 @@ static void let_idle_threads_sleep(char **argv)
     prctl(PR_SET_NAME, "toile"); /* the kernel named it "exe" after the file that was executed */
 }
 
+/* Bytes at the end of `text` that begin a sequence of UTF-8 and do not end it. */
+static size_t unfinished(const char *text, size_t length)
+{
+    for (size_t back = 1; back <= 3 && back <= length; back++) {
+        unsigned char c = (unsigned char)text[length - back];
+        if (c >= 0xc0)
+            return (c >= 0xf0 ? 4u : c >= 0xe0 ? 3u : 2u) > back ? back : 0;
+        if (c < 0x80)
+            return 0;
+    }
+    return 0;
+}
+
+/* Results hold names from files. All of stdout passes through here, line by line, so that none of them
+ * reaches a terminal as a command. What comes may end within a character, which is kept until the rest comes.
+ */
+static ssize_t write_clean(void *cookie, const char *bytes, size_t size)
+{
+    static char kept[4];
+    (void)cookie;
+    char *text = tl_format("%s%.*s", kept, (int)size, bytes);
+    size_t length = strlen(text), rest = unfinished(text, length), written = 0;
+    length -= rest;
+    memcpy(kept, text + length, rest + 1);
+    text[length] = '\0';
+    for (char *line = text, *next; line; line = next) {
+        next = strpbrk(line, "\n\t");
+        char stop = next ? *next : '\0';
+        if (next)
+            *next++ = '\0';
+        tl_clean_line(line);
+        if (next)
+            next[-1] = stop;
+    }
+    ssize_t count = 1;
+    for (; written < length && count > 0; written += (size_t)(count > 0 ? count : 0))
+        count = write(STDOUT_FILENO, text + written, length - written);
+    free(text);
+    return written == length ? (ssize_t)size : 0;
+}
+
+static void clean_stdout(void)
+{
+    FILE *stream = fopencookie(NULL, "w", (cookie_io_functions_t){.write = write_clean});
+    if (!stream)
+        return;
+    setvbuf(stream, NULL, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF, 1 << 16);
+    stdout = stream;
+}
+
 int main(int argc, char **argv)
 {
     let_idle_threads_sleep(argv);
     keep_freed_memory();
+    clean_stdout();
     setlocale(LC_ALL, "C"); /* numbers in files and results have a point, wherever the user lives */
     tl_interrupt_install();
     tl_error error = {0};

@@ -1,8 +1,22 @@
 #include "config/error.h"
 
-#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
+
+void tl_clean_line(char *text)
+{
+    for (unsigned char *c = (unsigned char *)text; *c; c++) {
+        size_t more = *c < 0x80 ? 0 : *c >= 0xf0 && *c < 0xf8 ? 3 : *c >= 0xe0 ? 2 : 1, found = 0;
+        while (found < more && (c[found + 1] & 0xc0) == 0x80)
+            found++;
+        bool sequence = *c >= 0xc2 && *c < 0xf8 && found == more;
+        bool second_set = *c == 0xc2 && c[1] < 0xa0;
+        if (*c < ' ' || *c == 0x7f || (*c >= 0x80 && (!sequence || second_set)))
+            *c = '?';
+        else
+            c += more;
+    }
+}
 
 bool tl_fail(tl_error *error, enum tl_code code, const char *format, ...)
 {
@@ -13,10 +27,7 @@ bool tl_fail(tl_error *error, enum tl_code code, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
-    /* Names inside broken files may hold anything; a message stays one printable line. */
-    for (char *c = error->message; *c; c++)
-        if (iscntrl((unsigned char)*c))
-            *c = '?';
+    tl_clean_line(error->message); /* names inside broken files may hold anything */
     return false;
 }
 

@@ -28,6 +28,11 @@ typedef struct tl_error {
 bool tl_fail(tl_error *error, enum tl_code code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Replaces by '?' what a terminal would take for a command: control characters (line ends and tabs
+ * included), also those of the second set (U+0080 to U+009F) in UTF-8, and bytes that begin none of UTF-8's
+ * sequences. Text of any script stays. */
+void tl_clean_line(char *text);
+
 /* Exit status of the program for a code. */
 int tl_exit_status(enum tl_code code);
 

@@ -52,6 +52,13 @@ bool tl_file_exists(const char *path)
     return stat(path, &status) == 0;
 }
 
+bool tl_file_is_same(const char *a, const char *b)
+{
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && S_ISREG(first.st_mode) &&
+           first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
 size_t tl_file_size(const char *path)
 {
     struct stat status;
@@ -133,13 +140,14 @@ bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error
         return tl_fail(error, TL_OUTPUT, "no output file named: give one with -o");
     if (stat(path, &status) == 0 && S_ISDIR(status.st_mode))
         return tl_fail(error, TL_OUTPUT, "%s: is a folder: name a file in it", path);
-    writer->path = tl_copy_string(path);
+    char *target = realpath(path, NULL); /* of a symbolic link the file that it names is replaced */
+    writer->path = target ? target : tl_copy_string(path);
     if (is_device(path)) {
         writer->temporary = tl_copy_string(path);
         writer->stream = fopen(path, "wb");
     } else {
-        sweep(path);
-        writer->temporary = tl_format("%s.XXXXXX.tmp", path);
+        sweep(writer->path);
+        writer->temporary = tl_format("%s.XXXXXX.tmp", writer->path);
         int descriptor = mkstemps(writer->temporary, 4);
         writer->stream = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
         if (writer->stream) {
@@ -240,6 +248,43 @@ char *tl_path_relative_to(const char *base_file, const char *relative)
     if (relative[0] == '/' || !slash)
         return tl_copy_string(relative);
     return tl_format("%.*s%s", (int)(slash - base_file + 1), base_file, relative);
+}
+
+static bool outside_is_allowed;
+
+void tl_path_allow_outside(void)
+{
+    outside_is_allowed = true;
+}
+
+/* The real path of the folder that holds `path`; NULL where there is none. */
+static char *folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? tl_format("%.*s", (int)(slash - path + 1), path) : tl_copy_string(".");
+    char *real = realpath(folder, NULL);
+    free(folder);
+    return real;
+}
+
+bool tl_path_is_inside(const char *base, const char *path, tl_error *error)
+{
+    if (outside_is_allowed)
+        return true;
+    char *folder = folder_of(base), *real = realpath(path, NULL);
+    if (!real)
+        real = folder_of(path); /* the file is missing: by the folder that it would be in */
+    size_t length = folder ? strlen(folder) : 0;
+    bool is_root = length == 1;
+    bool inside = !real || (folder && strncmp(real, folder, length) == 0 &&
+                            (is_root || real[length] == '/' || real[length] == '\0'));
+    free(folder);
+    free(real);
+    return inside ||
+           tl_fail(error, TL_INPUT,
+                   "%s: lies outside the folder of %s, which names it: copy it there, or allow it with "
+                   "--allow-outside",
+                   path, base);
 }
 
 bool tl_path_has_extension(const char *path, const char *extension)

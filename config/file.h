@@ -27,6 +27,8 @@ bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *siz
 bool tl_file_check(const char *path, tl_error *error);
 
 bool tl_file_exists(const char *path);
+/* Whether two paths name one existing file that is no folder. */
+bool tl_file_is_same(const char *a, const char *b);
 /* Bytes; 0 for a file that cannot be found. */
 size_t tl_file_size(const char *path);
 
@@ -50,6 +52,13 @@ bool tl_folder_make(const char *path, tl_error *error);
 /* `relative` seen from the folder that holds `base_file`; absolute paths are returned as they are. New
  * string. */
 char *tl_path_relative_to(const char *base_file, const char *relative);
+
+/* Whether a file that another file names lies in that one's folder or below it, symbolic links followed.
+ * `base` is the naming file, or one above it. False, with a message that names both, unless
+ * tl_path_allow_outside was called. A file that does not exist is judged by its name. */
+bool tl_path_is_inside(const char *base, const char *path, tl_error *error);
+/* Lifts that restriction; before threads start. */
+void tl_path_allow_outside(void);
 
 /* True when `path` ends in `.extension` (no dot given), ignoring case. */
 bool tl_path_has_extension(const char *path, const char *extension);

@@ -1,5 +1,6 @@
 #include "config/log.h"
 
+#include "config/error.h"
 #include "config/interrupt.h"
 
 #include <stdarg.h>
@@ -22,6 +23,7 @@ static void write_line(enum tl_log_level level, const char *prefix, const char *
         return;
     char text[2048];
     vsnprintf(text, sizeof text, format, arguments);
+    tl_clean_line(text);
     fprintf(stderr, "toile: %s%s\n", prefix, text); /* one call: stderr locks per call, so lines stay whole */
 }
 

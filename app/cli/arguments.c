@@ -1,5 +1,6 @@
 #include "app/cli/arguments.h"
 
+#include "config/file.h"
 #include "config/memory.h"
 #include "config/options.h"
 #include "config/words.h"
@@ -151,6 +152,9 @@ static const struct flag flags_known[] = {
     {"--shard", TL_FLAGS_SHARD, FLAG_SHARD, 0, NULL, "I/N",
      "do part I of N, from 0: N runs, on as many machines as there are, make what one makes (docs/farm.md)"},
     {"--clear", TL_FLAGS_CLEAR, FLAG_SWITCH, AT(clear), NULL, NULL, "remove all of them"},
+    {"--allow-outside", 0, FLAG_SWITCH, AT(allow_outside), NULL, NULL,
+     "also read pictures and buffers that a model names outside its own folder"},
+    {"--force", TL_FLAGS_OUTPUT, FLAG_SWITCH, AT(force), NULL, NULL, "let -o replace a file that is read"},
     {"--memory", 0, FLAG_BYTES, AT(memory_bytes), NULL, "SIZE",
      "how much memory may be taken, as in 500M or 8G; else nearly all that the machine or the container has"},
     {"--quiet", 0, FLAG_SWITCH, AT(quiet), NULL, NULL, "print errors only"},
@@ -326,6 +330,24 @@ static bool read_flag(int argc, char **argv, int *at, unsigned flags, struct tl_
     return take_flag(flag, equals ? equals + 1 : argv[++*at], out, error);
 }
 
+/* The output must not be one of the files that the command names as inputs. */
+static bool check_output(const struct tl_arguments *arguments, tl_error *error)
+{
+    if (!arguments->output || arguments->force)
+        return true;
+    for (size_t i = 0; i < arguments->positional_count + arguments->assignment_count; i++) {
+        const char *input = i < arguments->positional_count
+                                ? arguments->positionals[i]
+                                : strchr(arguments->assignments[i - arguments->positional_count], '=');
+        input = input && i >= arguments->positional_count ? input + 1 : input;
+        if (input && tl_file_is_same(arguments->output, input))
+            return tl_fail(error, TL_USAGE,
+                           "-o: %s is read by this command: name another file, or replace it with --force",
+                           arguments->output);
+    }
+    return true;
+}
+
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error)
 {
     *out = (struct tl_arguments){.hdr = -1};
@@ -340,7 +362,7 @@ bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_argumen
                            TL_POSITIONALS_MAX);
         out->positionals[out->positional_count++] = argv[i];
     }
-    return true;
+    return check_output(out, error);
 }
 
 void tl_arguments_release(struct tl_arguments *arguments)

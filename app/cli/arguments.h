@@ -64,6 +64,7 @@ struct tl_arguments {
     bool frames_given; /* --frames rather than --frame */
     bool json, quiet, verbose, help;
     bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape, no_cache, clear;
+    bool allow_outside, force;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

@@ -15,6 +15,11 @@ static int frame_at(const tl_environment_sequence *sequence, double position)
 
 void tl_environment_warn_of_cleaning(const tl_environment *environment)
 {
+    const float brightest = 1e10f; /* the sun's disc has 1.6e9 cd/m2 */
+    if (environment->peak > brightest)
+        tl_warn("%s: its brightest texel is %.2g, more than the sun in any unit: correct it in the program "
+                "that made it",
+                environment->name, (double)environment->peak);
     size_t cleaned = environment->negative_count + environment->nan_count + environment->inf_count;
     if (cleaned)
         tl_warn("%s: cleaned %zu negative, %zu NaN and %zu infinite values", environment->name,

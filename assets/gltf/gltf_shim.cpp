@@ -68,6 +68,11 @@ bool read_file(std::vector<unsigned char> *out, std::string *message, const std:
     char *data;
     size_t size;
     tl_error error;
+    if (!tl_path_is_inside(named->path, path.c_str(), &error)) {
+        if (message)
+            *message = error.message;
+        return false;
+    }
     (named->paths.insert(path).second ? named->bytes : named->repeated_bytes) += tl_file_size(path.c_str());
     if (!tl_memory_ask_for_file(named->path, named->bytes, named->repeated_bytes, &error) ||
         !tl_file_read(path.c_str(), &data, &size, &error)) {

@@ -24,7 +24,8 @@ static bool decode(struct texture_reader *reader, int source, tl_image *out)
         return false;
     }
     if (!bytes) {
-        model_ignore(reader->model, "%s: no such file", name);
+        model_ignore(reader->model, "%s: no such file, or outside the folder of the model (--allow-outside)",
+                     name);
         return false;
     }
     if (!tl_image_decode(name, bytes, size, out, &error)) {

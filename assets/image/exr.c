@@ -160,6 +160,31 @@ static bool set_plane(struct exr_reader *reader, int slot, const struct tl_exr_c
     return true;
 }
 
+/* Sets the planes to the colours of the first layer that has red, green and blue, as in "beauty.R"; *found:
+ * there is one. */
+static bool choose_layer(struct exr_reader *reader, bool *found, tl_error *error)
+{
+    static const char *const colours[4] = {"R", "G", "B", "A"};
+    const struct tl_exr_part *part = &reader->part;
+    *found = false;
+    for (size_t c = 0; c < part->channel_count && !*found; c++) {
+        const char *name = part->channels[c].name, *dot = strrchr(name, '.');
+        if (!dot || strcmp(dot + 1, "R") != 0)
+            continue;
+        const struct tl_exr_channel *channels[4];
+        for (int i = 0; i < 4; i++) {
+            char *whole = tl_format("%.*s%s", (int)(dot + 1 - name), name, colours[i]);
+            channels[i] = find_channel(part, whole);
+            free(whole);
+        }
+        *found = channels[GREEN] && channels[BLUE];
+        for (int i = 0; *found && i < 4; i++)
+            if (!set_plane(reader, i, channels[i], error))
+                return false;
+    }
+    return true;
+}
+
 static bool choose_channels(struct exr_reader *reader, tl_error *error)
 {
     static const char *const colours[4] = {"R", "G", "B", "A"}, *const luminances[4] = {"Y", "RY", "BY", "A"};
@@ -171,6 +196,11 @@ static bool choose_channels(struct exr_reader *reader, tl_error *error)
     bool colour = find_channel(part, "R") || find_channel(part, "G") || find_channel(part, "B");
     reader->luminance = !colour && find_channel(part, "Y");
     if (!colour && !reader->luminance) {
+        bool found;
+        if (!choose_layer(reader, &found, error))
+            return false;
+        if (found)
+            return true;
         if (part->channel_count > 1)
             return tl_fail(
                 error, TL_INPUT,

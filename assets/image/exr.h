@@ -1,9 +1,10 @@
 /* OpenEXR files, through OpenEXR's C++ library (assets/image/exr_shim.cpp).
  *
  * Read: scan lines and tiles, half, float and uint, every compression that the library has, any data window,
- * channels R G B [A], Y [A], luminance-chroma Y RY BY, and one-channel files; the first part of a multi-part
- * file that is not deep. Values are returned as they are in the file, NaN and infinities included. A file of
- * deep data only is refused. Written: scan lines of floats, ZIP.
+ * channels R G B [A], Y [A], luminance-chroma Y RY BY, else the first layer with R, G and B, and one-channel
+ * files; of a multi-part file the first part that has such colours and is not deep. Values are returned as
+ * they are in the file, NaN and infinities included. A file of deep data only is refused. Written: scan lines
+ * of floats, ZIP.
  *
  * Errors: false with one message (TL_INPUT, TL_OUTPUT); sizes are checked against the file's length before
  * memory is allocated. Lifetime: images that are read belong to the caller, tl_image_release; nothing is kept

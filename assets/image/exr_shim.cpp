@@ -123,6 +123,21 @@ bool is_flat(const Imf::Header &header)
     return header.hasType() && (header.type() == Imf::SCANLINEIMAGE || header.type() == Imf::TILEDIMAGE);
 }
 
+/* Whether a part has red, green and blue, also as those of a layer, or luminance. */
+bool has_colours(const Imf::Header &header)
+{
+    const Imf::ChannelList &channels = header.channels();
+    for (auto c = channels.begin(); c != channels.end(); ++c) {
+        const std::string name = c.name();
+        const size_t dot = name.rfind('.'), end = dot == std::string::npos ? 0 : dot + 1;
+        const std::string layer = name.substr(0, end), own = name.substr(end);
+        if ((own == "R" && channels.findChannel(layer + "G") && channels.findChannel(layer + "B")) ||
+            name == "Y")
+            return true;
+    }
+    return false;
+}
+
 enum tl_exr_envmap envmap_of(const Imf::Header &header)
 {
     if (!Imf::hasEnvmap(header))
@@ -179,6 +194,9 @@ tl_exr_file *tl_exr_shim_open(const char *path, const void *data, size_t size, s
         set_limits();
         file.reset(new tl_exr_file{{path, static_cast<const char *>(data), size}, nullptr, {}});
         file->file.reset(new Imf::MultiPartInputFile(file->stream, no_threads, reconstruct));
+        for (int i = 0; i < file->file->parts() && file->part < 0; i++)
+            if (is_flat(file->file->header(i)) && has_colours(file->file->header(i)))
+                file->part = i;
         for (int i = 0; i < file->file->parts() && file->part < 0; i++)
             if (is_flat(file->file->header(i)))
                 file->part = i;

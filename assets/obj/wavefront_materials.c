@@ -18,6 +18,7 @@
 
 /* The state of reading. */
 struct mtl_reader {
+    const char *path; /* the OBJ file; borrowed */
     struct tl_text text;
     const struct wave_object *object;
     tl_model *model;
@@ -97,8 +98,9 @@ static void turn_over(struct tl_uv_transform *transform)
 }
 
 /* The path of an image, relative to the MTL file. Exporters also write paths of the machine that they ran on:
- * when such a file does not exist, its name is looked for in the MTL file's folder. */
-static char *picture_path(const char *library, const char *name)
+ * when such a file does not exist, or lies outside the folder of `model`, its name is looked for in the MTL
+ * file's folder. */
+static char *picture_path(const char *model, const char *library, const char *name)
 {
     char *plain = tl_copy_string(name);
     for (char *c = plain; *c; c++)
@@ -106,7 +108,7 @@ static char *picture_path(const char *library, const char *name)
             *c = '/';
     char *path = tl_path_relative_to(library, plain);
     const char *slash = strrchr(plain, '/');
-    if (slash && !tl_file_exists(path)) {
+    if (slash && (!tl_file_exists(path) || !tl_path_is_inside(model, path, NULL))) {
         char *sibling = tl_path_relative_to(library, slash + 1);
         if (tl_file_exists(sibling)) {
             char *swap = path;
@@ -134,7 +136,7 @@ static bool ask_for(struct mtl_reader *reader, const char *path, const tl_image 
 
 static const tl_image *load_picture(struct mtl_reader *reader, const char *name, bool linear)
 {
-    char *named = picture_path(reader->text.path, name), *real = realpath(named, NULL);
+    char *named = picture_path(reader->path, reader->text.path, name), *real = realpath(named, NULL);
     char *path = real ? real : named; /* one name for one file */
     if (real)
         free(named);
@@ -148,7 +150,8 @@ static const tl_image *load_picture(struct mtl_reader *reader, const char *name,
     tl_image image = {0};
     if (reader->is_full || model->image_count == reader->image_capacity)
         goto failed;
-    if (!tl_image_load(path, &image, &error) || !ask_for(reader, path, &image, &error)) {
+    if (!tl_path_is_inside(reader->path, path, &error) || !tl_image_load(path, &image, &error) ||
+        !ask_for(reader, path, &image, &error)) {
         model_ignore(model, "%s", error.message);
         goto failed;
     }
@@ -259,8 +262,10 @@ static void read_library(struct mtl_reader *reader, const char *path)
 void wave_read_materials(const char *path, const struct wave_object *object, tl_model *model)
 {
     const size_t maps_each = 3;
-    struct mtl_reader reader = {
-        .object = object, .model = model, .image_capacity = 2 * maps_each * object->material_count};
+    struct mtl_reader reader = {.path = path,
+                                .object = object,
+                                .model = model,
+                                .image_capacity = 2 * maps_each * object->material_count};
     reader.image_paths = TL_NEW_ARRAY(char *, reader.image_capacity);
     model->images = TL_NEW_ARRAY(tl_image, reader.image_capacity); /* never moved: materials point into it */
     model->material_count = object->material_count;
@@ -269,7 +274,11 @@ void wave_read_materials(const char *path, const struct wave_object *object, tl_
         model->materials[i] = tl_material_default(i > 0 ? object->materials[i] : "default");
     for (size_t i = 0; i < object->library_count; i++) {
         char *library = tl_path_relative_to(path, object->libraries[i]);
-        read_library(&reader, library);
+        tl_error error;
+        if (tl_path_is_inside(path, library, &error))
+            read_library(&reader, library);
+        else
+            model_ignore(model, "%s", error.message);
         free(library);
     }
     for (size_t i = 0; i < model->image_count; i++)

@@ -149,7 +149,7 @@ refuse "info of a broken file" 'text\.glb' info text.glb
 refuse "memory without a unit" '\-\-memory: "5": expected' info dress.glb --memory 5
 refuse "memory that is too little" 'needs .* of 50 MiB allowed' render -o a.png --size 4096x4096 --memory 50M
 printf '#?RADIANCE\n\n-Y 1 +X 2\n\1\2\3\200\1\2\3\200' >small.hdr
-refuse "a converted map that is too large" 'needs .* of 1000 MiB allowed' env small.hdr -o a.exr --layout cube --size 4000 --memory 1000M
+refuse "a converted map that is too large" 'needs .* of 1.0 GiB allowed' env small.hdr -o a.exr --layout cube --size 4000 --memory 1000M
 for kib in 350000 450000 600000; do
     (ulimit -v $kib && refuse "out of memory at $kib KiB" 'out of memory|too little memory' render -o a.png --preset draft --size 64x64) || failed=1
 done

@@ -311,9 +311,45 @@ static void cut_files_are_refused(void **state)
     tl_image_release(&image);
 }
 
+/* A file whose colours are layers: the first layer that has red, green and blue is read, with its alpha; a
+ * layer without blue is not. Channels of the file's own come before any layer. */
+static void layers_are_read(void **state)
+{
+    (void)state;
+    static const char *const shallow[] = {"aaa.R", "aaa.G"},
+                             *const beauty[] = {"beauty.R", "beauty.G", "beauty.B", "beauty.A"},
+                             *const other[] = {"light.R", "light.G", "light.B"},
+                             *const own[] = {"R", "G", "B"};
+    tl_image two = tl_image_create(2, 1, 2, TL_IMAGE_F32), four = tl_image_create(2, 1, 4, TL_IMAGE_F32),
+             three = tl_image_create(2, 1, 3, TL_IMAGE_F32), read;
+    for (int i = 0; i < 8; i++)
+        tl_image_floats(&four)[i] = (float)(i + 1);
+    for (int i = 0; i < 6; i++)
+        tl_image_floats(&three)[i] = (float)(100 + i);
+    const struct tl_exr_layer layers[] = {{shallow, &two}, {beauty, &four}, {other, &three}, {own, &three}};
+    const char *path = TOILE_SCRATCH_DIR "/layers.exr";
+    enum tl_exr_envmap envmap;
+    tl_error error;
+    assert_ok(tl_exr_save(path, layers, 3, &error), error);
+    assert_ok(tl_exr_load(path, &read, &envmap, &error), error);
+    assert_int_equal(read.channels, 4);
+    assert_memory_equal(read.texels, four.texels, 8 * sizeof(float));
+    tl_image_release(&read);
+    assert_ok(tl_exr_save(path, layers, 4, &error), error);
+    assert_ok(tl_exr_load(path, &read, &envmap, &error), error);
+    assert_int_equal(read.channels, 3);
+    assert_memory_equal(read.texels, three.texels, 6 * sizeof(float));
+    tl_image_release(&read);
+    tl_image_release(&two);
+    tl_image_release(&three);
+    tl_image_release(&four);
+    remove(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_are_read),
         cmocka_unit_test(round_trip),
         cmocka_unit_test(layers_are_kept_apart),
         cmocka_unit_test(codecs_agree),
