@@ -133,7 +133,7 @@ static void walk(struct dressed *d, int frame)
 
 /* Arms go through the skirt and into the hips. When all caught cloth was let through other cloth at once, 196
  * pairs crossed, in 5 of the 75 frames; when torn cloth was, 4 pairs in one of them, and 12 from the 193rd
- * frame on. TOILE_FRAMES=570: at most 22 of 4,558 particles are inside, in 197 of 600 frames. Every 40th is
+ * frame on. TOILE_FRAMES=230: at most 12 of 4,558 particles are inside, in 75 of 260 frames. Every 40th is
  * counted by brute force too. */
 static void test_walking(void **state)
 {
