@@ -177,7 +177,8 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
         tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     tl_bits facts = tl_frame_facts(frame, settings);
     /* A view that shows visibility after light in motion: nothing has moved, but samples have no points. */
-    if (!(facts & TL_BIT(TL_SCENE_RATIOS)) && !tl_points_taps(renderer->resources.points))
+    if (settings->image.view != TL_VIEW_LIGHT && !(facts & TL_BIT(TL_SCENE_RATIOS)) &&
+        !tl_points_taps(renderer->resources.points))
         waiting |= TL_BIT(TL_MADE_POINTS);
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->resources.valid & ~waiting,

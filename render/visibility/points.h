@@ -23,8 +23,8 @@ bool tl_points_are_done(const tl_points *points);
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
  * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
-const struct tl_taps *
-tl_points_taps(const tl_points *points); /* NULL: it was for triangles, not for samples */
+/* NULL: it was for triangles, not for samples. */
+const struct tl_taps *tl_points_taps(const tl_points *points);
 /* The point of a vertex of a triangle that was seen in the last update, from the side that was seen; and
  * whether something lies close above it, so that its values do not hold for neighbours that are not covered.
  */

@@ -128,8 +128,9 @@ static bool keep_images(struct recorder *recorder, int number, tl_error *error)
 {
     const struct tl_fly_options *options = recorder->options;
     struct tl_flight *flight = recorder->flight;
-    bool judged = options->oracle_every > 0 && number > 0 && number % options->oracle_every == 0 &&
-                  (number / options->oracle_every - 1) % options->shards == options->shard;
+    bool judged =
+        options->oracle_every > 0 && number > 0 && number % options->oracle_every == 0 &&
+        (options->shards <= 1 || (number / options->oracle_every - 1) % options->shards == options->shard);
     tl_image image = {0}, shown = {0};
     if (!options->hash && !judged)
         return true;

@@ -27,7 +27,11 @@ static const struct {
      "--fabric cotton_plain --set light.visibility=depth --set light.prefilter=slices --set "
      "light.composition=difference "
      "--set light.regions=24 --set light.pem_size=32 --set light.map_size=256 --set light.jitter=false"},
+    {"body", "--garment none --avatar figure"}, /* only the camera moves */
     {"cloth", "--no-cache --set cloth.edge_m=0.05"},
+    {"folds", "--no-cache --garment skirt --set cloth.edge_m=0.03"},
+    {"glossy", "--fabric none --set material.specular=[0.5,0.5,0.5] --set material.glossiness=0.95"},
+    {"near", "--set camera.distance_m=1 --set camera.target=[0,1.2,0]"},
 };
 
 static const char *arguments_of(const char *run)
