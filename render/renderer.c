@@ -176,9 +176,13 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
     tl_bits waiting =
         tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     tl_bits facts = tl_frame_facts(frame, settings);
-    /* A view that shows visibility after light in motion: nothing has moved, but samples have no points. */
-    if (settings->image.view != TL_VIEW_LIGHT && !(facts & TL_BIT(TL_SCENE_RATIOS)) &&
-        !tl_points_taps(renderer->resources.points))
+    /* After light in motion nothing may have moved, and yet samples have no points. Light does with those that
+     * the same samples had before; a view shows the last ones. */
+    const struct tl_resources *resources = &renderer->resources;
+    bool have_points = settings->image.view == TL_VIEW_LIGHT
+                           ? tl_points_kept_taps(resources->points, resources->samples.count)
+                           : tl_points_taps(resources->points);
+    if (!(facts & TL_BIT(TL_SCENE_RATIOS)) && !have_points)
         waiting |= TL_BIT(TL_MADE_POINTS);
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->resources.valid & ~waiting,
