@@ -132,11 +132,12 @@ for shot in shots/*.png; do
 done
 [ "$(cat shots/*.png | wc -c)" -gt 0 ] && [ "$(md5sum shots/*.png | cut -d' ' -f1 | sort -u | wc -l)" -ge 5 ] ||
     fail "screenshots do not differ"
-# A round makes a renderer for the comparison, some 130 MB, and ends it. The allocator and the software driver keep and
-# return such pieces: up to 80 MB of play were seen between rounds; over minutes (view_long.sh) there is no trend. One
-# forgotten renderer or one forgotten image a frame would be over this bound.
+# What rests in memory differs from round to round: buffers are as large as the largest image so far, and whether an image
+# at rest has one or two samples a pixel side is decided by time. Seen, in MB after each round: 762, 1307; 999, 1030; 778,
+# 806, 859, 937. An image of 16 MB that is forgotten in each frame is over this bound. One forgotten renderer, some 130 MB,
+# is not: the leak check of `./dev asan` names it.
 echo "resident: $warm_kb kB after the first round, $grown_kb kB more at the end"
-[ "$grown_kb" -lt 122880 ] || fail "memory grew by $grown_kb kB"
+[ "$grown_kb" -lt 786432 ] || fail "memory grew by $grown_kb kB"
 
 # The next review of this dress has its view; the window its size. A broken state file is reported, once.
 grep -q "^view2" state/toile/views/*.yaml || fail "view 2 is not kept"
