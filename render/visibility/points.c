@@ -554,9 +554,14 @@ const struct tl_taps *tl_points_taps(const tl_points *points)
     return points->sample_count > 0 ? points->taps : NULL;
 }
 
-const struct tl_taps *tl_points_kept_taps(const tl_points *points, size_t sample_count)
+const struct tl_taps *tl_points_kept_taps(const tl_points *points)
 {
-    return points->tap_count > 0 && points->tap_count == sample_count ? points->taps : NULL;
+    return points->tap_count > 0 ? points->taps : NULL;
+}
+
+size_t tl_points_tap_count(const tl_points *points)
+{
+    return points->tap_count;
 }
 
 uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t vertex, bool back)

@@ -25,9 +25,10 @@ bool tl_points_are_done(const tl_points *points);
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
 /* NULL: it was for triangles, not for samples. */
 const struct tl_taps *tl_points_taps(const tl_points *points);
-/* The taps of the last update for samples, which hold while these stand: updates for triangles in between keep
- * the points where they are and make their values more exact. NULL: that update was for another number of them. */
-const struct tl_taps *tl_points_kept_taps(const tl_points *points, size_t sample_count);
+/* The taps of the last update for samples, and their number. They hold while these samples stand: updates for
+ * triangles in between keep the points where they are and make their values more exact. NULL, 0: none yet. */
+const struct tl_taps *tl_points_kept_taps(const tl_points *points);
+size_t tl_points_tap_count(const tl_points *points);
 /* The point of a vertex of a triangle that was seen in the last update, from the side that was seen; and
  * whether something lies close above it, so that its values do not hold for neighbours that are not covered.
  */
