@@ -176,14 +176,8 @@ static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_fra
     tl_bits waiting =
         tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
     tl_bits facts = tl_frame_facts(frame, settings);
-    /* After light in motion nothing may have moved, and yet samples have no points. Light does with those
-     * that the same samples had before; a view shows the last ones. */
-    const struct tl_resources *resources = &renderer->resources;
-    size_t tap_count = tl_points_tap_count(resources->points);
-    bool have_points = settings->image.view == TL_VIEW_LIGHT
-                           ? tap_count == 0 || tap_count == resources->samples.count
-                           : tl_points_taps(resources->points) != NULL;
-    if (!(facts & TL_BIT(TL_SCENE_RATIOS)) && !have_points)
+    /* After light in motion nothing may have moved, and yet samples have no points. */
+    if (!(facts & TL_BIT(TL_SCENE_RATIOS)) && !tl_points_are_for_samples(renderer->resources.points))
         waiting |= TL_BIT(TL_MADE_POINTS);
     return (struct tl_plan_input){.changed = changed,
                                   .valid = renderer->resources.valid & ~waiting,

@@ -242,7 +242,7 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
         request.shares = job->transparency->shares;
     if (job->light_options->method != TL_METHOD_UNSHADOWED) {
         request.values = tl_points_values(job->points, &request.stride);
-        request.taps = tl_points_kept_taps(job->points);
+        request.taps = tl_points_taps(job->points);
         if (*job->facts & TL_BIT(TL_SCENE_MIRRORS))
             request.mirrors = job->mirrors->items;
         for (int i = 0; i < job->suns->count; i++)

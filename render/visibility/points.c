@@ -45,8 +45,8 @@ struct tl_points {
     uint32_t *stamps;  /* [slots][stride]: frame when a region was last traced */
 
     struct tl_taps *taps;
-    size_t sample_count, sample_capacity; /* 0 samples: the last update was for triangles */
-    size_t tap_count;                     /* of the last update for samples */
+    size_t sample_count, sample_capacity;
+    bool are_for_samples; /* the last update; with no sample covered, too */
     size_t ray_count;
     /* At rest: of the points of the slots, each region has been looked at; has had its rounds; and all else.
      */
@@ -240,7 +240,7 @@ static void mark_triangles(tl_points *points, const struct tl_points_request *re
 
 static void mark_samples(tl_points *points, const struct tl_points_request *request)
 {
-    points->sample_count = points->tap_count = request->samples->count;
+    points->sample_count = request->samples->count;
     if (points->sample_count > points->sample_capacity) {
         points->sample_capacity = points->sample_count + points->sample_count / 4;
         free(points->taps);
@@ -534,6 +534,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
     follow_changes(points, request);
+    points->are_for_samples = request->samples != NULL;
     if (request->samples)
         mark_samples(points, request);
     else
@@ -551,17 +552,12 @@ const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
 
 const struct tl_taps *tl_points_taps(const tl_points *points)
 {
-    return points->sample_count > 0 ? points->taps : NULL;
+    return points->are_for_samples ? points->taps : NULL;
 }
 
-const struct tl_taps *tl_points_kept_taps(const tl_points *points)
+bool tl_points_are_for_samples(const tl_points *points)
 {
-    return points->tap_count > 0 ? points->taps : NULL;
-}
-
-size_t tl_points_tap_count(const tl_points *points)
-{
-    return points->tap_count;
+    return points->are_for_samples;
 }
 
 uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t vertex, bool back)

@@ -23,12 +23,10 @@ bool tl_points_are_done(const tl_points *points);
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
  * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
-/* NULL: it was for triangles, not for samples. */
+/* Whether the last update was for samples. Others are for triangles, and may move the points that earlier
+ * taps name: then tl_points_taps is NULL. */
+bool tl_points_are_for_samples(const tl_points *points);
 const struct tl_taps *tl_points_taps(const tl_points *points);
-/* The taps of the last update for samples, and their number. They hold while these samples stand: updates for
- * triangles in between keep the points where they are and make their values more exact. NULL, 0: none yet. */
-const struct tl_taps *tl_points_kept_taps(const tl_points *points);
-size_t tl_points_tap_count(const tl_points *points);
 /* The point of a vertex of a triangle that was seen in the last update, from the side that was seen; and
  * whether something lies close above it, so that its values do not hold for neighbours that are not covered.
  */
