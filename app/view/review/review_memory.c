@@ -2,6 +2,7 @@
 
 #include "app/view/review/review_draw.h"
 #include "config/log.h"
+#include "render/renderer.h"
 
 #include <malloc.h>
 #include <stdio.h>
@@ -45,14 +46,21 @@ static size_t unused_bytes(void)
     return resident > used ? resident - used : 0;
 }
 
-/* Logs used beside resident memory: a leak makes both grow, fragmentation only the latter. */
-static void log_memory(struct tl_review_memory *memory, double now_s)
+static size_t renderers_bytes(const struct tl_review *review)
 {
-    if (now_s - memory->logged_s < LOG_EVERY_S)
+    size_t bytes = tl_renderer_memory(review->renderer).total;
+    return review->wipe.renderer ? bytes + tl_renderer_memory(review->wipe.renderer).total : bytes;
+}
+
+/* Logs used beside resident memory: a leak makes both grow, fragmentation only the latter. The renderers'
+ * buffers are as large as their largest image so far, and are no leak. */
+static void log_memory(struct tl_review *review, double now_s)
+{
+    if (now_s - review->memory.logged_s < LOG_EVERY_S)
         return;
-    memory->logged_s = now_s;
-    tl_debug("view: memory: %zu MB in use, %zu MB resident", used_bytes() >> 20,
-             tl_review_resident_bytes() >> 20);
+    review->memory.logged_s = now_s;
+    tl_debug("view: memory: %zu MB in use, %zu MB resident, %zu MB for images", used_bytes() >> 20,
+             tl_review_resident_bytes() >> 20, renderers_bytes(review) >> 20);
 }
 
 void tl_review_trim_memory(struct tl_review *review)
@@ -62,7 +70,7 @@ void tl_review_trim_memory(struct tl_review *review)
     if (now_s - memory->checked_s < CHECK_EVERY_S)
         return;
     memory->checked_s = now_s;
-    log_memory(memory, now_s);
+    log_memory(review, now_s);
     size_t unused = unused_bytes(), unused_max = is_busy(review) ? UNUSED_MAX_IN_MOTION : UNUSED_MAX_AT_REST;
     if (memory->min_unused == 0 || unused < memory->min_unused)
         memory->min_unused = unused;
