@@ -21,14 +21,14 @@ TL_INLINE struct tl_bump_statistics tl_bump_statistics_of_normal(vec3s normal)
     return (struct tl_bump_statistics){normal, {0, 0}, 1};
 }
 
-/* Statistics of averaged moments (x, y, x^2, y^2); slopes are multiplied by `scale`. */
-TL_INLINE struct tl_bump_statistics tl_bump_statistics_of_moments(vec4s moments, float scale)
+/* Statistics of averaged moments (x, y, x^2, y^2); slopes along u and v are multiplied by `scale`. */
+TL_INLINE struct tl_bump_statistics tl_bump_statistics_of_moments(vec4s moments, const float scale[2])
 {
     float z = sqrtf(tl_maxf(1 - moments.z - moments.w, 0));
     struct tl_bump_statistics bumps = {
-        .normal = {{scale * moments.x, scale * moments.y, z}},
-        .spread = {scale * scale * tl_maxf(moments.z - moments.x * moments.x, 0),
-                   scale * scale * tl_maxf(moments.w - moments.y * moments.y, 0)}};
+        .normal = {{scale[0] * moments.x, scale[1] * moments.y, z}},
+        .spread = {scale[0] * scale[0] * tl_maxf(moments.z - moments.x * moments.x, 0),
+                   scale[1] * scale[1] * tl_maxf(moments.w - moments.y * moments.y, 0)}};
     bumps.length = sqrtf(tl_minf(tl_maxf(1 - bumps.spread[0] - bumps.spread[1], 0.0025f), 1));
     return bumps;
 }

@@ -16,4 +16,8 @@ vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v);
  * (-h_x, -h_y, 1), or a multiple of it, with slopes in metres per metre. `handedness` as in MikkTSpace. */
 vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped);
 
+/* The factors on a weave's slopes along u and v where the triangle is stretched (detail_slope_factor), as in
+ * detail.glsl. `nominal`: metres of the UV unit to which the bumps are made. 1 where the UVs span no area. */
+void tl_slope_factors(const vec3s positions[3], const vec2s uvs[3], float nominal, float out[2]);
+
 #endif

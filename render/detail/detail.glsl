@@ -279,7 +279,8 @@ struct Bumps {
     float length;
 };
 
-Bumps detail_bumps(vec4 moments, float scale)
+// `scale`: of slopes along u and v.
+Bumps detail_bumps(vec4 moments, vec2 scale)
 {
     float z = sqrt(max(1.0 - moments.z - moments.w, 0.0));
     vec3 mean = vec3(scale * moments.xy, z);
@@ -315,17 +316,34 @@ vec2 detail_widenings(float own_rough, float rough, Bumps bumps)
 }
 
 #ifndef VERTEX_STAGE
-// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), with screen-space derivatives of the triangle. `mapped` has
-// slopes per metre of the nominal size of a UV unit.
-vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
+// How a point and its UV change together within a triangle: the derivatives of the point by u and by v, in metres; false
+// where there are none.
+bool detail_derivatives(vec3 point, vec2 uv, out vec3 p_u, out vec3 p_v)
 {
     vec3 point_x = dFdx(point), point_y = dFdy(point);
     vec2 uv_x = dFdx(uv), uv_y = dFdy(uv);
     float determinant = uv_x.x * uv_y.y - uv_x.y * uv_y.x;
-    if (!(abs(determinant) > 1e-20))
+    bool is_known = abs(determinant) > 1e-20;
+    p_u = is_known ? (point_x * uv_y.y - point_y * uv_x.y) / determinant : vec3(0.0);
+    p_v = is_known ? (point_y * uv_x.x - point_x * uv_y.x) / determinant : vec3(0.0);
+    return is_known;
+}
+
+// The factors on a weave's slopes along u and v where cloth is stretched.
+vec2 detail_slope_factors(vec3 point, vec2 uv)
+{
+    vec3 p_u, p_v;
+    detail_derivatives(point, uv, p_u, p_v);
+    return vec2(detail_slope_factor(length(p_u), detail_range.z), detail_slope_factor(length(p_v), detail_range.z));
+}
+
+// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), with screen-space derivatives of the triangle. `mapped` has
+// slopes per metre of the nominal size of a UV unit.
+vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
+{
+    vec3 p_u, p_v;
+    if (!detail_derivatives(point, uv, p_u, p_v))
         return normal;
-    vec3 p_u = (point_x * uv_y.y - point_y * uv_x.y) / determinant;
-    vec3 p_v = (point_y * uv_x.x - point_x * uv_y.x) / determinant;
     vec2 slopes = -mapped.xy / max(mapped.z, 1e-3);
     float h_u = slopes.x * detail_range.z, h_v = -slopes.y * detail_range.z; // v runs down
     float area = dot(normal, cross(p_u, p_v));

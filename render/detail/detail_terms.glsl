@@ -44,6 +44,15 @@ TERM float detail_due(float rest, float steps)
     return rest / (steps * steps);
 }
 
+// The factor on slopes along an axis where the surface is stretched: heights keep their millimetres, lengths grow.
+// `metres`: of the surface per UV unit there; `nominal`: of the UV unit to which the bumps are made. At least a half, of
+// cloth twice as long; at most 1.25, for cloth buckles before it is shorter than that: what is more are UVs of another
+// scale. 1 where one of the two is unknown.
+TERM float detail_slope_factor(float metres, float nominal)
+{
+    return metres > 0.0f && nominal > 0.0f ? clamp(nominal / metres, 0.5f, 1.25f) : 1.0f;
+}
+
 // The variance of the slope along one axis, from the length of the mean of unit normals [Toksvig 2005].
 TERM float detail_variance(float mean_length)
 {

@@ -81,6 +81,10 @@ void main()
     unmoved_across = across;
     unmoved_down = down;
 #endif
+#if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
+    if (has_map(MAP_WEAVE))
+        weave_slopes = detail_slope_factors(point, uv);
+#endif
     mat3 frame = detail_frame(smooth_normal, tangent);
     vec3 view = direction_or(eye - point, smooth_normal) * frame;
     DetailPlace place = detail_place(uv, view, side);

@@ -110,6 +110,10 @@ void find_detail(mat3 frame, float side, vec3 smooth_normal)
     unmoved_across = dFdx(uv);
     unmoved_down = dFdy(uv);
 #endif
+#if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
+    if (has_map(MAP_WEAVE))
+        weave_slopes = detail_slope_factors(point, uv);
+#endif
     view = direction_or(eye - point, smooth_normal) * frame;
     place = detail_place(uv, view, side);
     sew(first_triangle + uint(gl_PrimitiveID), place.uv, dFdx(uv), dFdy(uv));

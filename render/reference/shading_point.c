@@ -4,6 +4,7 @@
 #include "render/brdf/fresnel.h"
 #include "render/brdf/fuzz.h"
 #include "render/construction/look.h"
+#include "render/detail/bumps.h"
 #include "render/detail/detail_terms.h"
 #include "render/detail/yarns.h"
 #include "render/env/exponent.h"
@@ -32,6 +33,7 @@ struct sample_place {
     bool woven;
     float weave_scale[2]; /* repeats per UV unit */
     float uv_metres;
+    float slopes[2]; /* factors on the weave's slopes along u and v (tl_slope_factors) */
     const struct tl_detail_params *detail;
     struct tl_footprint footprint;
     bool sewn;
@@ -95,14 +97,14 @@ static vec3s decoded(vec4s texel)
 
 static struct tl_bump_statistics own_bumps(const struct sample_place *place)
 {
-    float scale = place->material->normal_scale;
+    const float scale = place->material->normal_scale, scales[2] = {scale, scale};
     if (!has_map(place, TL_MAP_NORMAL))
         return tl_bump_statistics_of_normal((vec3s){{0, 0, 1}});
     if (place->prepared->own_moments) {
         const struct tl_reference_map *map = &place->prepared->maps[TL_MAP_NORMAL];
         struct tl_footprint at = through_rows(&place->footprint, map->rows);
         return tl_bump_statistics_of_moments(
-            tl_map_texture_fetch(place->prepared->own_moments, &at, map->clamp_u, map->clamp_v), scale);
+            tl_map_texture_fetch(place->prepared->own_moments, &at, map->clamp_u, map->clamp_v), scales);
     }
     vec3s n = decoded(map_at(place, TL_MAP_NORMAL));
     return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
@@ -110,11 +112,12 @@ static struct tl_bump_statistics own_bumps(const struct sample_place *place)
 
 static struct tl_bump_statistics weave_bumps(const struct sample_place *place)
 {
-    float scale = place->detail->height_scale;
+    const float height = place->detail->height_scale;
+    const float scale[2] = {height * place->slopes[0], height * place->slopes[1]};
     if (place->prepared->weave_moments)
         return tl_bump_statistics_of_moments(weave_texel(place, place->prepared->weave_moments), scale);
     vec3s n = decoded(weave_at(place, TL_WEAVE_NORMAL));
-    return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
+    return tl_bump_statistics_of_normal((vec3s){{scale[0] * n.x, scale[1] * n.y, n.z}});
 }
 
 /* Statistics of all bumps in tangent space: those of the normal map of the file plus those of the weave and
@@ -464,6 +467,7 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
         place.tangent = glms_vec4_add(place.tangent, glms_vec4_scale(corners.tangents[i], weights[i]));
         corners.normals[i] = direction_or(glms_vec3_scale(corners.normals[i], place.side), place.facet);
     }
+    tl_slope_factors(corners.positions, corners.uvs, place.uv_metres, place.slopes);
     place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
     vec3s outside = direction_or(place.normal, glms_vec3_scale(place.facet, place.side));
     vec3s view = into_tangent(&place, outside, glms_vec3_negate(ray->direction));

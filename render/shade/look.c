@@ -133,16 +133,19 @@ TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_loo
 /* A map of normals, or of the moments of its normals. */
 struct bump_lanes {
     bool is_given, has_moments;
-    float scale; /* of the slopes */
+    float scale[2][TL_LANES]; /* of the slopes along u and v */
     float texel[4][TL_LANES];
 };
 
-TL_INLINE void keep_bumps(const tl_quad texels[TL_LANES], float scale, bool has_moments,
-                          struct bump_lanes *bumps)
+/* `scale` multiplies all slopes, `factors` those of each lane; NULL: 1. */
+TL_INLINE void keep_bumps(const tl_quad texels[TL_LANES], float scale, const float (*factors)[TL_LANES],
+                          bool has_moments, struct bump_lanes *bumps)
 {
     bumps->is_given = true;
     bumps->has_moments = has_moments;
-    bumps->scale = scale;
+    for (int axis = 0; axis < 2; axis++)
+        for (int i = 0; i < TL_LANES; i++)
+            bumps->scale[axis][i] = factors ? scale * factors[axis][i] : scale;
     for (int i = 0; i < TL_LANES; i++)
         for (int c = 0; c < 4; c++)
             bumps->texel[c][i] = texels[i][c];
@@ -153,10 +156,11 @@ TL_INLINE struct tl_bump_statistics bumps_at(const struct bump_lanes *bumps, boo
     float texel[4];
     for (int c = 0; c < 4; c++)
         texel[c] = bumps->texel[c][lane];
+    const float scale[2] = {bumps->scale[0][lane], bumps->scale[1][lane]};
     if (has_moments)
-        return tl_bump_statistics_of_moments((vec4s){{texel[0], texel[1], texel[2], texel[3]}}, bumps->scale);
+        return tl_bump_statistics_of_moments((vec4s){{texel[0], texel[1], texel[2], texel[3]}}, scale);
     return tl_bump_statistics_of_normal(
-        (vec3s){{bumps->scale * (2 * texel[0] - 1), bumps->scale * (2 * texel[1] - 1), 2 * texel[2] - 1}});
+        (vec3s){{scale[0] * (2 * texel[0] - 1), scale[1] * (2 * texel[1] - 1), 2 * texel[2] - 1}});
 }
 
 /* The statistics of one layer of bumps, or of the sum of two. */
@@ -279,12 +283,12 @@ TL_INLINE void apply_bumps(const struct tl_detail_params *detail, struct tl_look
     struct bump_lanes bumps[2] = {{0}};
     if (part->own_moments || own->texels) {
         read_map(lanes, own, part->own_moments ? part->own_moments : own->texels, texels);
-        keep_bumps(texels, part->material->normal_scale, part->own_moments, &bumps[0]);
+        keep_bumps(texels, part->material->normal_scale, NULL, part->own_moments, &bumps[0]);
     }
     const struct tl_texels *weave = part->weave_moments ? part->weave_moments : part->weave_normal;
     if (weave) {
         read_weave(lanes, weave_at, weave, texels);
-        keep_bumps(texels, detail->height_scale, part->weave_moments, &bumps[1]);
+        keep_bumps(texels, detail->height_scale, lanes->slopes, part->weave_moments, &bumps[1]);
     }
     struct statistic_lanes sum;
     const struct tl_bump_statistics flat = {.normal = {{0, 0, 1}}, .length = 1};

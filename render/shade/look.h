@@ -24,6 +24,7 @@ struct tl_look_lanes {
     /* Where the part has maps: */
     float uv[2][TL_LANES];        /* must be finite */
     float change[2][2][TL_LANES]; /* of u and of v to the next sample across and up */
+    float slopes[2][TL_LANES];    /* factors on a weave's slopes along u and v (tl_slope_factors) */
     uint32_t triangle[TL_LANES];  /* the surface's own; TL_NO_TRIANGLE: borders are not looked for */
     /* Results: */
     float smooth[3][TL_LANES]; /* the given normal, normalised */

@@ -31,7 +31,7 @@ struct tl_shade_part {
     const struct tl_texels *weave_normal;
     float weave_scale[2];         /* repeats per UV unit */
     const struct tl_yarns *yarns; /* NULL: they are alike */
-    float uv_metres;              /* of a UV unit; read with yarns */
+    float uv_metres;              /* of a UV unit; read where there is a weave */
     const tl_borders *borders;    /* NULL: nothing is sewn; with the profiles of seams and hems: */
     const struct tl_construction_tables *construction;
     float turn_cosine, turn_sine;            /* of gloss.rotation */

@@ -196,6 +196,7 @@ TL_INLINE void fill_lane(const struct pixel_run *run, const struct tl_pixel_weig
             look->uv[k][lane] = uv[k];
             look->change[k][0][lane] = change[k];
             look->change[k][1][lane] = change[k + 2];
+            look->slopes[k][lane] = run->triangle->slopes[k];
         }
     }
 }

@@ -75,6 +75,7 @@ static void add_corner(struct corner_lanes *lanes, const struct tl_ratios_reques
     look->uv[0][lane] = look->uv[1][lane] = 0.5f;
     look->change[0][0][lane] = look->change[1][1][lane] = whole;
     look->change[0][1][lane] = look->change[1][0][lane] = 0;
+    look->slopes[0][lane] = look->slopes[1][lane] = 1;
     look->triangle[lane] = TL_NO_TRIANGLE;
 }
 

@@ -1,6 +1,7 @@
 #include "render/shade/triangles.h"
 
 #include "config/memory.h"
+#include "render/detail/bumps.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,6 +34,22 @@ static void set_origin(const struct corner corners[3], int width, int height,
     triangle->y0 = (float)floor(fmin(fmax(y, 0), height));
 }
 
+/* How cloth is stretched matters to weaves only. */
+static void set_slopes(const struct tl_shade_part *part, struct tl_pixel_triangle *triangle)
+{
+    triangle->slopes[0] = triangle->slopes[1] = 1;
+    const tl_surface *surface = triangle->surface;
+    if (!(part->weave_moments || part->weave_normal) || !surface->uvs)
+        return;
+    vec3s positions[3];
+    vec2s uvs[3];
+    for (int i = 0; i < 3; i++) {
+        positions[i] = surface->positions[triangle->corners[i]];
+        uvs[i] = surface->uvs[triangle->corners[i]];
+    }
+    tl_slope_factors(positions, uvs, part->uv_metres, triangle->slopes);
+}
+
 static struct tl_pixel_triangle make_triangle(const struct tl_view *view, int width, int height,
                                               const struct tl_triangle_ranges *ranges,
                                               const struct tl_shade_materials *materials, uint32_t seen)
@@ -43,6 +60,7 @@ static struct tl_pixel_triangle make_triangle(const struct tl_view *view, int wi
     triangle.number = number - ranges->first[triangle.surface_index];
     triangle.part = tl_shade_part_at(materials, triangle.surface, triangle.surface_index, triangle.number);
     triangle.transmits = tl_material_transmits(materials->parts[triangle.part].material);
+    set_slopes(&materials->parts[triangle.part], &triangle);
     struct corner at[3];
     for (int i = 0; i < 3; i++)
         at[i] = corner_of(view, width, height, triangle.surface->positions[triangle.corners[i]]);

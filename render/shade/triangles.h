@@ -17,7 +17,8 @@ struct tl_pixel_triangle {
     uint32_t number;            /* the surface's own */
     size_t surface_index, part; /* part: index into the materials' parts */
     bool back;
-    bool transmits; /* light comes through it from its other side */
+    float slopes[2]; /* factors on a weave's slopes along u and v (tl_slope_factors) */
+    bool transmits;  /* light comes through it from its other side */
 };
 
 /* Of all layers, in the order of `ids->seen`. Owns its array, which is used again from frame to frame. */

@@ -9,17 +9,15 @@ vec3 decode(vec3 texel)
     return 2.0 * texel - 1.0;
 }
 
-// A weave's or height map's slopes, made steeper with its heights.
-vec3 steepened(vec3 n)
-{
-    return vec3(n.xy * detail_range.w, n.z);
-}
+// Factors on a weave's slopes along u and v where cloth is stretched (detail_slope_factors); set before bumps_at by who
+// has derivatives.
+vec2 weave_slopes = vec2(1.0);
 
 Bumps own_bumps(vec2 uv)
 {
     if (has_detail(DETAIL_OWN_MOMENTS)) // of the normal map, or where there is none of the height map's slopes
-        return has_map(MAP_NORMAL) ? detail_bumps(map_texel(detail_own_moments, MAP_NORMAL, uv), material_scalars.y)
-                                   : detail_bumps(detail_texel(detail_own_moments, uv), 1.0);
+        return has_map(MAP_NORMAL) ? detail_bumps(map_texel(detail_own_moments, MAP_NORMAL, uv), vec2(material_scalars.y))
+                                   : detail_bumps(detail_texel(detail_own_moments, uv), vec2(1.0));
     vec3 n = vec3(0.0, 0.0, 1.0);
     if (has_map(MAP_NORMAL)) {
         n = decode(map_texel(normal_map, MAP_NORMAL, uv).xyz);
@@ -30,9 +28,11 @@ Bumps own_bumps(vec2 uv)
 
 Bumps weave_bumps(vec2 uv)
 {
+    vec2 scale = detail_range.w * weave_slopes; // of slopes
     if (has_detail(DETAIL_WEAVE_MOMENTS))
-        return detail_bumps(weave_texel(detail_weave_moments, uv), detail_range.w);
-    return Bumps(steepened(decode(weave_texel(weave_normal, uv).xyz)), vec2(0.0), 1.0);
+        return detail_bumps(weave_texel(detail_weave_moments, uv), scale);
+    vec3 n = decode(weave_texel(weave_normal, uv).xyz);
+    return Bumps(vec3(scale * n.xy, n.z), vec2(0.0), 1.0);
 }
 
 // Slopes add as those of summed heights do.

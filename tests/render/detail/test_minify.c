@@ -43,12 +43,16 @@ struct stage {
 };
 static tl_environment studio;
 
-/* A ball, so that all normals are seen. */
+/* A ball, so that all normals are seen; the weave is to scale about its equator. */
 static struct stage *stage_new(int pattern, int yarns)
 {
     struct stage *stage = TL_NEW(struct stage);
     stage->shape = test_sphere((vec3s){{0, 0, 0}}, 1, 128);
-    stage->weave = weave_of(pattern, yarns, stage->shape.mesh.parts[0].uv_metres);
+    tl_mesh *mesh = &stage->shape.mesh;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        mesh->uvs[i].y *= 0.5f;
+    mesh->parts[0].uv_metres = 2 * (float)M_PI;
+    stage->weave = weave_of(pattern, yarns, mesh->parts[0].uv_metres);
     tl_material *material = &stage->shape.material;
     material->diffuse = (vec3s){{0.3f, 0.022f, 0.045f}};
     material->specular = (vec3s){{0.12f, 0.1f, 0.1f}};

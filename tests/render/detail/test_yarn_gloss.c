@@ -184,9 +184,66 @@ static void test_a_far_knit_is_the_mean_of_near(void **state)
     }
 }
 
+/* Leaves a weave its slopes along u only. */
+static void keep_slopes_along_u(tl_weave *weave)
+{
+    uint8_t *texels = tl_image_bytes(&weave->normal);
+    for (size_t i = 0; i < (size_t)(weave->normal.width * weave->normal.height); i++) {
+        float x = fminf(fmaxf((float)texels[3 * i] / 127.5f - 1, -1), 1);
+        texels[3 * i + 1] = 128;
+        texels[3 * i + 2] = (uint8_t)lroundf(127.5f * (1 + sqrtf(1 - x * x)));
+    }
+}
+
+static void stretch(struct test_scene *scene, float along_u, float along_v)
+{
+    tl_mesh *mesh = &scene->shapes[0].mesh;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        mesh->positions[i].x *= along_u;
+        mesh->positions[i].y *= along_v;
+    }
+    test_scene_refresh(scene);
+}
+
+/* A highlight of the satin, with slopes along u only, on cloth that is stretched. */
+static double stretched_shade(tl_renderer *renderer, enum path path, vec2s by, float height)
+{
+    struct test_scene scene;
+    lit_plane = 0;
+    test_scene_open(&scene, test_environment(512, 256, path >= BY_LAMP ? test_black : wide_lamp),
+                    (vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 30, FAR_SIZE, FAR_SIZE);
+    be_satin(&scene);
+    keep_slopes_along_u(&scene.weave);
+    set_path(&scene, path);
+    stretch(&scene, by.x, by.y);
+    scene.settings.detail.height_scale = height;
+    double shade = seen(&scene, renderer, path, -LIGHT_DEG, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
+    test_scene_close(&scene);
+    return shade;
+}
+
+/* Cloth that is half as long again has slopes two thirds as steep along the pull, and the same across it: by
+ * every path. The highlight, whose height is that of a lobe as wide as its slopes, tells. */
+static void test_slopes_follow_the_stretch(void **state)
+{
+    const struct test_device *device = *state;
+    for (enum path path = AT_SAMPLES; path < PATHS; path++) {
+        double rest = stretched_shade(device->renderer, path, (vec2s){{1, 1}}, 1);
+        double lower = stretched_shade(device->renderer, path, (vec2s){{1, 1}}, 1 / 1.5f);
+        double along = stretched_shade(device->renderer, path, (vec2s){{1.5f, 1}}, 1);
+        double across = stretched_shade(device->renderer, path, (vec2s){{1, 1.5f}}, 1);
+        printf("%-12s at rest %.4f, two thirds as high %.4f; stretched along the slopes %.4f, across %.4f\n",
+               paths[path].name, rest, lower, along, across);
+        assert_true(fabs(lower / rest - 1) > 0.05);
+        assert_near(along, lower, 0.01 * lower);
+        assert_near(across, rest, 0.01 * rest);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_far_highlight_is_the_mean_of_near),
-                                       cmocka_unit_test(test_a_far_knit_is_the_mean_of_near)};
+                                       cmocka_unit_test(test_a_far_knit_is_the_mean_of_near),
+                                       cmocka_unit_test(test_slopes_follow_the_stretch)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
