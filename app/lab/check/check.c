@@ -114,6 +114,8 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.crossing", "the cloth does not pass through itself: pairs of triangles that cross", 0,
      "planes separate what is near, and nothing else can reach (cloth/contact/keep_apart.h)", false,
      tl_measure_crossing},
+    {"cloth.seams", "no seam of cloth that was draped is open: pairs of vertices that are apart", 0,
+     "sewing welds what meets, and draws until it has met", false, tl_measure_seams},
     {"cloth.energy",
      "kinetic and potential energy do not exceed the minimum of the total energy since something last drove "
      "the garment: gain, as the height in metres that it would lift the garment by",
@@ -130,6 +132,15 @@ const struct tl_invariant tl_invariants[] = {
      "of a second, and how far it went sideways, relative to the fall",
      BY_SETTINGS, "one hundredth, and the solver's step over the time: each step is wrong by half of itself",
      false, tl_measure_fall},
+    {"cloth.droop",
+     "strips of the fabric along weft and warp, clamped at one end, droop as the elastica of its bending "
+     "stiffness and weight: difference of the end's height, relative to the droop",
+     0.03, "strips of 20 cells: half of one hundredth with every solver (test_bending.c), and its step",
+     false, tl_measure_droop},
+    {"cloth.slide",
+     "a sheet of the fabric slides down an incline as x'' = g (sin - friction cos) - damping x': difference "
+     "of the way, relative to it",
+     BY_SETTINGS, "two hundredths, and the solver's step over the time", false, tl_measure_slide},
     {"cloth.rest",
      "the garment begins as in the clean run that --baseline names: relative difference of its elastic "
      "energy",

@@ -96,6 +96,14 @@ void tl_measure_crossing(const struct tl_checked *checked, struct tl_finding *fi
                      cloth->report.piece_count);
 }
 
+void tl_measure_seams(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->cloth || !checked->cloth->report.settled)
+        return;
+    tl_finding_add(finding, (double)checked->cloth->report.open_seams);
+    tl_finding_place(finding, "garment: %zu pieces", checked->cloth->report.piece_count);
+}
+
 /* Kinetic and potential energy may rise to the minimum of the total energy, because elastic energy may turn
  * into them. The elastic energy of this frame is left out of the sum: `preview` does not balance its
  * constraints, so that gravity and swing strain the cloth without losing energy of their own. */

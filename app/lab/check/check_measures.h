@@ -28,10 +28,10 @@ tl_measure tl_measure_oracle, tl_measure_mean, tl_measure_patch, tl_measure_tile
 tl_measure tl_measure_furnace, tl_measure_furnace_shadowed;
 
 /* check_cloth.c */
-tl_measure tl_measure_strain, tl_measure_stretch, tl_measure_inside, tl_measure_crossing, tl_measure_energy,
-    tl_measure_momentum, tl_measure_speed, tl_measure_rest;
+tl_measure tl_measure_strain, tl_measure_stretch, tl_measure_inside, tl_measure_crossing, tl_measure_seams,
+    tl_measure_energy, tl_measure_momentum, tl_measure_speed, tl_measure_rest;
 
-/* check_fall.c */
-tl_measure tl_measure_fall;
+/* check_trials.c */
+tl_measure tl_measure_fall, tl_measure_droop, tl_measure_slide;
 
 #endif

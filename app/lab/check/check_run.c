@@ -1,9 +1,9 @@
 #include "app/lab/check/check_run.h"
 
 #include "app/budget/governor.h"
-#include "app/lab/check/check_fall.h"
 #include "app/lab/check/check_keep.h"
 #include "app/lab/check/check_monitor.h"
+#include "app/lab/check/check_trials.h"
 #include "app/lab/truth/truth.h"
 #include "app/measure/cost.h"
 #include "app/measure/motion.h"
@@ -331,15 +331,15 @@ static bool play_again(struct check_run *run, int count, tl_error *error)
 }
 
 /* Measures what needs the cloth for itself: nothing is played after it. */
-static bool let_fall(struct check_run *run, tl_error *error)
+static bool run_trials(struct check_run *run, tl_error *error)
 {
-    struct tl_fall fall;
+    struct tl_trials trials;
     const struct tl_settings *settings = &run->headless->settings;
-    if (!tl_fall_measure(run->headless->session, settings, &fall, error))
+    if (!tl_trials_run(run->headless->session, settings, &trials, error))
         return false;
     tl_frame frame = frame_of(run, 0);
     const struct tl_render_settings drawn = tl_settings_render(settings);
-    const struct tl_checked checked = {.frame = &frame, .settings = &drawn, .fall = &fall};
+    const struct tl_checked checked = {.frame = &frame, .settings = &drawn, .trials = &trials};
     run->outcome->verdicts.frames--; /* no frame of its own */
     return note(run, &checked, error);
 }
@@ -380,7 +380,7 @@ bool tl_check_play(struct tl_headless *headless, const struct tl_check_params *p
     run.watch = tl_cloth_monitor_begin(headless->session, &headless->settings);
     bool done = play(&run, error);
     if (done && run.played == params->frames)
-        done = play_again(&run, again, error) && let_fall(&run, error);
+        done = play_again(&run, again, error) && run_trials(&run, error);
     out->hash = hash_of(&run);
     tl_progress_end(&run.progress);
     release(&run);

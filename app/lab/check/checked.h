@@ -9,7 +9,7 @@
 #include "render/renderer.h"
 
 struct tl_truth;
-struct tl_fall;
+struct tl_trials;
 
 /* The cloth of a frame, with the state that its bounds depend on. */
 struct tl_checked_cloth {
@@ -49,8 +49,8 @@ struct tl_checked {
     const tl_image *in_motion;    /* the same frame with the ratio of light at vertices, as budgets draw it */
     const struct tl_truth *truth; /* the worse of both images against the reference; tl_check_frame sets it */
     const struct tl_checked_cloth *cloth;
-    const struct tl_fall *fall; /* once, after the last frame */
-    uint64_t hash, first_hash;  /* of positions and image, now and in the first run; 0: none */
+    const struct tl_trials *trials; /* once, after the last frame */
+    uint64_t hash, first_hash;      /* of positions and image, now and in the first run; 0: none */
     uint64_t positions_hash, first_positions_hash; /* of positions alone */
     double predicted_ms, budget_ms;                /* of the plan; of the command line */
     double min_ms;                                 /* of the cheapest plan, where it exceeds the budget */

@@ -58,6 +58,25 @@ tl_garment tl_sheet_make(int side, enum tl_sheet_hold hold, bool lies)
     return garment;
 }
 
+tl_garment tl_strip_make(double length_m, int columns, bool is_warp)
+{
+    enum { ROWS = 2 };
+    const size_t across = (size_t)columns + 1;
+    const double cell = length_m / (columns - 0.5);
+    tl_garment garment = make_empty(across * (ROWS + 1), 2 * (size_t)columns * ROWS);
+    fill_cells(&garment.model.mesh, columns, ROWS);
+    garment.pins = TL_NEW_ARRAY(uint32_t, 2 * (ROWS + 1));
+    for (size_t i = 0; i < across * (ROWS + 1); i++) {
+        const size_t column = i % across;
+        const double along = cell * (double)column, beside = cell * (double)(i / across);
+        const vec3s at = {{(float)(along - cell / 2), 1, (float)beside}};
+        place(&garment, i, at, is_warp ? beside : along, is_warp ? along : beside);
+        if (column < 2)
+            garment.pins[garment.pin_count++] = (uint32_t)i;
+    }
+    return garment;
+}
+
 /* ---- The tube ---- */
 
 double tl_tube_row_height(const struct tl_tube *tube, int row)

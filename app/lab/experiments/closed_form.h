@@ -1,5 +1,5 @@
-/* Garments for measurements: a flat square, and a tube and a triangle whose equilibrium under their own
- * weight is known in closed form. Metres. Release with tl_garment_release. Pure. */
+/* Garments for measurements: flat squares and strips, and a tube and a triangle whose equilibrium under their
+ * own weight is known in closed form. Metres. Release with tl_garment_release. Pure. */
 #ifndef TOILE_APP_LAB_EXPERIMENTS_CLOSED_FORM_H
 #define TOILE_APP_LAB_EXPERIMENTS_CLOSED_FORM_H
 
@@ -11,6 +11,17 @@ enum tl_sheet_hold { TL_SHEET_FREE, TL_SHEET_EDGE, TL_SHEET_CORNERS };
 /* `side` x `side` vertices, 1 m square, the first row held by all or by its ends. It hangs from y = 0 in the
  * plane z = 0 as in its pattern, or lies in y = 0. */
 tl_garment tl_sheet_make(int side, enum tl_sheet_hold hold, bool lies);
+
+/* A strip of `columns` x 2 square cells that lies in y = 1, along +x from its clamp, which is at 0: the two
+ * columns of vertices half a cell before and after it are held, because the curvature of a hinge stands for
+ * half a cell on either side. `length_m`: from the clamp to the free end. Its length runs along the weft, or
+ * else along the warp. */
+tl_garment tl_strip_make(double length_m, int columns, bool is_warp);
+/* How far the free end hangs below the clamp, in lengths of the strip, where weight per area times length^3
+ * over bending stiffness is TL_STRIP_LOAD: the elastica B theta'' = -w (L - s) cos theta, theta(0) = 0,
+ * theta'(L) = 0 (solved in tests/cloth/energy/test_bending.c). */
+#define TL_STRIP_LOAD  8
+#define TL_STRIP_DROOP 0.64063
 
 /* A tube of `columns` cells around, hung by its rim at y = 0. Every vertex of a row is like its neighbours,
  * so that it hangs by rows: row j sinks by sum over i <= j of height_i (weight below row i) / (k columns

@@ -31,6 +31,10 @@ static const struct {
     {"cloth", "--no-cache --set cloth.edge_m=0.05"},
     {"folds", "--no-cache --garment skirt --set cloth.edge_m=0.03"},
     {"glossy", "--fabric none --set material.specular=[0.5,0.5,0.5] --set material.glossiness=0.95"},
+    {"sewn", "--no-cache --fabric denim --set cloth.edge_m=0.05"}, /* its warp is stiffer than its weft */
+    {"fuzz", "--fabric velvet"},
+    {"sheer", "--fabric voile"},
+    {"fold", "--fabric cotton_plain --garment skirt --set camera.pitch_deg=-20"},
     {"near", "--set camera.distance_m=1 --set camera.target=[0,1.2,0]"},
 };
 

@@ -2,7 +2,7 @@
 #include "tests/app/lab/verdicts.h"
 #include "tests/app/quick_session.h"
 
-#include "app/lab/check/check_fall.h"
+#include "app/lab/check/check_trials.h"
 #include "cloth/state.h"
 #include "config/log.h"
 
@@ -70,34 +70,70 @@ static void faults_of_cloth_are_named(void **state)
     tl_session_destroy(&session);
 }
 
-/* A garment falls as its closed form has it; one that is pulled, or that falls at another rate, does not. */
-static void a_fall_is_measured(void **state)
+/* What is known of the fabric's trials beforehand, and that wrong outcomes are named. */
+static void trials_are_measured(void **state)
 {
     (void)state;
     struct tl_settings settings = quick_settings(NULL);
-    struct tl_fall fall;
+    struct tl_trials trials;
     tl_error error = {0};
     tl_session *session = tl_session_create(&settings, &error);
     assert_ok(session != NULL, error);
-    assert_ok(tl_fall_measure(session, &settings, &fall, &error), error);
-    assert_false(fall.is_measured); /* it was not at rest */
+    assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+    assert_false(trials.fall.is_measured); /* it was not at rest */
+    assert_true(trials.droop.is_measured && trials.slide.is_measured);
     tl_session_destroy(&session);
     settings.cloth.settle_s = 10;
     session = tl_session_create(&settings, &error);
     assert_ok(session != NULL, error);
-    assert_ok(tl_fall_measure(session, &settings, &fall, &error), error);
-    assert_true(fall.is_measured);
-    assert_near(fall.expected_m, 9.81 * 0.0526, 0.03); /* less than g t^2 / 2 by what air takes */
+    assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+    assert_true(trials.fall.is_measured && trials.droop.is_measured && trials.slide.is_measured);
+    assert_near(trials.fall.expected_m, 9.81 * 0.0526, 0.03); /* less than g t^2 / 2 by what air takes */
     tl_frame frame = tl_session_frame(session);
     static const struct tl_render_settings unused;
-    struct tl_checked checked = {.number = 7, .frame = &frame, .settings = &unused, .fall = &fall};
+    struct tl_checked checked = {.number = 7, .frame = &frame, .settings = &unused, .trials = &trials};
     assert_clean(&checked);
-    const struct tl_fall fell = fall;
-    fall.fallen_m *= 1.03;
+    const struct tl_trials right = trials;
+    trials.fall.fallen_m *= 1.03;
     assert_breaks(&checked, "cloth.fall", "garment");
-    fall = fell;
-    fall.sideways_m = 0.02;
+    trials = right;
+    trials.fall.sideways_m = 0.02;
     assert_breaks(&checked, "cloth.fall", "sideways");
+    trials = right;
+    trials.droop.tip_m *= 0.95;
+    assert_breaks(&checked, "cloth.droop", "droops");
+    trials = right;
+    trials.slide.slid_m *= 1.06;
+    assert_breaks(&checked, "cloth.slide", "friction");
+    tl_session_destroy(&session);
+}
+
+/* Every solver passes the trials; a fabric that does not resist bending, and cloth without weight, have none.
+ */
+static void trials_of_every_solver(void **state)
+{
+    (void)state;
+    struct tl_settings settings = quick_settings(NULL);
+    struct tl_trials trials;
+    tl_error error = {0};
+    tl_session *session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
+        settings.cloth.solver = solver;
+        assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+        printf("%s: a strip along the %s droops by %.3f of %.3f mm, a sheet slides by %.4f of %.4f m\n",
+               tl_cloth_solver_names[solver], trials.droop.along, 1e3 * trials.droop.tip_m,
+               1e3 * trials.droop.expected_m, trials.slide.slid_m, trials.slide.expected_m);
+        assert_near(trials.droop.tip_m, trials.droop.expected_m, 0.03 * trials.droop.expected_m);
+        assert_near(trials.slide.slid_m, trials.slide.expected_m,
+                    (0.02 + trials.slide.tolerance) * trials.slide.expected_m);
+    }
+    settings.fabric.bend_weft = settings.fabric.bend_warp = 0;
+    assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+    assert_false(trials.droop.is_measured);
+    settings.cloth.gravity = 0;
+    assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+    assert_false(trials.slide.is_measured);
     tl_session_destroy(&session);
 }
 
@@ -106,7 +142,8 @@ int main(void)
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(faults_of_cloth_are_named),
-        cmocka_unit_test(a_fall_is_measured),
+        cmocka_unit_test(trials_are_measured),
+        cmocka_unit_test(trials_of_every_solver),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
