@@ -1,10 +1,12 @@
 #include "config/options.h"
 
 #include "config/hash.h"
+#include "config/log.h"
 #include "config/memory.h"
 #include "config/options_value.h"
 #include "config/words.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,6 +98,35 @@ static bool fail_key(const struct tl_binding *bindings, size_t count, const char
                    tl_excerpt_of(key).text, bindings[0].table->name, bindings[0].table->rows[0].name);
 }
 
+#define WARNED_MAX 64 /* lines; those beyond are written each time */
+
+/* Whether a line was not noted before: settings are read again whenever a layer of them changes. */
+static bool note_line(const char *line)
+{
+    static pthread_mutex_t guard = PTHREAD_MUTEX_INITIALIZER;
+    static uint64_t noted[WARNED_MAX];
+    static size_t count;
+    const uint64_t hash = tl_hash(TL_HASH_START, line, strlen(line));
+    bool is_new = true;
+    pthread_mutex_lock(&guard);
+    for (size_t i = 0; i < count; i++)
+        is_new = is_new && noted[i] != hash;
+    if (is_new && count < WARNED_MAX)
+        noted[count++] = hash;
+    pthread_mutex_unlock(&guard);
+    return is_new;
+}
+
+static void warn_of_remark(const struct tl_option *row, const char *text, const char *where, const char *key)
+{
+    char *remark = tl_option_remark(row, text);
+    char *line = tl_format("%s: %s: %s", where, key, remark ? remark : "");
+    if (remark && note_line(line))
+        tl_warn("%s", line);
+    free(line);
+    free(remark);
+}
+
 bool tl_options_set(const struct tl_binding *bindings, size_t count, const char *key, const char *text,
                     const char *where, const char *base_file, tl_error *error)
 {
@@ -113,8 +144,10 @@ bool tl_options_set(const struct tl_binding *bindings, size_t count, const char 
     if (!row)
         return fail_row(bindings, count, binding->table, dot + 1, where, error);
     char *reason = tl_option_read(row, text, base_file, (char *)binding->params + row->offset);
-    if (!reason)
+    if (!reason) {
+        warn_of_remark(row, text, where, key);
         return true;
+    }
     tl_fail(error, TL_USAGE, "%s: %s: %s", where, key, reason);
     free(reason);
     return false;

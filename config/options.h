@@ -17,10 +17,10 @@
  * option changes. A row without it does not compile.
  *
  * Field types by option type: TL_BOOL bool; TL_INT int; TL_FLOAT float; TL_DOUBLE double; TL_ENUM int (index
- * into `choices`); TL_COLOUR float[3] (linear Rec. 709, written [r, g, b]); TL_VECTOR float[3] (written
- * [x, y, z]); TL_STRING and TL_PATH char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the
- * file that names it. A TL_PATH with `choices` holds either one of these names, kept as it is, or a file
- * name; tl_option_is_file_name tells them apart.
+ * into `choices`); TL_COLOUR float[3] (linear Rec. 709); TL_VECTOR float[3] (written [x, y, z]); TL_STRING
+ * and TL_PATH char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the file that names it. A
+ * TL_PATH with `choices` holds either one of these names, kept as it is, or a file name;
+ * tl_option_is_file_name tells them apart.
  *
  * NaN and infinities are refused everywhere; so is text that is not printable UTF-8, so that every value can
  * be written into YAML and JSON and read back.
@@ -174,6 +174,11 @@ void tl_options_reset(const struct tl_binding *bindings, size_t count);
  * Errors: TL_USAGE; nothing is changed. Lifetime: the value is copied. Threads: pure. */
 bool tl_options_set(const struct tl_binding *bindings, size_t count, const char *key, const char *text,
                     const char *where, const char *base_file, tl_error *error);
+
+/* What should be reported about a text that tl_options_set takes: that a colour is drawn as another, and how
+ * much these differ. tl_options_set warns of it. Errors: none. Lifetime: a new string, which the caller
+ * frees; NULL for nothing. Threads: pure. */
+char *tl_option_remark(const struct tl_option *row, const char *text);
 
 /* Sets an option from "table.name=value", as --set takes it. Errors: TL_USAGE; nothing is changed. Lifetime:
  * the value is copied. Threads: pure. */

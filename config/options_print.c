@@ -44,9 +44,15 @@ static void print_cell(const char *text, FILE *out)
 
 void tl_options_print_reference(const struct tl_binding *bindings, size_t count, FILE *out)
 {
-    fputs("# Options\n\nEvery option can stand in a scene file, under its table, and on the command line as\n"
-          "`--set table.option=value`. This page is printed from the tables that the program itself reads.\n",
-          out);
+    fputs(
+        "# Options\n\nEvery option can stand in a scene file, under its table, and on the command line as\n"
+        "`--set table.option=value`. This page is printed from the tables that the program itself reads.\n\n"
+        "A colour is `[r, g, b]` in linear Rec. 709 (reflectances); `\"#a1b2c3\"` or `\"#abc\"`, which is "
+        "sRGB "
+        "and in a file\nneeds its quotation marks; `lab(L, a, b)` or `Lab L a b`, which is CIELAB under D65; "
+        "or a name of CSS, `navy`. A\nCIELAB colour that is too saturated for Rec. 709 keeps its lightness "
+        "and hue; a warning states what is drawn.\n",
+        out);
     for (size_t i = 0; i < count; i++) {
         const struct tl_option_table *table = bindings[i].table;
         struct tl_binding defaults = {table, tl_alloc(1, table->params_size)};

@@ -1,5 +1,5 @@
 /* Inside the option tables: one value as text and back, and how a row or a table is found and missed. Shared
- * by options.c, options_yaml.c and options_print.c; others use config/options.h. */
+ * by options*.c; others use config/options.h. */
 #ifndef TOILE_CONFIG_OPTIONS_VALUE_H
 #define TOILE_CONFIG_OPTIONS_VALUE_H
 
@@ -11,6 +11,17 @@ char *tl_option_expectation(const struct tl_option *row);
 /* Converts text to the row's type and stores it in the field. On failure the field is untouched and the
  * result is the reason, a new string; NULL means success. */
 char *tl_option_read(const struct tl_option *row, const char *text, const char *base_file, void *field);
+
+/* A number of plain digits in the C locale, whatever its range; neither NaN nor infinity. False for another
+ * text. */
+bool tl_option_parse_number(const char *text, double *value);
+
+/* True when the row's numbers are of single precision. */
+bool tl_option_is_single(const struct tl_option *row);
+
+/* Reason for a refusal: the text, what is wrong with it, what was expected, and the nearest word unless that
+ * is NULL. New string. */
+char *tl_option_refuse(const struct tl_option *row, const char *text, const char *fault, const char *near);
 
 /* Converts a field to text that tl_option_read accepts. New string. */
 char *tl_option_write(const struct tl_option *row, const void *field);

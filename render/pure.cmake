@@ -51,7 +51,6 @@ add_library(toile_light STATIC
   local/lamp_samples.c
   metrics/compare.c
   metrics/flip.c
-  metrics/lab.c
   pem/chain.c
   pem/lobe.c
   pem/lobe_error.c

@@ -3,6 +3,7 @@
 #include "app/cli/json.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
+#include "config/colour/srgb.h"
 #include "config/file.h"
 #include "config/memory.h"
 #include "render/inspect/aovs.h"

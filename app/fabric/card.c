@@ -118,7 +118,7 @@ static cJSON *json_of_colour(const struct tl_card_colour *colour)
         cJSON_AddItemToArray(lab, cJSON_CreateNumber(values[c]));
         cJSON_AddItemToArray(rgb, cJSON_CreateNumber((double)colour->rgb[c]));
     }
-    cJSON_AddStringToObject(object, "hex", colour->hex);
+    cJSON_AddStringToObject(object, "hex", colour->hex.text);
     return object;
 }
 

@@ -17,13 +17,8 @@
 
 struct tl_card_colour tl_card_colour_of(const float rgb[3])
 {
-    struct tl_card_colour colour = {.lab = tl_lab_of(rgb)};
-    unsigned bytes[3];
-    for (int c = 0; c < 3; c++) {
-        colour.rgb[c] = rgb[c];
-        bytes[c] = (unsigned)(255 * tl_srgb_from_linear(fminf(fmaxf(rgb[c], 0), 1)) + 0.5f);
-    }
-    snprintf(colour.hex, sizeof colour.hex, "#%02x%02x%02x", bytes[0] & 255, bytes[1] & 255, bytes[2] & 255);
+    struct tl_card_colour colour = {.lab = tl_lab_of(rgb), .hex = tl_hex_of(rgb)};
+    memcpy(colour.rgb, rgb, sizeof colour.rgb);
     return colour;
 }
 

@@ -4,7 +4,8 @@
 
 #include "app/fabric/fabric.h"
 #include "app/settings/settings.h"
-#include "render/metrics/lab.h"
+#include "config/colour/lab.h"
+#include "config/colour/srgb.h"
 
 #include <cairo.h>
 
@@ -26,7 +27,7 @@ struct tl_card_figure {
 struct tl_card_colour {
     float rgb[3]; /* linear */
     struct tl_lab lab;
-    char hex[8]; /* sRGB: "#a1b2c3" */
+    struct tl_hex hex;
 };
 
 struct tl_card {

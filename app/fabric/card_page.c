@@ -169,7 +169,7 @@ static void put_chip(cairo_t *cairo, double x, double y, const char *name,
                      const struct tl_card_colour *colour)
 {
     char text[64];
-    set_colour(cairo, (unsigned)strtoul(colour->hex + 1, NULL, 16));
+    set_colour(cairo, (unsigned)strtoul(colour->hex.text + 1, NULL, 16));
     cairo_rectangle(cairo, x, y, 22, 16);
     cairo_fill_preserve(cairo);
     set_colour(cairo, PALE); /* a white one shows, too */
@@ -178,7 +178,7 @@ static void put_chip(cairo_t *cairo, double x, double y, const char *name,
     put(cairo, x + 24, y, &plain, name);
     snprintf(text, sizeof text, "L* %.1f  a* %.1f  b* %.1f", colour->lab.l, colour->lab.a, colour->lab.b);
     put(cairo, x + 24, y + 4.6, &small, text);
-    put(cairo, x + 24, y + 8.6, &small, colour->hex);
+    put(cairo, x + 24, y + 8.6, &small, colour->hex.text);
 }
 
 static void put_colours(const struct tl_card *card, cairo_t *cairo, double x)

@@ -1,5 +1,6 @@
 #include "app/manual/manual.h"
 
+#include "config/colour/names.h"
 #include "config/embedded.h"
 #include "config/memory.h"
 
@@ -43,7 +44,9 @@ static const struct tl_option *find_option(const struct tl_manual *manual, const
 static void offer_values(const struct completion *completion, const struct tl_option *row, const char *prefix)
 {
     static const char *const truths[] = {"true", "false", NULL};
-    const char *const *choices = row->type == TL_BOOL ? truths : row->choices;
+    const char *const *choices = row->type == TL_BOOL     ? truths
+                                 : row->type == TL_COLOUR ? tl_colour_names
+                                                          : row->choices;
     if (row->type == TL_PATH)
         offer_files(completion);
     for (size_t i = 0; choices && choices[i]; i++) {

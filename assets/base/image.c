@@ -3,7 +3,6 @@
 #include "config/memory.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 
 tl_image tl_image_create(int width, int height, int channels, enum tl_image_type type)
@@ -35,14 +34,4 @@ bool tl_image_size_check(const char *name, int64_t width, int64_t height, tl_err
                        "%s: the image is %lld x %lld texels: scale it to at most %d a side and %zu in all",
                        name, (long long)width, (long long)height, TL_LIMIT_IMAGE_SIDE, TL_LIMIT_IMAGE_TEXELS);
     return true;
-}
-
-float tl_srgb_to_linear(float encoded)
-{
-    return encoded <= 0.04045f ? encoded / 12.92f : powf((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-float tl_srgb_from_linear(float linear)
-{
-    return linear <= 0.0031308f ? linear * 12.92f : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
 }

@@ -41,8 +41,4 @@ static inline uint8_t *tl_image_bytes(const tl_image *image)
     return (uint8_t *)image->texels;
 }
 
-/* sRGB transfer function, IEC 61966-2-1. */
-float tl_srgb_to_linear(float encoded);
-float tl_srgb_from_linear(float linear);
-
 #endif

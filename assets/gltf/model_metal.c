@@ -1,5 +1,6 @@
 /* Metalness that varies over a texture: the colours of both lobes become maps of their own. */
 #include "assets/gltf/model_internal.h"
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 #include "assets/gltf/model_internal.h"
 #include "assets/image/image_file.h"
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 
 #include <math.h>

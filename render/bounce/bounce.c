@@ -1,5 +1,6 @@
 #include "render/bounce/bounce.h"
 
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 #include "render/env/exponent.h"
 #include "render/trace/spread.h"

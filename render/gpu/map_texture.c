@@ -1,5 +1,6 @@
 #include "render/gpu/map_texture.h"
 
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 
 #include <math.h>

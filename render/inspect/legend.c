@@ -1,6 +1,6 @@
 #include "render/inspect/legend.h"
 
-#include "assets/base/image.h"
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 #include "render/inspect/paint.h"
 
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
 
 #include "render/metrics/flip.h"
 
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 
 #include <math.h>

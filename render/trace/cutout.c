@@ -1,5 +1,7 @@
 #include "render/trace/cutout.h"
 
+#include "config/colour/srgb.h"
+
 #include <math.h>
 
 /* Texel index along one side, wrapped as in GL. `at` is an integer. */

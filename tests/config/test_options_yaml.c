@@ -100,8 +100,8 @@ static void test_messages_name_line_and_key(void **state)
          "s.yaml:2: scene.tint: is a long or nested list: expected one value or [a, b, c]"},
         {"scene:\n  tint: [1, 1, 1, 1]\n",
          "s.yaml:2: scene.tint: is a long or nested list: expected one value or [a, b, c]"},
-        {"scene:\n  tint: []\n",
-         "s.yaml:2: scene.tint: [] is not a number: expected [r, g, b], each from 0 to 1 linear"},
+        {"scene:\n  tint: []\n", "s.yaml:2: scene.tint: [] is not a number: expected [r, g, b], each from 0 "
+                                 "to 1 linear, \"#rrggbb\", lab(L, a, b) or a CSS name"},
         {"light:\n  regions: 12\n  lobe: dual\n  regions: 24\n",
          "s.yaml:4: light.regions: is given twice, first on line 2: remove one"},
         {"light:\n  regions: 12\nscene:\n  title: a\nlight:\n  lobe: dual\n",

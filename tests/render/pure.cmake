@@ -13,7 +13,6 @@ foreach(name
     brdf/fuzz
     brdf/lobe_fit
     metrics/flip
-    metrics/lab
     surfaces/ground
     env/layout
     inspect/legend

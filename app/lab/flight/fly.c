@@ -1,6 +1,7 @@
 #include "app/lab/flight/fly.h"
 
 #include "app/measure/measure.h"
+#include "config/colour/srgb.h"
 #include "config/hash.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -5,6 +5,7 @@
 #include "app/report/canvas.h"
 #include "app/scene/session.h"
 #include "assets/image/image_file.h"
+#include "config/colour/srgb.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

@@ -1,6 +1,6 @@
 extern "C" {
 #include "app/view/panel/panel_rows_shim.h"
-#include "assets/base/image.h"
+#include "config/colour/srgb.h"
 }
 
 #include <imgui.h>

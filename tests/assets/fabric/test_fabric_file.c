@@ -7,6 +7,7 @@
 #include "config/file.h"
 #include "config/memory.h"
 
+#include "config/colour/srgb.h"
 #include "tests/testing.h"
 
 #include <string.h>

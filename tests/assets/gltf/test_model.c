@@ -5,6 +5,7 @@
 #include "assets/model_export.h"
 #include "config/memory.h"
 
+#include "config/colour/srgb.h"
 #include "tests/assets/small_glb.h"
 #include "tests/testing.h"
 

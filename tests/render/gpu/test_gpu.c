@@ -6,6 +6,7 @@
 
 #include <epoxy/gl.h>
 
+#include "config/colour/srgb.h"
 #include "tests/testing.h"
 
 #include <fcntl.h>

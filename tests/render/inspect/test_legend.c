@@ -2,6 +2,7 @@
  */
 #include "tests/testing.h"
 
+#include "config/colour/srgb.h"
 #include "config/memory.h"
 #include "render/inspect/legend.h"
 #include "render/inspect/paint.h"

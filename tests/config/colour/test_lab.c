@@ -2,7 +2,9 @@
  * so that each branch of the formula shows; and CIELAB of sRGB's primaries. */
 #include "tests/testing.h"
 
-#include "render/metrics/lab.h"
+#include "config/colour/lab.h"
+
+#include <math.h>
 
 static void test_published_pairs(void **state)
 {
@@ -58,9 +60,47 @@ static void test_primaries(void **state)
     }
 }
 
+/* Colours that Rec. 709 shows come back from their CIELAB: its cube's corners, edges and inside, and grey on
+ * both pieces of the curve. The tolerance is the last digit of the matrices' constants. */
+static void test_there_and_back(void **state)
+{
+    (void)state;
+    static const float steps[] = {0, 0.001f, 0.02f, 0.3f, 0.7f, 1};
+    enum { STEPS = sizeof steps / sizeof *steps };
+    for (int i = 0; i < STEPS * STEPS * STEPS; i++) {
+        const float rgb[3] = {steps[i % STEPS], steps[i / STEPS % STEPS], steps[i / STEPS / STEPS]};
+        float back[3];
+        assert_near(tl_lab_to_rgb(tl_lab_of(rgb), back), 1, 0);
+        for (int c = 0; c < 3; c++)
+            assert_near(back[c], rgb[c], 1e-6);
+    }
+}
+
+/* A colour beyond Rec. 709 keeps lightness and hue, and lies on the border: a channel is 0 or 1. */
+static void test_beyond_the_gamut(void **state)
+{
+    (void)state;
+    static const struct tl_lab beyond[] = {
+        {60, 90, 50}, {50, -100, 0}, {90, 0, 128}, {20, 60, -120}, {99, -40, -40}};
+    for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
+        float rgb[3];
+        const double scale = tl_lab_to_rgb(beyond[i], rgb);
+        assert_true(scale > 0 && scale < 1);
+        const struct tl_lab shown = tl_lab_of(rgb);
+        assert_near(shown.l, beyond[i].l, 0.01);
+        assert_near(shown.a, scale * beyond[i].a, 0.01);
+        assert_near(shown.b, scale * beyond[i].b, 0.01);
+        double nearest = 1;
+        for (int c = 0; c < 3; c++)
+            nearest = fmin(nearest, (double)fminf(rgb[c], 1 - rgb[c]));
+        assert_near(nearest, 0, 2e-6);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_published_pairs),
-                                       cmocka_unit_test(test_primaries)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_published_pairs), cmocka_unit_test(test_primaries),
+        cmocka_unit_test(test_there_and_back), cmocka_unit_test(test_beyond_the_gamut)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,10 @@
-/* Colours as CIELAB under D65, and their difference CIEDE2000.
+/* Colours as CIELAB of the standard observer of 1931 under D65, the white of Rec. 709, and their difference
+ * CIEDE2000.
  *
  * Sharma, Wu, Dalal: "The CIEDE2000 color-difference formula: implementation notes, supplementary test data,
  * and mathematical observations", Color Research and Application 30(1), 2005. Pure; threads: any. */
-#ifndef TOILE_RENDER_METRICS_LAB_H
-#define TOILE_RENDER_METRICS_LAB_H
+#ifndef TOILE_CONFIG_COLOUR_LAB_H
+#define TOILE_CONFIG_COLOUR_LAB_H
 
 struct tl_lab {
     double l, a, b; /* l: 0 black to 100 white */
@@ -11,6 +12,11 @@ struct tl_lab {
 
 /* Of linear Rec. 709; 1, 1, 1 is white. */
 struct tl_lab tl_lab_of(const float rgb[3]);
+
+/* Linear Rec. 709 of a colour whose l is in [0, 100]. One that Rec. 709 cannot show, because a channel would
+ * leave [0, 1], becomes the most saturated of its lightness and hue that it can: a and b are scaled. Returns
+ * the scale, 1 for a colour that is shown as it is. */
+double tl_lab_to_rgb(struct tl_lab lab, float rgb[3]);
 
 /* About 1 is the smallest difference that is seen side by side; under 2 few buyers object. */
 double tl_lab_difference(struct tl_lab p, struct tl_lab q);
