@@ -20,20 +20,10 @@
 #define HELP_MAX     96
 
 static const char *const favourites[] = {
-    "scene.garment",
-    "scene.motion",
-    "scene.avatar",
-    "scene.fabric",
-    "material.glossiness",
-    "scene.environment",
-    "scene.environment_yaw_deg",
-    "scene.preset",
-    "scene.colourway",
-    "image.view",
-    "light.method",
-    "light.regions",
-    "image.exposure_ev",
-    "image.background",
+    "scene.garment",       "scene.motion",      "scene.avatar",      "scene.fabric",
+    "material.glossiness", "material.diffuse",  "scene.environment", "scene.environment_yaw_deg",
+    "scene.preset",        "scene.colourway",   "image.view",        "light.method",
+    "light.regions",       "image.exposure_ev", "image.background",
 };
 
 static double megabytes(size_t bytes)
@@ -214,6 +204,10 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
                          const struct tl_settings *before, const struct tl_review_buttons *buttons)
 {
     review->editing = result->editing;
+    if (result->note.error.code != TL_OK)
+        tl_review_report_error(review, &result->note.error);
+    else if (result->note.remark[0])
+        tl_review_report(review, "%s", result->note.remark);
     if (result->changed && !tl_settings_equal(before, &review->wanted)) {
         tl_review_apply_names(review);
         tl_review_add_environment(review, review->wanted.scene.environment);

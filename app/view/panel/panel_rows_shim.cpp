@@ -1,7 +1,7 @@
 extern "C" {
 #include "app/view/panel/panel_rows_shim.h"
-#include "config/colour/srgb.h"
 }
+#include "app/view/panel/panel_colour_shim.h"
 
 #include <imgui.h>
 
@@ -149,20 +149,6 @@ bool keep_three(const tl_binding &binding, const tl_option &row, float value[3])
     return true;
 }
 
-/* Colours are linear in the table and encoded as sRGB in the widget. */
-bool edit_colour(const tl_binding &binding, const tl_option &row)
-{
-    float value[3];
-    memcpy(value, field_of(binding, row), sizeof value);
-    for (float &channel : value)
-        channel = tl_srgb_from_linear(channel);
-    if (!ImGui::ColorEdit3("##value", value, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_PickerHueWheel))
-        return false;
-    for (float &channel : value)
-        channel = tl_srgb_to_linear(channel);
-    return keep_three(binding, row, value);
-}
-
 bool edit_vector(const tl_binding &binding, const tl_option &row)
 {
     float value[3];
@@ -211,7 +197,7 @@ bool edit_text(const tl_binding &binding, const tl_option &row)
     return edited;
 }
 
-bool edit(const tl_binding &binding, const tl_option &row)
+bool edit(const tl_binding &binding, const tl_option &row, tl_panel_note &note)
 {
     switch (row.type) {
     case TL_BOOL:
@@ -224,7 +210,7 @@ bool edit(const tl_binding &binding, const tl_option &row)
     case TL_ENUM:
         return edit_choice(binding, row);
     case TL_COLOUR:
-        return edit_colour(binding, row);
+        return tl_panel_edit_colour(binding, row, note);
     case TL_VECTOR:
         return edit_vector(binding, row);
     case TL_STRING:
@@ -257,12 +243,16 @@ void explain(const tl_binding &binding, const tl_option &row)
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 25.0f);
     if (is_text(row) && field_of(binding, row)[0])
         ImGui::TextUnformatted(field_of(binding, row)); /* a path is often longer than its widget */
+    if (row.type == TL_COLOUR)
+        tl_panel_describe_colour(reinterpret_cast<const float *>(field_of(binding, row)));
     ImGui::TextUnformatted(row.help);
     ImGui::TextDisabled("%s.%s", binding.table->name, row.name);
     if (row.type == TL_INT || row.type == TL_FLOAT || row.type == TL_DOUBLE)
         ImGui::TextDisabled("%g to %g %s, by default %s", row.minimum, row.maximum, row.unit, text);
     else
         ImGui::TextDisabled("by default %s", text[0] ? text : "empty");
+    if (row.type == TL_COLOUR)
+        ImGui::TextDisabled("type #rrggbb, lab(L, a, b), a CSS name, or linear r, g, b");
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
     free(text);
@@ -295,7 +285,7 @@ void tl_panel_rows_end(void)
     ImGui::EndTable();
 }
 
-bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row)
+bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row, struct tl_panel_note *note)
 {
     const bool is_changed = tl_panel_row_changed(binding, row);
     const label name(*row);
@@ -311,7 +301,7 @@ bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row)
     bool explained = ImGui::IsItemHovered();
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-FLT_MIN);
-    bool edited = edit(*binding, *row);
+    bool edited = edit(*binding, *row, *note);
     explained = explained || (ImGui::IsItemHovered() && !ImGui::IsItemActive());
     if (explained)
         explain(*binding, *row);

@@ -3,11 +3,11 @@
 #ifndef TOILE_APP_VIEW_PANEL_PANEL_ROWS_SHIM_H
 #define TOILE_APP_VIEW_PANEL_PANEL_ROWS_SHIM_H
 
-#include "config/options.h"
+#include "app/view/panel/panel_shim.h"
 
 /* Label, widget and reset button of one option, as a row of the current three-column table. True when the
- * value was changed; it stays within the row's range. */
-bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row);
+ * value was changed; it stays within the row's range. What is wrong with a typed value is noted. */
+bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row, struct tl_panel_note *note);
 
 /* True when the option differs from its table's default. */
 bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_option *row);

@@ -98,7 +98,7 @@ void draw_timeline(const tl_panel_timeline &timeline, tl_panel_result &result)
 }
 
 /* "table.key" among the bindings. */
-bool draw_favourite(const tl_panel_input &input, const char *name)
+bool draw_favourite(const tl_panel_input &input, const char *name, tl_panel_note &note)
 {
     for (size_t i = 0; i < input.binding_count; i++) {
         const tl_option_table &table = *input.bindings[i].table;
@@ -107,7 +107,7 @@ bool draw_favourite(const tl_panel_input &input, const char *name)
             continue;
         for (size_t row = 0; row < table.row_count; row++)
             if (strcmp(name + prefix + 1, table.rows[row].name) == 0)
-                return tl_panel_row(&input.bindings[i], &table.rows[row]);
+                return tl_panel_row(&input.bindings[i], &table.rows[row], &note);
     }
     return false;
 }
@@ -118,7 +118,7 @@ void draw_front(const tl_panel_input &input, tl_panel_result &result)
         return;
     ImGui::PushID("favourites");
     for (size_t i = 0; i < input.favourite_count; i++)
-        result.changed |= draw_favourite(input, input.favourites[i]);
+        result.changed |= draw_favourite(input, input.favourites[i], result.note);
     ImGui::PopID();
     tl_panel_rows_end();
 }
@@ -163,7 +163,7 @@ void draw_table(const tl_binding &binding, tl_panel_result &result)
     if (!is_open || !tl_panel_rows_begin(table.name))
         return;
     for (size_t i = 0; i < table.row_count; i++)
-        result.changed |= tl_panel_row(&binding, &table.rows[i]);
+        result.changed |= tl_panel_row(&binding, &table.rows[i], &result.note);
     tl_panel_rows_end();
 }
 
@@ -321,7 +321,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1, -1, -1};
+    tl_panel_result result = {false, false, -1, -1, -1, {}};
     ImGui_ImplOpenGL3_NewFrame();
     note_texts(panel->fonts, *input);
     if (tl_panel_fonts_update(panel->fonts)) {

@@ -102,12 +102,19 @@ struct tl_panel_input {
     int x, y, width, height; /* the panel's place, framebuffer pixels; width 0: hidden */
 };
 
+/* What is to be reported about a value that was typed. */
+struct tl_panel_note {
+    tl_error error;   /* it is refused; TL_OK: it is not */
+    char remark[512]; /* tl_option_remark of one that was taken; "": none */
+};
+
 struct tl_panel_result {
     bool changed; /* an option was edited */
     bool editing; /* a widget is held or typed into: further edits are expected */
     int button;   /* index of the one that was pressed, -1 for none */
     int answer;   /* index of the one that was chosen, -1 for none */
     int frame;    /* that the timeline was moved to, -1 for none */
+    struct tl_panel_note note;
 };
 
 /* Installs its input callbacks, which call the window's own first. `gpu`: of the window's context. `scale`:
