@@ -78,6 +78,8 @@ static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error 
     tl_review_note_edit(review);
     tl_review_lap(review, "undo");
     tl_review_expire_message(review);
+    if (tl_thumbnails_follow(review->thumbnails, review->listed) && review->redraws == 0)
+        review->redraws = 1;
     if (review->redraws == 0 && !review->editing && !review->loader && !always_shows)
         return true;
     review->redraws -= review->redraws > 0;
@@ -197,6 +199,7 @@ static void close_review(struct tl_review *review, bool keeps_journal)
     tl_review_end_comparison(review);
     tl_renderer_destroy(&review->renderer);
     tl_panel_destroy(&review->panel);
+    tl_thumbnails_destroy(&review->thumbnails);
     tl_gpu_destroy(&review->gpu);
     tl_window_destroy(&review->window); /* before the loader, which may take a while to stop */
     tl_loader_cancel(&review->loader);
@@ -242,6 +245,7 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
     review->arguments = arguments;
     review->redraws = 1;
     review->reported_frame = -1;
+    review->thumbnails = tl_thumbnails_create(tl_window_wake);
     review->output_folder = arguments->screenshots ? arguments->screenshots : ".";
     bool done = open_review(review, error), loading = !done;
     if (done) {

@@ -231,7 +231,9 @@ void tl_act_back(struct tl_review *review, int argument)
     (void)argument;
     if (tl_review_cancel_question(review))
         return;
-    if (tl_panel_wants_keys(review->panel))
+    if (tl_panel_close(review->panel))
+        review->redraws = 3;
+    else if (tl_panel_wants_keys(review->panel))
         tl_panel_use_keys(review->panel, false);
     else if (review->help_shown)
         review->help_shown = false;

@@ -204,6 +204,7 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
                          const struct tl_settings *before, const struct tl_review_buttons *buttons)
 {
     review->editing = result->editing;
+    review->listed = result->listed;
     if (result->note.error.code != TL_OK)
         tl_review_report_error(review, &result->note.error);
     else if (result->note.remark[0])
@@ -331,6 +332,10 @@ void tl_review_build_panel(struct tl_review *review)
         .width = tl_review_panel_width(review),
         .height = height,
     };
+    input.list.row = review->listed;
+    input.list.images = tl_thumbnails_images(review->thumbnails, &input.list.count);
+    if (!input.list.images)
+        input.list.row = NULL;
     set_question(review, &question, &input);
     struct tl_settings before = review->wanted;
     bool had_panel = review->params.panel;

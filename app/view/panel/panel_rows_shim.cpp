@@ -2,6 +2,7 @@ extern "C" {
 #include "app/view/panel/panel_rows_shim.h"
 }
 #include "app/view/panel/panel_colour_shim.h"
+#include "app/view/panel/panel_pictures_shim.h"
 
 #include <imgui.h>
 
@@ -175,7 +176,24 @@ void show_file_name(const char *path)
     list->PopClipRect();
 }
 
-bool edit_text(const tl_binding &binding, const tl_option &row)
+bool choose(const tl_option &row, char *field, tl_panel_pictures *pictures)
+{
+    bool edited = false;
+    for (int i = 0; row.choices[i]; i++) {
+        const bool has_picture = tl_panel_pictures_draw(pictures, row, static_cast<size_t>(i));
+        const float height = has_picture ? ImGui::GetItemRectSize().y : 0;
+        if (has_picture)
+            ImGui::SameLine();
+        if (ImGui::Selectable(row.choices[i], strcmp(row.choices[i], field) == 0, 0, ImVec2(0, height))) {
+            snprintf(field, TL_STRING_SIZE, "%s", row.choices[i]);
+            edited = true;
+        }
+    }
+    return edited;
+}
+
+bool edit_text(const tl_binding &binding, const tl_option &row, tl_panel_pictures *pictures,
+               tl_panel_result &result)
 {
     char *field = field_of(binding, row);
     if (row.choices) /* leaves room for the list's arrow */
@@ -186,18 +204,20 @@ bool edit_text(const tl_binding &binding, const tl_option &row)
     if (!row.choices)
         return edited;
     ImGui::SameLine(0, 0);
-    if (!ImGui::BeginCombo("##choices", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft))
+    if (!ImGui::BeginCombo("##choices", "",
+                           ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft |
+                               ImGuiComboFlags_HeightLarge))
         return edited;
-    for (int i = 0; row.choices[i]; i++)
-        if (ImGui::Selectable(row.choices[i], strcmp(row.choices[i], field) == 0)) {
-            snprintf(field, TL_STRING_SIZE, "%s", row.choices[i]);
-            edited = true;
-        }
+    result.listed = &row;
+    ImGui::PushStyleVar(ImGuiStyleVar_SelectableTextAlign, ImVec2(0, 0.5f));
+    edited = choose(row, field, pictures) || edited;
+    ImGui::PopStyleVar();
     ImGui::EndCombo();
     return edited;
 }
 
-bool edit(const tl_binding &binding, const tl_option &row, tl_panel_note &note)
+bool edit(const tl_binding &binding, const tl_option &row, tl_panel_pictures *pictures,
+          tl_panel_result &result)
 {
     switch (row.type) {
     case TL_BOOL:
@@ -210,14 +230,14 @@ bool edit(const tl_binding &binding, const tl_option &row, tl_panel_note &note)
     case TL_ENUM:
         return edit_choice(binding, row);
     case TL_COLOUR:
-        return tl_panel_edit_colour(binding, row, note);
+        return tl_panel_edit_colour(binding, row, result.note);
     case TL_VECTOR:
         return edit_vector(binding, row);
     case TL_STRING:
     case TL_PATH:
         break;
     }
-    return edit_text(binding, row);
+    return edit_text(binding, row, pictures, result);
 }
 
 /* An option's name as a label: spaces for underscores, without the unit, which its widget shows. */
@@ -285,7 +305,8 @@ void tl_panel_rows_end(void)
     ImGui::EndTable();
 }
 
-bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row, struct tl_panel_note *note)
+bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row,
+                  struct tl_panel_pictures *pictures, struct tl_panel_result *result)
 {
     const bool is_changed = tl_panel_row_changed(binding, row);
     const label name(*row);
@@ -301,7 +322,7 @@ bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row,
     bool explained = ImGui::IsItemHovered();
     ImGui::TableNextColumn();
     ImGui::SetNextItemWidth(-FLT_MIN);
-    bool edited = edit(*binding, *row, *note);
+    bool edited = edit(*binding, *row, pictures, *result);
     explained = explained || (ImGui::IsItemHovered() && !ImGui::IsItemActive());
     if (explained)
         explain(*binding, *row);

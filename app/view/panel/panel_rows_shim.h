@@ -5,9 +5,13 @@
 
 #include "app/view/panel/panel_shim.h"
 
+struct tl_panel_pictures;
+
 /* Label, widget and reset button of one option, as a row of the current three-column table. True when the
- * value was changed; it stays within the row's range. What is wrong with a typed value is noted. */
-bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row, struct tl_panel_note *note);
+ * value was changed; it stays within the row's range. `result` gets what
+ * is to be reported, and the option whose list is open. */
+bool tl_panel_row(const struct tl_binding *binding, const struct tl_option *row,
+                  struct tl_panel_pictures *pictures, struct tl_panel_result *result);
 
 /* True when the option differs from its table's default. */
 bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_option *row);

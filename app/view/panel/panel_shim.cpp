@@ -5,11 +5,13 @@ extern "C" {
 #include "app/view/panel/panel_column_shim.h"
 #include "app/view/panel/panel_font_shim.h"
 #include "app/view/panel/panel_overlay_shim.h"
+#include "app/view/panel/panel_pictures_shim.h"
 #include "app/view/panel/panel_text_shim.h"
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <cfloat>
 #include <cstdio>
@@ -19,6 +21,7 @@ extern "C" {
 struct tl_panel {
     tl_panel_fonts *fonts;
     tl_panel_column *column;
+    tl_panel_pictures *pictures;
     tl_panel_column_place place;    /* of the last frame that was built */
     bool has_platform, has_drawing; /* whether ImGui's backends are initialised */
     bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
@@ -98,7 +101,8 @@ void draw_timeline(const tl_panel_timeline &timeline, tl_panel_result &result)
 }
 
 /* "table.key" among the bindings. */
-bool draw_favourite(const tl_panel_input &input, const char *name, tl_panel_note &note)
+bool draw_favourite(const tl_panel &panel, const tl_panel_input &input, const char *name,
+                    tl_panel_result &result)
 {
     for (size_t i = 0; i < input.binding_count; i++) {
         const tl_option_table &table = *input.bindings[i].table;
@@ -107,18 +111,18 @@ bool draw_favourite(const tl_panel_input &input, const char *name, tl_panel_note
             continue;
         for (size_t row = 0; row < table.row_count; row++)
             if (strcmp(name + prefix + 1, table.rows[row].name) == 0)
-                return tl_panel_row(&input.bindings[i], &table.rows[row], &note);
+                return tl_panel_row(&input.bindings[i], &table.rows[row], panel.pictures, &result);
     }
     return false;
 }
 
-void draw_front(const tl_panel_input &input, tl_panel_result &result)
+void draw_front(const tl_panel &panel, const tl_panel_input &input, tl_panel_result &result)
 {
     if (!tl_panel_rows_begin("front"))
         return;
     ImGui::PushID("favourites");
     for (size_t i = 0; i < input.favourite_count; i++)
-        result.changed |= draw_favourite(input, input.favourites[i], result.note);
+        result.changed |= draw_favourite(panel, input, input.favourites[i], result);
     ImGui::PopID();
     tl_panel_rows_end();
 }
@@ -146,7 +150,7 @@ void draw_lines(const tl_panel_lines &group)
     ImGui::EndTable();
 }
 
-void draw_table(const tl_binding &binding, tl_panel_result &result)
+void draw_table(const tl_panel &panel, const tl_binding &binding, tl_panel_result &result)
 {
     const tl_option_table &table = *binding.table;
     int changed_count = 0;
@@ -163,7 +167,7 @@ void draw_table(const tl_binding &binding, tl_panel_result &result)
     if (!is_open || !tl_panel_rows_begin(table.name))
         return;
     for (size_t i = 0; i < table.row_count; i++)
-        result.changed |= tl_panel_row(&binding, &table.rows[i], &result.note);
+        result.changed |= tl_panel_row(&binding, &table.rows[i], panel.pictures, &result);
     tl_panel_rows_end();
 }
 
@@ -189,14 +193,14 @@ void draw_panel(tl_panel &panel, const tl_panel_input &input, tl_panel_result &r
     draw_timeline(input.timeline, result);
     tl_panel_strip_draw(input.strip);
     ImGui::Separator();
-    draw_front(input, result);
+    draw_front(panel, input, result);
     ImGui::Separator();
     for (size_t i = 0; i < input.measure_count; i++)
         draw_lines(input.measures[i]);
     ImGui::Separator();
     ImGui::TextDisabled("All options");
     for (size_t i = 0; i < input.binding_count; i++)
-        draw_table(input.bindings[i], result);
+        draw_table(panel, input.bindings[i], result);
     ImGui::PopAllowKeyboardFocus();
     ImGui::End();
 }
@@ -266,6 +270,7 @@ struct tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float s
     ImGui::GetIO().IniFilename = nullptr; /* ImGui must not write a file of its own */
     panel->fonts = tl_panel_fonts_create(font_size * scale, scale);
     panel->column = tl_panel_column_create(gpu);
+    panel->pictures = tl_panel_pictures_create(gpu);
     choose_style(scale);
     panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, true);
     panel->has_drawing = panel->has_platform && ImGui_ImplOpenGL3_Init("#version 450 core");
@@ -285,6 +290,7 @@ void tl_panel_destroy(tl_panel **panel)
     if ((*panel)->has_platform)
         ImGui_ImplGlfw_Shutdown();
     tl_panel_column_destroy(&(*panel)->column);
+    tl_panel_pictures_destroy(&(*panel)->pictures);
     tl_panel_fonts_destroy(&(*panel)->fonts);
     ImGui::DestroyContext();
     delete *panel;
@@ -309,6 +315,15 @@ void tl_panel_press(tl_panel *panel, int key)
         panel->pressed[panel->pressed_count++] = key;
 }
 
+bool tl_panel_close(tl_panel *panel)
+{
+    (void)panel;
+    if (!ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+        return false;
+    ImGui::ClosePopupToLevel(0, true);
+    return true;
+}
+
 void tl_panel_use_keys(tl_panel *panel, bool used)
 {
     ImGuiIO &io = ImGui::GetIO();
@@ -321,7 +336,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1, -1, -1, {}};
+    tl_panel_result result = {false, false, -1, -1, -1, {}, nullptr};
     ImGui_ImplOpenGL3_NewFrame();
     note_texts(panel->fonts, *input);
     if (tl_panel_fonts_update(panel->fonts)) {
@@ -333,6 +348,7 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
     hold_keys(*panel, true);
     ImGui::NewFrame();
     tl_panel_forget_text();
+    tl_panel_pictures_follow(panel->pictures, input->list);
     panel->place = {};
     if (input->width > 0)
         draw_panel(*panel, *input, result);

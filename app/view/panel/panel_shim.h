@@ -8,6 +8,7 @@
 #ifndef TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 #define TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 
+#include "assets/base/image.h"
 #include "config/options.h"
 #include "render/gpu/gpu.h"
 
@@ -70,6 +71,13 @@ struct tl_panel_progress {
     const char *hint; /* the key that stops it */
 };
 
+/* Pictures of an option's choices, the first `count` of them. Empty images stand for no picture. */
+struct tl_panel_list {
+    const struct tl_option *row; /* NULL: no list has pictures */
+    const tl_image *images;      /* U8 x4, sRGB; their texels stay as they are until the panel is destroyed */
+    size_t count;
+};
+
 struct tl_panel_input {
     const char *title;
     const char *message; /* the last report, or ""; over the view */
@@ -92,6 +100,7 @@ struct tl_panel_input {
     size_t measure_count;
     const struct tl_binding *bindings;
     size_t binding_count;
+    struct tl_panel_list list; /* that was open in the last frame */
     const struct tl_panel_line
         *help; /* keys and what they do, or a heading; drawn over the view when there are any */
     size_t help_count;
@@ -115,6 +124,7 @@ struct tl_panel_result {
     int answer;   /* index of the one that was chosen, -1 for none */
     int frame;    /* that the timeline was moved to, -1 for none */
     struct tl_panel_note note;
+    const struct tl_option *listed; /* whose list of choices is open; NULL: none */
 };
 
 /* Installs its input callbacks, which call the window's own first. `gpu`: of the window's context. `scale`:
@@ -126,6 +136,8 @@ bool tl_panel_wants_pointer(const tl_panel *panel);
 bool tl_panel_wants_keys(const tl_panel *panel);
 /* Passes a key (GLFW_KEY_*) to the next frame, even if it was released before that frame. */
 void tl_panel_press(tl_panel *panel, int key);
+/* Closes the open list or picker. False when there is none. */
+bool tl_panel_close(tl_panel *panel);
 /* Turns keyboard navigation of the panel's widgets on or off. */
 void tl_panel_use_keys(tl_panel *panel, bool used);
 

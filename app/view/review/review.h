@@ -30,6 +30,7 @@
 #include "app/view/memory/state.h"
 #include "app/view/panel/panel_shim.h"
 #include "app/view/review/loader.h"
+#include "app/view/thumbnails/thumbnails.h"
 #include "app/view/window/file_chooser.h"
 #include "app/view/window/file_watch.h"
 #include "app/view/window/frame_times.h"
@@ -119,6 +120,8 @@ struct tl_review {
     tl_window *window;
     tl_gpu *gpu;
     tl_panel *panel;
+    tl_thumbnails *thumbnails;
+    const struct tl_option *listed; /* whose list of choices is open in the panel; NULL: none */
     tl_renderer *renderer;
     tl_session *session;
     tl_loader *loader;                    /* NULL: nothing is loading */

@@ -15,7 +15,7 @@ check "the second shows the same" cmp first.exr second.exr
 check "and kept nothing more" [ "$(count)" = 1 ]
 check "it used what was kept" [ "$(ls -l --time-style=full-iso "$XDG_CACHE_HOME/toile/drapes")" != "$kept" ]
 "$TOILE" cache --clear >cleared
-check "cleared" grep -q '^1 drapes removed' cleared
+check "cleared" grep -q '^1 drapes and thumbnails removed' cleared
 render third --no-cache
 check "without the cache nothing is kept" [ "$(count)" = 0 ]
 check "and the image is the same" cmp first.exr third.exr
