@@ -43,6 +43,17 @@ shoot # 4: light from elsewhere
 
 press shift+2 "view 2 saved"
 press "Left Left Page_Up 3" "view 3 is empty"
+xdotool mousemove 1180 296 click 1; sleep 0.5 # the fabric's colour, by name
+xdotool key ctrl+a
+xdotool type navy
+xdotool key Return
+xdotool mousemove 450 300
+sleep 1
+press ctrl+z "undone: material.diffuse"
+xdotool mousemove 1232 246 click 1 # the list of fabrics
+logged "thumbnail of none"
+xdotool key Escape
+xdotool mousemove 450 300
 press 2 "view: view 2"
 press t "turntable turns"
 press shift+k "records the camera"
