@@ -86,7 +86,8 @@ static const struct tl_command commands[] = {
      "map it "
      "bakes normal, offset, horizon and gloss maps, and prints their size and scale.",
      TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC | TL_FLAGS_JSON, tl_command_fabric},
-    {"cache", "cache [--clear] [--json]", "Lists the drapes and thumbnails that are kept for reuse, or removes them.",
+    {"cache", "cache [--clear] [--json]",
+     "Lists the drapes and thumbnails that are kept for reuse, or removes them.",
      TL_FLAGS_JSON | TL_FLAGS_CLEAR, tl_command_cache},
     {"info", "info FILE|fabrics|presets|garments [--json]",
      "Prints what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,

@@ -205,6 +205,9 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
 {
     review->editing = result->editing;
     review->listed = result->listed;
+    if (review->panel_has_keys != tl_panel_wants_keys(review->panel))
+        tl_debug("view: keys go to the %s", review->panel_has_keys ? "view" : "panel");
+    review->panel_has_keys = tl_panel_wants_keys(review->panel);
     if (result->note.error.code != TL_OK)
         tl_review_report_error(review, &result->note.error);
     else if (result->note.remark[0])

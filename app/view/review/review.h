@@ -121,6 +121,7 @@ struct tl_review {
     tl_gpu *gpu;
     tl_panel *panel;
     tl_thumbnails *thumbnails;
+    bool panel_has_keys;            /* a field is typed into */
     const struct tl_option *listed; /* whose list of choices is open in the panel; NULL: none */
     tl_renderer *renderer;
     tl_session *session;

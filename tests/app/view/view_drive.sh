@@ -43,10 +43,12 @@ shoot # 4: light from elsewhere
 
 press shift+2 "view 2 saved"
 press "Left Left Page_Up 3" "view 3 is empty"
-xdotool mousemove 1180 296 click 1; sleep 0.5 # the fabric's colour, by name
+xdotool mousemove 1180 296 click 1 # the fabric's colour, by name
+logged "keys go to the panel"
 xdotool key ctrl+a
 xdotool type navy
 xdotool key Return
+logged "keys go to the view"
 xdotool mousemove 450 300
 sleep 1
 press ctrl+z "undone: material.diffuse"
