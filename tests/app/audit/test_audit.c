@@ -190,6 +190,17 @@ static void triangles(void **state)
     assert_int_equal(finding->place.triangle, 2 * SIDE * SIDE);
     assert_non_null(strstr(finding->message, "on a line"));
     tl_audit_release(&audit);
+    /* Lower than a ten-thousandth of its longest side, or higher. */
+    for (int higher = 0; higher < 2; higher++) {
+        sheet = plain_sheet();
+        int tip = add_place(&sheet, 0.1, higher ? -4e-5 : -1e-5, 0);
+        add_triangle(&sheet, 0, tip, 2);
+        sheet.has_uvs = false;
+        audit = audit_sheet(&sheet);
+        audit.counts[TL_AUDIT_SEAM_OPEN] = 0; /* its long side lies along two of the sheet's */
+        expect(&audit, TL_AUDIT_TRIANGLE_DEGENERATE, !higher);
+        tl_audit_release(&audit);
+    }
     sheet = plain_sheet();
     add_triangle(&sheet, 7, 7, 8);
     audit = audit_sheet(&sheet);
@@ -209,6 +220,10 @@ static void triangles(void **state)
     add_triangle(&sheet, ROW + 1, ROW + 2, add_place(&sheet, 0.15, 0.1, 0.05));
     audit = audit_sheet(&sheet);
     expect(&audit, TL_AUDIT_EDGE_CROWDED, 1);
+    tl_audit_release(&audit);
+    add_triangle(&sheet, 3 * ROW + 2, 3 * ROW + 3, add_place(&sheet, 0.25, 0.3, 0.05)); /* another, apart */
+    audit = audit_sheet(&sheet);
+    expect(&audit, TL_AUDIT_EDGE_CROWDED, 2);
     tl_audit_release(&audit);
 }
 
@@ -347,6 +362,13 @@ static void a_folded_pattern(void **state)
     sheet.triangles[0][2] = inner;
     add_triangle(&sheet, 1, ROW + 1, inner);
     add_triangle(&sheet, ROW + 1, 0, inner);
+    /* Turned over in space and in the pattern, it is one fault, not two. */
+    struct sheet turned = sheet;
+    turned.triangles[0][0] = sheet.triangles[0][1];
+    turned.triangles[0][1] = sheet.triangles[0][0];
+    tl_audit of_turned = audit_sheet(&turned);
+    expect(&of_turned, TL_AUDIT_TRIANGLE_FLIPPED, 1);
+    tl_audit_release(&of_turned);
     write_sheet("audit.obj", &sheet, "");
     tl_garment garment = {0};
     tl_error error = {0};
