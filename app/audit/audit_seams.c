@@ -27,34 +27,55 @@ struct border {
     unsigned found; /* bit i: sample i lies at another border */
 };
 
-static size_t find_borders(const tl_mesh *mesh, const struct tl_topology *topology, struct border *out)
+/* The number of triangles at each edge of the topology; 2: or more. */
+static uint8_t *count_triangles(const struct tl_topology *topology)
 {
     uint8_t *counts = TL_NEW_ARRAY(uint8_t, topology->edge_count);
-    size_t count = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (uint32_t i = 0; i < 3 * topology->triangle_count; i++) {
-            const uint32_t *corners = topology->triangles[i / 3];
-            uint32_t ends[2] = {corners[i % 3], corners[(i + 1) % 3]};
-            uint32_t edge = tl_topology_edge(topology, ends[0], ends[1]), source = topology->source[i / 3];
-            if (pass == 0) {
-                counts[edge] = counts[edge] < 2 ? (uint8_t)(counts[edge] + 1) : 2;
-                continue;
-            }
-            vec3d from = vec3d_from(audit_corner(mesh, source, i % 3)),
-                  to = vec3d_from(audit_corner(mesh, source, (i + 1) % 3)),
-                  far = vec3d_from(audit_corner(mesh, source, (i + 2) % 3));
-            double length = vec3d_distance(from, to);
-            if (counts[edge] != 1 || length == 0)
-                continue;
-            vec3d along = vec3d_scale(vec3d_sub(to, from), 1 / length), arm = vec3d_sub(far, from);
-            vec3d inwards = vec3d_muladd(arm, along, -vec3d_dot(arm, along));
-            double height = vec3d_norm(inwards);
-            if (height > 0)
-                out[count++] = (struct border){
-                    i / 3, {ends[0], ends[1]}, from, along, vec3d_scale(inwards, 1 / height), length, 0, 0};
-        }
+    for (uint32_t i = 0; i < 3 * topology->triangle_count; i++) {
+        const uint32_t *corners = topology->triangles[i / 3];
+        uint32_t edge = tl_topology_edge(topology, corners[i % 3], corners[(i + 1) % 3]);
+        counts[edge] = counts[edge] < 2 ? (uint8_t)(counts[edge] + 1) : 2;
+    }
+    return counts;
+}
+
+/* The border from corner k of a triangle; false where it or the triangle has no extent. */
+static bool make_border(const tl_mesh *mesh, const struct tl_topology *topology, uint32_t triangle,
+                        uint32_t k, struct border *out)
+{
+    uint32_t source = topology->source[triangle];
+    vec3d from = vec3d_from(audit_corner(mesh, source, k)),
+          to = vec3d_from(audit_corner(mesh, source, (k + 1) % 3)),
+          far = vec3d_from(audit_corner(mesh, source, (k + 2) % 3));
+    *out = (struct border){.triangle = triangle, .from = from, .length = vec3d_distance(from, to)};
+    out->ends[0] = topology->triangles[triangle][k];
+    out->ends[1] = topology->triangles[triangle][(k + 1) % 3];
+    if (out->length == 0)
+        return false;
+    out->along = vec3d_scale(vec3d_sub(to, from), 1 / out->length);
+    vec3d arm = vec3d_sub(far, from), across = vec3d_muladd(arm, out->along, -vec3d_dot(arm, out->along));
+    double height = vec3d_norm(across);
+    out->inwards = vec3d_scale(across, height > 0 ? 1 / height : 0);
+    return height > 0;
+}
+
+/* A new array of the borders. */
+static struct border *find_borders(const tl_mesh *mesh, const struct tl_topology *topology, size_t *count)
+{
+    uint8_t *counts = count_triangles(topology);
+    size_t most = 0;
+    for (size_t e = 0; e < topology->edge_count; e++)
+        most += counts[e] == 1;
+    struct border *borders = TL_NEW_ARRAY(struct border, most);
+    *count = 0;
+    for (uint32_t i = 0; *count < most && i < 3 * topology->triangle_count; i++) {
+        const uint32_t *corners = topology->triangles[i / 3];
+        uint32_t edge = tl_topology_edge(topology, corners[i % 3], corners[(i + 1) % 3]);
+        if (counts[edge] == 1)
+            *count += make_border(mesh, topology, i / 3, i % 3, &borders[*count]);
+    }
     free(counts);
-    return count;
+    return borders;
 }
 
 /* Marks the samples of one border that lie at another one; returns whether there is one. */
@@ -157,8 +178,8 @@ void audit_seams(tl_audit *audit, const tl_garment *garment)
     size_t sewn = tl_sewn_weld(garment, weld);
     struct tl_topology topology =
         tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, sewn);
-    struct border *borders = TL_NEW_ARRAY(struct border, 3 * topology.triangle_count);
-    size_t count = find_borders(mesh, &topology, borders);
+    size_t count;
+    struct border *borders = find_borders(mesh, &topology, &count);
     struct tl_near_pairs pairs = near_pairs(borders, count);
     uint32_t *sets = tl_sets_create(count);
     for (size_t i = 0; i < pairs.count; i++) {
