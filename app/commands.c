@@ -89,9 +89,10 @@ static const struct tl_command commands[] = {
     {"cache", "cache [--clear] [--json]",
      "Lists the drapes and thumbnails that are kept for reuse, or removes them.",
      TL_FLAGS_JSON | TL_FLAGS_CLEAR, tl_command_cache},
-    {"info", "info FILE|fabrics|presets|garments [--json]",
-     "Prints what a file holds and how it will be read, or lists what is built in.", TL_FLAGS_JSON,
-     tl_command_info},
+    {"info", "info FILE|fabrics|presets|garments|findings [--strict] [--json]",
+     "Prints what a file holds, how it will be read, and what is wrong with it; or lists what is built in. "
+     "findings: the codes of what can be wrong.",
+     TL_FLAGS_JSON | TL_FLAGS_STRICT, tl_command_info},
     {"help",
      "help [COMMAND|options|reference]\n       toile help man [COMMAND]\n       toile help complete LINE",
      "Lists the commands, explains one, or prints every option (reference: as a Markdown page; man: as a "

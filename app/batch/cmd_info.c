@@ -1,4 +1,5 @@
 /* toile info: prints what a file holds and how it is read, or what is built in. */
+#include "app/audit/audit_json.h"
 #include "app/batch/commands.h"
 #include "app/batch/info_garment.h"
 #include "app/cli/json.h"
@@ -42,9 +43,12 @@ static void print_value(const cJSON *value, int indent)
     }
 }
 
-static void print_object(cJSON *object, bool json)
+/* audit NULL: what was described is no file. */
+static void print_object(cJSON *object, const tl_audit *audit, bool json)
 {
     if (json) {
+        if (audit)
+            tl_audit_add_json(audit, object);
         tl_json_print(object);
         return;
     }
@@ -55,6 +59,8 @@ static void print_object(cJSON *object, bool json)
         print_value(child, 0);
     }
     cJSON_Delete(object);
+    if (audit)
+        tl_audit_print(audit, stdout);
 }
 
 static cJSON *describe_vector(vec3s vector)
@@ -171,7 +177,7 @@ static void describe_pins(cJSON *object, const tl_model *model)
         cJSON_AddNumberToObject(colours, tl_pin_colour_names[TL_PIN_RED + channel], (double)painted[channel]);
 }
 
-static cJSON *describe_model(tl_model *model)
+static cJSON *describe_model(tl_model *model, tl_audit *audit)
 {
     cJSON *object = cJSON_CreateObject();
     struct tl_box box = tl_box_of(model->mesh.positions, model->mesh.vertex_count);
@@ -185,7 +191,7 @@ static cJSON *describe_model(tl_model *model)
     describe_units(object, model);
     cJSON_AddItemToObject(object, "lower_m", describe_vector(box.lower));
     cJSON_AddItemToObject(object, "upper_m", describe_vector(box.upper));
-    tl_info_describe_garment(object, model);
+    tl_info_describe_garment(object, model, audit);
     cJSON *materials = cJSON_AddArrayToObject(object, "materials");
     for (size_t i = 0; i < model->material_count; i++)
         cJSON_AddItemToArray(materials, describe_material(model, i));
@@ -200,66 +206,6 @@ static cJSON *describe_model(tl_model *model)
     describe_notes(object, "defects", model->defects, model->defect_count);
     describe_notes(object, "approximated", model->approximated, model->approximated_count);
     describe_notes(object, "ignored", model->ignored, model->ignored_count);
-    return object;
-}
-
-/* Counts the edges of each label, in the order of their first. */
-static void describe_labels(cJSON *object, const tl_pattern *pattern)
-{
-    cJSON *labels = cJSON_AddObjectToObject(object, "labels");
-    for (size_t p = 0; p < pattern->panel_count; p++) {
-        for (size_t e = 0; e < pattern->panels[p].edge_count; e++) {
-            const char *label = pattern->panels[p].edges[e].label;
-            cJSON *count = cJSON_GetObjectItemCaseSensitive(labels, label);
-            if (count)
-                cJSON_SetNumberValue(count, count->valuedouble + 1);
-            else if (label[0] != '\0')
-                cJSON_AddNumberToObject(labels, label, 1);
-        }
-    }
-}
-
-static double panel_outline(const struct tl_pattern_panel *panel)
-{
-    double length = 0;
-    for (size_t e = 0; e < panel->edge_count; e++)
-        length += tl_pattern_edge_length(&panel->edges[e]);
-    return length;
-}
-
-/* Describes a sewing pattern, with the seams that gather or ease by more than rounding. */
-static cJSON *describe_pattern(const tl_pattern *pattern)
-{
-    const double noticed = 0.01;
-    cJSON *object = cJSON_CreateObject();
-    cJSON_AddStringToObject(object, "kind", "pattern");
-    cJSON_AddStringToObject(object, "name", pattern->name);
-    cJSON *panels = cJSON_AddObjectToObject(object, "panels");
-    for (size_t p = 0; p < pattern->panel_count; p++) {
-        const struct tl_pattern_panel *panel = &pattern->panels[p];
-        cJSON *item = cJSON_AddObjectToObject(panels, panel->name);
-        if (panel->label[0] != '\0')
-            cJSON_AddStringToObject(item, "label", panel->label);
-        cJSON_AddNumberToObject(item, "edges", (double)panel->edge_count);
-        cJSON_AddNumberToObject(item, "outline_m", panel_outline(panel));
-        cJSON_AddNumberToObject(item, "area_m2", tl_pattern_panel_area(panel));
-    }
-    describe_labels(object, pattern);
-    cJSON_AddNumberToObject(object, "stitches", (double)pattern->stitch_count);
-    cJSON *eased = cJSON_AddObjectToObject(object, "eased_percent");
-    for (size_t s = 0; s < pattern->stitch_count; s++) {
-        const struct tl_pattern_side *sides = pattern->stitches[s].sides;
-        double ease = tl_pattern_stitch_ease(pattern, s);
-        char *key = tl_format("%zu: %s, %s", s, pattern->panels[sides[0].panel].name,
-                              pattern->panels[sides[1].panel].name);
-        if (ease > noticed)
-            cJSON_AddNumberToObject(eased, key, 100 * ease);
-        free(key);
-    }
-    cJSON_AddStringToObject(
-        object, "body",
-        "the one that it was drafted for: --avatar FILE; its measures are looked for in a "
-        ".yaml of the same name");
     return object;
 }
 
@@ -306,8 +252,23 @@ static void add_colourways(cJSON *object, const char *key, const struct tl_setti
         cJSON_AddItemToArray(names, cJSON_CreateString(settings->colourways.names[i]));
 }
 
+/* Fabrics and presets were read already: a scene without them is refused. */
+static void audit_scene(const struct tl_scene_params *scene, tl_audit *audit)
+{
+    const char *const files[][2] = {{"scene.garment", scene->garment},
+                                    {"scene.avatar", scene->avatar},
+                                    {"scene.environment", scene->environment},
+                                    {"scene.motion", scene->motion}};
+    for (size_t i = 0; i < TL_COUNT(files); i++) {
+        const char *file = files[i][1];
+        bool is_file = tl_option_is_file_name(file) && !strchr(file, '#'); /* else a name, or a sequence */
+        if (is_file && !tl_file_exists(file))
+            tl_audit_add_file(audit, TL_AUDIT_FILE_MISSING, file, files[i][0]);
+    }
+}
+
 /* Describes a scene file by the names in it, with its colourways. */
-static cJSON *describe_scene(const char *path, tl_error *error)
+static cJSON *describe_scene(const char *path, tl_audit *audit, tl_error *error)
 {
     struct tl_settings settings;
     if (!tl_settings_load(&settings, &(struct tl_settings_source){.scene_file = path}, error))
@@ -323,6 +284,7 @@ static cJSON *describe_scene(const char *path, tl_error *error)
     cJSON *object = cJSON_CreateObject();
     for (size_t i = 0; i < TL_COUNT(rows); i++)
         cJSON_AddStringToObject(object, rows[i][0], rows[i][1]);
+    audit_scene(scene, audit);
     add_colourways(object, "colourways", &settings);
     return object;
 }
@@ -344,6 +306,8 @@ static cJSON *describe_built_in(const char *what)
         list_embedded(object, what, tl_embedded_fabrics);
     else if (strcmp(what, "presets") == 0)
         list_embedded(object, what, tl_embedded_presets);
+    else if (strcmp(what, "findings") == 0)
+        cJSON_AddItemToObject(object, what, tl_audit_codes_json());
     else {
         cJSON *names = cJSON_AddArrayToObject(object, what);
         for (const char *const *name = tl_garment_names; *name; name++)
@@ -354,53 +318,91 @@ static cJSON *describe_built_in(const char *what)
     return object;
 }
 
+static cJSON *describe_fabric(const tl_fabric_file *fabric)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "kind", "fabric");
+    cJSON_AddStringToObject(object, "name", fabric->name);
+    cJSON *pictures = cJSON_AddObjectToObject(object, "pictures");
+    for (int use = 0; use < TL_PICTURE_USES; use++)
+        if (fabric->pictures[use].file)
+            cJSON_AddStringToObject(pictures, tl_picture_names[use], fabric->pictures[use].file);
+    cJSON_AddNumberToObject(object, "width_mm", (double)fabric->width_mm);
+    cJSON_AddNumberToObject(object, "length_mm", (double)fabric->length_mm);
+    return object;
+}
+
+/* A new object about a file by its extension; NULL with an error. */
+static cJSON *describe_file(const char *path, tl_audit *audit, tl_error *error)
+{
+    cJSON *object = NULL;
+    if (tl_point_cache_is_file(path)) {
+        tl_point_cache *cache = tl_point_cache_open(path, 1, error);
+        if (!cache)
+            return NULL;
+        object = describe_motion(path, tl_point_cache_facts(cache));
+        tl_point_cache_destroy(&cache);
+    } else if (tl_fabric_file_is(path) && !tl_pattern_is_file(path)) {
+        tl_fabric_file fabric;
+        if (!tl_fabric_file_open(path, &fabric, error))
+            return NULL;
+        object = describe_fabric(&fabric);
+        tl_audit_fabric(audit, &fabric);
+        tl_fabric_file_release(&fabric);
+    } else if (!tl_file_check(path, error)) {
+        return NULL;
+    } else if (tl_model_is_file(path)) {
+        tl_model model;
+        if (!tl_model_load(path, &model, error))
+            return NULL;
+        object = describe_model(&model, audit);
+        tl_model_release(&model);
+    } else if (tl_pattern_is_file(path)) {
+        tl_pattern pattern;
+        if (!tl_pattern_load(path, &pattern, error))
+            return NULL;
+        object = tl_info_describe_pattern(&pattern, audit);
+        tl_pattern_release(&pattern);
+    } else if (tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
+        object = describe_scene(path, audit, error);
+    } else if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
+        tl_environment environment;
+        if (!tl_environment_load(path, &environment, error))
+            return NULL;
+        object = describe_environment(&environment);
+        tl_environment_release(&environment);
+    } else {
+        tl_fail(error, TL_INPUT,
+                "%s: unknown kind of file: expected .glb, .gltf, .obj, .ply, .stl, .off, .json (a sewing "
+                "pattern), .u3m, .u3ma, a folder of texture maps, .pc2, .mdd, .exr, .hdr or a scene's .yaml",
+                path);
+    }
+    return object;
+}
+
+static bool is_built_in(const char *what)
+{
+    static const char *const lists[] = {"fabrics", "presets", "garments", "findings"};
+    for (size_t i = 0; i < TL_COUNT(lists); i++)
+        if (strcmp(what, lists[i]) == 0)
+            return true;
+    return false;
+}
+
 bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
 {
     if (arguments->positional_count != 1)
         return tl_fail(error, TL_USAGE, "info: expected one file: toile info FILE");
     const char *path = arguments->positionals[0];
-    cJSON *object = NULL;
-    if (strcmp(path, "fabrics") == 0 || strcmp(path, "presets") == 0 || strcmp(path, "garments") == 0) {
-        object = describe_built_in(path);
-    } else if (tl_point_cache_is_file(path)) {
-        tl_point_cache *cache = tl_point_cache_open(path, 1, error);
-        if (!cache)
-            return false;
-        object = describe_motion(path, tl_point_cache_facts(cache));
-        tl_point_cache_destroy(&cache);
-    } else if (!tl_file_check(path, error)) {
+    tl_audit audit = {0};
+    bool is_list = is_built_in(path);
+    cJSON *object = is_list ? describe_built_in(path) : describe_file(path, &audit, error);
+    if (!object)
         return false;
-    } else if (tl_model_is_file(path)) {
-        tl_model model;
-        if (!tl_model_load(path, &model, error))
-            return false;
-        object = describe_model(&model);
-        tl_model_release(&model);
-    } else if (tl_pattern_is_file(path)) {
-        tl_pattern pattern;
-        if (!tl_pattern_load(path, &pattern, error))
-            return false;
-        object = describe_pattern(&pattern);
-        tl_info_describe_sewn(object, &pattern);
-        tl_pattern_release(&pattern);
-    } else if (tl_path_has_extension(path, "yaml") || tl_path_has_extension(path, "yml")) {
-        object = describe_scene(path, error);
-        if (!object)
-            return false;
-    } else if (tl_path_has_extension(path, "exr") || tl_path_has_extension(path, "hdr")) {
-        tl_environment environment;
-        if (!tl_environment_load(path, &environment, error))
-            return false;
-        object = describe_environment(&environment);
-        tl_environment_release(&environment);
-    } else {
-        return tl_fail(error, TL_INPUT,
-                       "%s: unknown kind of file: expected .glb, .gltf, .obj, .ply, .stl, .off, .json (a "
-                       "sewing pattern), "
-                       ".pc2, .mdd, .exr, "
-                       ".hdr or a scene's .yaml",
-                       path);
-    }
-    print_object(object, arguments->json);
-    return true;
+    print_object(object, is_list ? NULL : &audit, arguments->json);
+    bool passed = !arguments->strict || tl_audit_count(&audit, true) == 0;
+    tl_audit_release(&audit);
+    if (!passed)
+        *error = (tl_error){.code = TL_UNSTABLE}; /* the findings have been printed */
+    return passed;
 }

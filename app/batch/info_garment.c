@@ -6,7 +6,6 @@
 #include "assets/charts/rest.h"
 #include "assets/pattern/pattern_cut.h"
 #include "assets/stitches/stitches.h"
-#include "cloth/contact/crossings.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -67,47 +66,111 @@ static void describe_cut(cJSON *object, const tl_garment *garment)
     free(weld);
 }
 
-void tl_info_describe_sewn(cJSON *object, const tl_pattern *pattern)
+/* Adds the openings of a sewing pattern: the edges that no stitch joins, as long as they are cut. */
+static void describe_sewn(cJSON *object, const tl_pattern *pattern, tl_audit *audit)
 {
     const float edge_m = 0.02f;
     tl_garment garment;
     tl_error error = {0};
     if (!tl_pattern_cut(pattern, edge_m, &garment, &error)) {
         cJSON_AddStringToObject(object, "openings_mm", error.message);
+        tl_audit_add_file(audit, TL_AUDIT_PATTERN_UNCUT, NULL, error.message);
         return;
     }
     describe_cut(object, &garment);
     tl_garment_release(&garment);
 }
 
-/* A file of panels and stitches, upright as it will be sewn. */
-static void describe_stitches(cJSON *object, tl_model *model)
+/* Counts the edges of each label, in the order of their first. */
+static void describe_labels(cJSON *object, const tl_pattern *pattern)
 {
-    const struct tl_placing placing = {.z_up = model->units.z_up, .scale = 1};
-    tl_garment garment = {.model = *model};
-    tl_error error;
-    add_count(object, "stitches", model->stitch_count);
-    tl_stitches_sew(&garment);
-    tl_placing_apply(&placing, &garment.model.mesh);
-    struct tl_charts charts = tl_charts_find(&garment.model.mesh);
-    (void)tl_rest_take(TL_REST_AUTO, &charts, &garment, &error); /* AUTO takes what there is */
-    describe_cut(object, &garment);
-    tl_charts_release(&charts);
-    *model = garment.model;
-    garment.model = (tl_model){0};
-    tl_garment_release(&garment);
+    cJSON *labels = cJSON_AddObjectToObject(object, "labels");
+    for (size_t p = 0; p < pattern->panel_count; p++) {
+        for (size_t e = 0; e < pattern->panels[p].edge_count; e++) {
+            const char *label = pattern->panels[p].edges[e].label;
+            cJSON *count = cJSON_GetObjectItemCaseSensitive(labels, label);
+            if (count)
+                cJSON_SetNumberValue(count, count->valuedouble + 1);
+            else if (label[0] != '\0')
+                cJSON_AddNumberToObject(labels, label, 1);
+        }
+    }
 }
 
-void tl_info_describe_garment(cJSON *object, tl_model *model)
+static double panel_outline(const struct tl_pattern_panel *panel)
 {
-    bool complete;
-    add_count(object, "crossings",
-              tl_crossings_of_mesh(&model->mesh, model->mesh.positions, NULL, &complete));
-    if (!complete)
+    double length = 0;
+    for (size_t e = 0; e < panel->edge_count; e++)
+        length += tl_pattern_edge_length(&panel->edges[e]);
+    return length;
+}
+
+cJSON *tl_info_describe_pattern(const tl_pattern *pattern, tl_audit *audit)
+{
+    const double noticed = 0.01; /* seams that gather or ease by more than rounding */
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "kind", "pattern");
+    cJSON_AddStringToObject(object, "name", pattern->name);
+    cJSON *panels = cJSON_AddObjectToObject(object, "panels");
+    for (size_t p = 0; p < pattern->panel_count; p++) {
+        const struct tl_pattern_panel *panel = &pattern->panels[p];
+        cJSON *item = cJSON_AddObjectToObject(panels, panel->name);
+        if (panel->label[0] != '\0')
+            cJSON_AddStringToObject(item, "label", panel->label);
+        cJSON_AddNumberToObject(item, "edges", (double)panel->edge_count);
+        cJSON_AddNumberToObject(item, "outline_m", panel_outline(panel));
+        cJSON_AddNumberToObject(item, "area_m2", tl_pattern_panel_area(panel));
+    }
+    describe_labels(object, pattern);
+    cJSON_AddNumberToObject(object, "stitches", (double)pattern->stitch_count);
+    cJSON *eased = cJSON_AddObjectToObject(object, "eased_percent");
+    for (size_t s = 0; s < pattern->stitch_count; s++) {
+        const struct tl_pattern_side *sides = pattern->stitches[s].sides;
+        double ease = tl_pattern_stitch_ease(pattern, s);
+        char *key = tl_format("%zu: %s, %s", s, pattern->panels[sides[0].panel].name,
+                              pattern->panels[sides[1].panel].name);
+        if (ease > noticed)
+            cJSON_AddNumberToObject(eased, key, 100 * ease);
+        free(key);
+    }
+    cJSON_AddStringToObject(
+        object, "body",
+        "the one that it was drafted for: --avatar FILE; its measures are looked for in a "
+        ".yaml of the same name");
+    describe_sewn(object, pattern, audit);
+    return object;
+}
+
+/* The openings of a file of panels and stitches, upright as it will be sewn. */
+static void describe_stitches(cJSON *object, tl_garment *garment)
+{
+    const struct tl_placing placing = {.z_up = garment->model.units.z_up, .scale = 1};
+    tl_error error;
+    tl_placing_apply(&placing, &garment->model.mesh);
+    struct tl_charts charts = tl_charts_find(&garment->model.mesh);
+    (void)tl_rest_take(TL_REST_AUTO, &charts, garment, &error); /* AUTO takes what there is */
+    describe_cut(object, garment);
+    tl_charts_release(&charts);
+}
+
+void tl_info_describe_garment(cJSON *object, tl_model *model, tl_audit *audit)
+{
+    tl_garment garment = {.model = *model};
+    if (model->stitch_count > 0) {
+        add_count(object, "stitches", model->stitch_count);
+        tl_stitches_sew(&garment);
+        *model = garment.model;
+    }
+    tl_audit_garment(audit, &garment);
+    add_count(object, "crossings", audit->crossing_count);
+    if (!audit->crossings_complete)
         cJSON_AddStringToObject(object, "crossings_note", "at least: its triangles lie in one heap");
     describe_rest(object, model);
     if (model->stitch_count > 0)
-        describe_stitches(object, model);
+        describe_stitches(object, &garment);
     else
         describe_openings(object, model);
+    *model = garment.model;
+    garment.model = (tl_model){0};
+    tl_garment_release(&garment);
 }

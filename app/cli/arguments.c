@@ -152,6 +152,8 @@ static const struct flag flags_known[] = {
     {"--shard", TL_FLAGS_SHARD, FLAG_SHARD, 0, NULL, "I/N",
      "do part I of N, from 0: N runs, on as many machines as there are, make what one makes (docs/farm.md)"},
     {"--clear", TL_FLAGS_CLEAR, FLAG_SWITCH, AT(clear), NULL, NULL, "remove all of them"},
+    {"--strict", TL_FLAGS_STRICT, FLAG_SWITCH, AT(strict), NULL, NULL,
+     "exit with 1 if a finding is an error; warnings alone exit with 0"},
     {"--allow-outside", 0, FLAG_SWITCH, AT(allow_outside), NULL, NULL,
      "also read pictures and buffers that a model names outside its own folder"},
     {"--force", TL_FLAGS_OUTPUT, FLAG_SWITCH, AT(force), NULL, NULL, "let -o replace a file that is read"},

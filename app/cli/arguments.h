@@ -33,6 +33,7 @@ enum tl_flag_set {
     TL_FLAGS_BUDGET = 1 << 17,  /* --budget MS */
     TL_FLAGS_CLEAR = 1 << 18,   /* --clear */
     TL_FLAGS_SHARD = 1 << 19,   /* --shard I/N */
+    TL_FLAGS_STRICT = 1 << 20,  /* --strict */
 };
 
 struct tl_arguments {
@@ -64,7 +65,7 @@ struct tl_arguments {
     bool frames_given; /* --frames rather than --frame */
     bool json, quiet, verbose, help;
     bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape, no_cache, clear;
-    bool allow_outside, force;
+    bool allow_outside, force, strict;
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);

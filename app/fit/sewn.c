@@ -10,8 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Writes the sewn vertex of each render vertex; returns how many there are. */
-static size_t sew(const tl_garment *garment, uint32_t *weld)
+size_t tl_sewn_weld(const tl_garment *garment, uint32_t *weld)
 {
     const tl_mesh *mesh = &garment->model.mesh;
     size_t count = mesh->vertex_count, sewn = 0;
@@ -36,7 +35,7 @@ static size_t sew(const tl_garment *garment, uint32_t *weld)
 struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *positions, uint32_t *weld)
 {
     const tl_mesh *mesh = &garment->model.mesh;
-    size_t count = sew(garment, weld);
+    size_t count = tl_sewn_weld(garment, weld);
     struct tl_topology topology =
         tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, count);
     vec3s *places = TL_NEW_ARRAY(vec3s, count);

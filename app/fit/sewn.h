@@ -7,6 +7,9 @@
 #include "assets/openings/openings.h"
 #include "config/error.h"
 
+/* Writes the sewn vertex of each render vertex to `weld` [mesh.vertex_count]; returns how many there are. */
+size_t tl_sewn_weld(const tl_garment *garment, uint32_t *weld);
+
 /* The garment's openings, with its vertices at `positions` [mesh.vertex_count]. `weld` [mesh.vertex_count]
  * receives the sewn vertex of each render vertex, which the openings count by. */
 struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *positions, uint32_t *weld);

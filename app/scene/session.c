@@ -413,6 +413,17 @@ static const vec3s *strains_of_garment(tl_session *session)
     return session->strain.of_vertices;
 }
 
+/* Marks the triangles [index_count / 3] that cross others. */
+static void mark_crossed(const tl_mesh *mesh, const vec3s *positions, bool *crossed)
+{
+    struct tl_near_pairs pairs = {0};
+    tl_crossings_of_mesh(mesh, positions, &pairs);
+    memset(crossed, 0, mesh->index_count / 3 * sizeof *crossed);
+    for (size_t i = 0; i < pairs.count; i++)
+        crossed[pairs.pairs[i][0]] = crossed[pairs.pairs[i][1]] = true;
+    tl_near_pairs_release(&pairs);
+}
+
 /* The garment's triangles that cross others, while the image shows them; else NULL. */
 static const bool *crossed_of_garment(tl_session *session)
 {
@@ -422,7 +433,7 @@ static const bool *crossed_of_garment(tl_session *session)
     if (!session->crossed.triangles)
         session->crossed.triangles = TL_NEW_ARRAY(bool, mesh->index_count / 3);
     if (session->crossed.revision != session->dress.motion_revision)
-        tl_crossings_of_mesh(mesh, session->dress.positions, session->crossed.triangles, NULL);
+        mark_crossed(mesh, session->dress.positions, session->crossed.triangles);
     session->crossed.revision = session->dress.motion_revision;
     return session->crossed.triangles;
 }

@@ -154,9 +154,9 @@ bool tl_imported_apply(const char *path, const struct tl_binding *bindings, size
     if (!tl_fabric_file_open(path, &file, error))
         return false;
     bool applied = tl_imported_apply_file(path, &file, bindings, count, error);
-    if (applied && file.missing > 0)
+    if (applied && file.missing_count > 0)
         tl_warn("%s: %zu of the files that it names are missing: `toile fabric %s` lists them", path,
-                file.missing, path);
+                file.missing_count, path);
     tl_fabric_file_release(&file);
     return applied;
 }

@@ -73,6 +73,11 @@ void tl_model_release(tl_model *model)
     for (size_t i = 0; i < model->approximated_count; i++)
         free(model->approximated[i]);
     free(model->approximated);
+    for (size_t i = 0; i < model->unread_count; i++) {
+        free(model->unread[i].file);
+        free(model->unread[i].reason);
+    }
+    free(model->unread);
     for (size_t i = 0; i < model->defect_count; i++)
         free(model->defects[i]);
     free(model->defects);

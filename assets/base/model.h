@@ -27,6 +27,13 @@ struct tl_stitch { /* of an OBJ file: a point is sewn to one of an edge (assets/
     float at;                /* share of the edge, from its first end */
 };
 
+/* A file that the model's file names and that was not read: a picture, a library of materials. */
+struct tl_unread {
+    char *file;     /* as it is named, or where it was looked for */
+    char *reason;   /* one line */
+    bool is_absent; /* not there, or outside the model's folder; else it holds nothing that can be read */
+};
+
 struct tl_variant { /* KHR_materials_variants: another choice of materials for the same parts */
     char name[64];
     int *materials; /* [mesh.part_count] */
@@ -60,6 +67,8 @@ typedef struct tl_model {
     vec3s *colours; /* [vertex_count] 0 to 1 */
     size_t ignored_count;
     char **ignored; /* features of the file without effect: "morph targets", ...; each once */
+    size_t unread_count;
+    struct tl_unread *unread; /* each reason once; `ignored` has them too */
     size_t defect_count;
     char **defects; /* of a scan's mesh: "2 open borders, the longest 0.41 m around"; each once */
     size_t approximated_count;

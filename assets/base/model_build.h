@@ -9,6 +9,9 @@
 /* Notes a feature of the file that has no effect; each text once. */
 void model_ignore(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Notes a file that the model's names and that was not read, and why; each reason once, also as ignored. */
+void model_unread(tl_model *model, const char *file, bool is_absent, const char *reason);
+
 /* Notes a feature that is shown differently from what the file specifies; each text once. */
 void model_approximate(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

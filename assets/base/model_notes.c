@@ -5,10 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
+/* A damaged file may have a note for each of its bytes. */
+#define MOST_NOTES 200
+
 static void note(char ***list, size_t *count, const char *format, va_list arguments)
 {
-    const size_t most = 200; /* a damaged file may have a note for each of its bytes */
-    if (*count == most)
+    if (*count == MOST_NOTES)
         return;
     char text[256];
     vsnprintf(text, sizeof text, format, arguments);
@@ -25,6 +27,19 @@ void model_ignore(tl_model *model, const char *format, ...)
     va_start(arguments, format);
     note(&model->ignored, &model->ignored_count, format, arguments);
     va_end(arguments);
+}
+
+void model_unread(tl_model *model, const char *file, bool is_absent, const char *reason)
+{
+    model_ignore(model, "%s", reason);
+    for (size_t i = 0; i < model->unread_count; i++)
+        if (strcmp(model->unread[i].reason, reason) == 0)
+            return;
+    if (model->unread_count == MOST_NOTES)
+        return;
+    model->unread = tl_resize(model->unread, model->unread_count + 1, sizeof *model->unread);
+    model->unread[model->unread_count++] =
+        (struct tl_unread){tl_copy_string(file), tl_copy_string(reason), is_absent};
 }
 
 void model_approximate(tl_model *model, const char *format, ...)

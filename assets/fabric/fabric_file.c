@@ -116,5 +116,8 @@ void tl_fabric_file_release(tl_fabric_file *file)
         free(file->fields[i].use);
     }
     free(file->fields);
+    for (size_t i = 0; i < file->missing_count; i++)
+        free(file->missing[i]);
+    free(file->missing);
     *file = (tl_fabric_file){0};
 }

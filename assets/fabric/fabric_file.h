@@ -96,7 +96,8 @@ typedef struct tl_fabric_file {
     struct tl_fabric_physics physics;
     struct tl_fabric_field *fields;
     size_t field_count;
-    size_t missing; /* pictures and files that are named but are not there */
+    size_t missing_count;
+    char **missing; /* pictures and files that are named but are not there, a name for each time */
 } tl_fabric_file;
 
 /* Whether a path is one of the above: by its extension, or a folder. Pure, but for asking whether it is a

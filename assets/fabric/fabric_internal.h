@@ -11,6 +11,9 @@
 /* Adds a row; `value` and `use` become the row's. */
 void tl_fabric_add_field(tl_fabric_file *file, const char *name, char *value, bool is_used, char *use);
 
+/* Notes a file that is named but is not there. */
+void tl_fabric_add_missing(tl_fabric_file *file, const char *name);
+
 /* The fabric's name, cut between letters where it is too long. */
 void tl_fabric_set_name(tl_fabric_file *file, const char *name);
 

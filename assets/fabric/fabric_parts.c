@@ -13,6 +13,12 @@ void tl_fabric_add_field(tl_fabric_file *file, const char *name, char *value, bo
     file->fields[file->field_count++] = (struct tl_fabric_field){tl_copy_string(name), value, use, is_used};
 }
 
+void tl_fabric_add_missing(tl_fabric_file *file, const char *name)
+{
+    file->missing = tl_resize(file->missing, file->missing_count + 1, sizeof *file->missing);
+    file->missing[file->missing_count++] = tl_copy_string(name);
+}
+
 struct tl_fabric_picture tl_picture_plain(char *name)
 {
     return (struct tl_fabric_picture){.file = name, .channel = -1, .factor = {1, 1, 1}};

@@ -166,10 +166,11 @@ static bool read_image(struct u3m_reader *reader, struct parameter *parameter, c
         return fail_outside(reader, parameter->name, path->valuestring);
     }
     parameter->is_missing = state == TL_STORE_MISSING;
-    reader->file->missing += parameter->is_missing;
     parameter->picture.file = parameter->is_missing ? NULL : name;
-    if (parameter->is_missing)
+    if (parameter->is_missing) {
+        tl_fabric_add_missing(reader->file, name);
         free(name);
+    }
     return parameter->is_missing || read_placing(reader, parameter, image);
 }
 
@@ -504,7 +505,7 @@ static bool read_fab(struct u3m_reader *reader, const cJSON *physics)
         state != TL_STORE_REFUSED || fail_outside(reader, "material.physics.devices.fab", fab->valuestring);
     if (state == TL_STORE_MISSING) {
         unused(reader, "material.physics.devices.fab", brief(fab), "not used: the file is missing");
-        reader->file->missing++;
+        tl_fabric_add_missing(reader->file, name);
     } else if (good) {
         used(reader, "material.physics.devices.fab", brief(fab),
              tl_copy_string("stretch, shear and bending, below"));

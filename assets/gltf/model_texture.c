@@ -12,28 +12,25 @@ static bool decode(struct texture_reader *reader, int source, tl_image *out)
     const gltf_document *document = reader->document;
     tl_error error;
     if (source < 0 || (size_t)source >= document->image_count) {
-        model_ignore(reader->model, "texture without a picture that can be read");
+        model_unread(reader->model, "", true, "texture without a picture that can be read");
         return false;
     }
     const struct gltf_image *image = &document->images[source];
     const uint8_t *bytes = image->data;
     size_t size = image->size;
     char name[160];
-    snprintf(name, sizeof name, "image %d %s", source, image->name ? image->name : "");
-    if (!bytes && image->view >= 0 && !gltf_view_bytes(document, image->view, name, &bytes, &size, &error)) {
-        model_ignore(reader->model, "%s", error.message);
-        return false;
-    }
-    if (!bytes) {
-        model_ignore(reader->model, "%s: no such file, or outside the folder of the model (--allow-outside)",
-                     name);
-        return false;
-    }
-    if (!tl_image_decode(name, bytes, size, out, &error)) {
-        model_ignore(reader->model, "%s", error.message);
-        return false;
-    }
-    return true;
+    const char *file = image->name ? image->name : "";
+    snprintf(name, sizeof name, "image %d %s", source, file);
+    bool has_bytes =
+        bytes || (image->view >= 0 && gltf_view_bytes(document, image->view, name, &bytes, &size, &error));
+    if (has_bytes && tl_image_decode(name, bytes, size, out, &error))
+        return true;
+    bool is_absent = !has_bytes && image->view < 0;
+    if (is_absent)
+        tl_fail(&error, TL_INPUT, "%s: no such file, or outside the folder of the model (--allow-outside)",
+                name);
+    model_unread(reader->model, file, is_absent, error.message);
+    return false;
 }
 
 /* A channel varies when its values differ by more than this, of 255. */
@@ -159,7 +156,7 @@ static const struct texture_loaded *load_image(struct texture_reader *reader, in
         copies * (uint64_t)decoded.width * (uint64_t)decoded.height * (uint64_t)decoded.channels;
     if (!tl_memory_ask_for_file(reader->document->path, reader->document->file_bytes, reader->decoded_bytes,
                                 &error)) {
-        model_ignore(reader->model, "further maps: %s", error.message);
+        model_unread(reader->model, "", false, error.message);
         reader->is_full = true;
         tl_image_release(&decoded);
         return fresh;

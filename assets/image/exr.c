@@ -40,16 +40,80 @@ static const uint8_t *skip_text(const uint8_t *at, const uint8_t *end)
     return nul ? nul + 1 : NULL;
 }
 
-/* A preview image is its width, its height and 4 bytes a texel. */
-static bool preview_fits(const uint8_t *value, uint64_t size)
+/* Whether a list of channels, a name and 16 bytes each, ends with its empty name at the end of the value. */
+static bool is_channel_list(const uint8_t *at, const uint8_t *end)
 {
-    return size >= 8 && (uint64_t)word_at(value) * word_at(value + 4) <= (size - 8) / 4;
+    const ptrdiff_t channel_bytes = 16;
+    for (const uint8_t *next; (next = skip_text(at, end)); at = next + channel_bytes) {
+        if (next == at + 1)
+            return next == end;
+        if (end - next < channel_bytes)
+            return false;
+    }
+    return false;
+}
+
+/* Whether a list of texts, each after its length, fills the value. */
+static bool is_text_list(const uint8_t *at, const uint8_t *end)
+{
+    while (end - at >= 4) {
+        uint64_t length = word_at(at), left = (uint64_t)(end - at) - 4;
+        if (length > left)
+            return false;
+        at += 4 + length;
+    }
+    return at == end;
+}
+
+/* Whether a value has the size that its type prescribes. The library goes by the type and not by the size,
+ * and would take the rest of a longer value for the next attribute. Types that it does not know go by the
+ * size. */
+static bool has_size_of_type(const char *type, const uint8_t *value, uint64_t size)
+{
+    static const struct {
+        const char *type;
+        uint64_t size;
+    } known[] = {{"box2f", 16},
+                 {"box2i", 16},
+                 {"chromaticities", 32},
+                 {"compression", 1},
+                 {"deepImageState", 1},
+                 {"double", 8},
+                 {"envmap", 1},
+                 {"float", 4},
+                 {"int", 4},
+                 {"keycode", 28},
+                 {"lineOrder", 1},
+                 {"m33d", 72},
+                 {"m33f", 36},
+                 {"m44d", 128},
+                 {"m44f", 64},
+                 {"rational", 8},
+                 {"tiledesc", 9},
+                 {"timecode", 8},
+                 {"v2d", 16},
+                 {"v2f", 8},
+                 {"v2i", 8},
+                 {"v3d", 24},
+                 {"v3f", 12},
+                 {"v3i", 12}};
+    for (size_t i = 0; i < TL_COUNT(known); i++)
+        if (strcmp(type, known[i].type) == 0)
+            return size == known[i].size;
+    if (strcmp(type, "chlist") == 0)
+        return is_channel_list(value, value + size);
+    if (strcmp(type, "stringvector") == 0)
+        return is_text_list(value, value + size);
+    if (strcmp(type, "preview") == 0) /* its width, its height and 4 bytes a texel */
+        return size >= 8 && (size - 8) % 4 == 0 &&
+               (uint64_t)word_at(value) * word_at(value + 4) == (size - 8) / 4;
+    return true;
 }
 
 /* A header is a list of attributes: a name and a type, which end in NUL, the size of the value, the value. An
  * empty name ends a header, an empty header those of a multi-part file ["OpenEXR File Layout"]. The library
  * allocates what a size claims before it reads the value, so that a file of 475 bytes may ask for 2 GB: here
- * every value is checked to lie within the file. */
+ * every value is checked to lie within the file, and to be of its type's size. */
 static bool check_attributes(const struct exr_source *source, tl_error *error)
 {
     const uint32_t magic = 20000630, multi_part_flag = 0x1000;
@@ -72,8 +136,10 @@ static bool check_attributes(const struct exr_source *source, tl_error *error)
             return fail_damaged(source, "the file ends early", error);
         const uint8_t *value = size + 4;
         uint64_t claimed = word_at(size), left = (uint64_t)(end - value);
-        if (claimed > left || (strcmp((const char *)type, "preview") == 0 && !preview_fits(value, claimed)))
+        if (claimed > left)
             return fail_damaged(source, "an attribute claims more bytes than the file has", error);
+        if (!has_size_of_type((const char *)type, value, claimed))
+            return fail_damaged(source, "an attribute has not the size of its type", error);
         at = value + claimed;
     }
 }

@@ -134,6 +134,12 @@ static bool ask_for(struct mtl_reader *reader, const char *path, const tl_image 
     return !reader->is_full;
 }
 
+static void note_unread(const struct mtl_reader *reader, const char *path, const tl_error *error)
+{
+    bool is_there = tl_file_exists(path) && tl_path_is_inside(reader->path, path, NULL);
+    model_unread(reader->model, path, !is_there, error->message);
+}
+
 static const tl_image *load_picture(struct mtl_reader *reader, const char *name, bool linear)
 {
     char *named = picture_path(reader->path, reader->text.path, name), *real = realpath(named, NULL);
@@ -152,7 +158,7 @@ static const tl_image *load_picture(struct mtl_reader *reader, const char *name,
         goto failed;
     if (!tl_path_is_inside(reader->path, path, &error) || !tl_image_load(path, &image, &error) ||
         !ask_for(reader, path, &image, &error)) {
-        model_ignore(model, "%s", error.message);
+        note_unread(reader, path, &error);
         goto failed;
     }
     image.linear = linear;
@@ -255,7 +261,7 @@ static void read_library(struct mtl_reader *reader, const char *path)
         good = read_statement(reader, keyword, &error);
     reader->current = NULL;
     if (!good)
-        model_ignore(reader->model, "%s", error.message);
+        note_unread(reader, path, &error);
     tl_text_close(&reader->text);
 }
 
@@ -278,7 +284,7 @@ void wave_read_materials(const char *path, const struct wave_object *object, tl_
         if (tl_path_is_inside(path, library, &error))
             read_library(&reader, library);
         else
-            model_ignore(model, "%s", error.message);
+            note_unread(&reader, library, &error);
         free(library);
     }
     for (size_t i = 0; i < model->image_count; i++)

@@ -139,7 +139,7 @@ TL_CLONES void tl_closest_triangle_bounds(const struct tl_closest_lanes *lanes, 
         float area = bb * cc - bc * bc, v = cc * pb - bc * pc, w = bb * pc - bc * pb;
         float per = 1 / tl_maxf(area, FLT_MIN);
         struct lane_vector away = lane_sub(lane_along(lane_along(a, ab, v * per), ac, w * per), p);
-        float inside = (v >= 0) & (w >= 0) & (v + w <= area) ? lane_dot(away, away) : FLT_MAX;
+        float inside = ((v >= 0) & (w >= 0) & (v + w <= area)) ? lane_dot(away, away) : FLT_MAX;
         float sides = tl_minf(tl_minf(lane_side(p, a, b, &longest), lane_side(p, b, c, &longest)),
                               lane_side(p, c, a, &longest));
         bounds[i] = lane_bound(tl_minf(inside, sides), longest);

@@ -3,7 +3,6 @@
 #include "config/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Six times the volume of a tetrahedron; positive where d lies on the side of a b c that its normal points
  * to. */
@@ -115,7 +114,7 @@ size_t tl_crossings_count(struct tl_near_tree *tree, const struct tl_topology *t
     return count;
 }
 
-size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed, bool *complete)
+void tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, struct tl_near_pairs *out)
 {
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
     size_t places = tl_weld_positions(positions, mesh->vertex_count, weld);
@@ -124,22 +123,16 @@ size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *c
     vec3d *x = TL_NEW_ARRAY(vec3d, places);
     /* A triangle's box overlaps those of about a dozen neighbours, a few times as many in layered cloth. */
     const size_t for_small = 1 << 20, of_triangle = 32;
-    struct tl_near_pairs pairs = {.limit = for_small + of_triangle * topology.triangle_count};
+    out->count = 0;
+    out->limit = for_small + of_triangle * topology.triangle_count;
     for (size_t i = 0; i < mesh->vertex_count; i++)
         x[weld[i]] = vec3d_from(positions[i]);
     if (topology.triangle_count > 0)
-        find_as_drawn(NULL, &topology, x, &pairs);
-    if (crossed)
-        memset(crossed, 0, mesh->index_count / 3 * sizeof *crossed);
-    for (size_t i = 0; crossed && i < pairs.count; i++)
+        find_as_drawn(NULL, &topology, x, out);
+    for (size_t i = 0; i < out->count; i++)
         for (int side = 0; side < 2; side++)
-            crossed[topology.source[pairs.pairs[i][side]]] = true;
-    size_t count = pairs.count;
-    if (complete)
-        *complete = !pairs.cut_short;
-    tl_near_pairs_release(&pairs);
+            out->pairs[i][side] = topology.source[out->pairs[i][side]];
     tl_topology_release(&topology);
     free(x);
     free(weld);
-    return count;
 }

@@ -28,10 +28,10 @@ void tl_crossings_find(struct tl_near_tree *tree, const struct tl_topology *topo
  * is as for tl_crossings_find; NULL: one is built, which takes longer than the search. */
 size_t tl_crossings_count(struct tl_near_tree *tree, const struct tl_topology *topology, const vec3d *x);
 
-/* The same for a mesh whose vertices are at `positions` [vertex_count]; those at the same place are one. Of a
- * mesh whose triangles all lie in one heap, which is a damaged file, only some pairs are tested: *complete is
- * false then; NULL is accepted. Where `crossed` is not NULL, sets crossed[t] for each triangle [index_count /
- * 3] that crosses another one, and clears it for all others. 8 ms for 6,000 triangles. */
-size_t tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, bool *crossed, bool *complete);
+/* Replaces `out` by the crossing pairs of a mesh, as numbers of its triangles, with its vertices at
+ * `positions` [vertex_count]; those at the same place are one. Of a mesh whose triangles all lie in one heap,
+ * which is a damaged file, only some pairs are tested, and out->cut_short is set. 8 ms for 6,000 triangles.
+ */
+void tl_crossings_of_mesh(const tl_mesh *mesh, const vec3s *positions, struct tl_near_pairs *out);
 
 #endif

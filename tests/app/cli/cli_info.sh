@@ -44,3 +44,19 @@ END
 check "pinned vertices" sh -c "$TOILE info pinned.gltf | grep -Eq '^pins +2$'"
 check "painted vertices" sh -c "$TOILE info pinned.gltf | grep -Eq '^ +red +1$'"
 check "no pins" sh -c "$TOILE info satin.gltf | grep -Eq '^pins +0$'"
+
+# A supplier's gate: 0 for a sound file, 1 for one with an error, and 0 again where nobody asked; the reason is in the JSON.
+sed 's/"materials":\[{"name":"satin",/"textures":[{"source":0}],"images":[{"uri":"absent.png"}],"materials":[{"name":"satin","normalTexture":{"index":0},/' satin.gltf >textured.gltf
+check "a sound file passes" $TOILE info satin.gltf --strict --json >strict.json
+check "... without findings" sh -c "tr -d ' \n\t' <strict.json | grep -q '\"findings\":\[\],\"errors\":0,\"warnings\":0'"
+status=0
+$TOILE info textured.gltf --strict --json >strict.json 2>told || status=$?
+check "a file with an error fails" test $status -eq 1
+check "... without a message of its own" test ! -s told
+check "... and names the picture" sh -c "tr -d ' \n\t' <strict.json | grep -q '\"code\":\"file-missing\",\"severity\":\"error\",\"place\":{\"file\":\"absent.png\"}'"
+check "it passes where nobody is strict" sh -c "$TOILE info textured.gltf | grep -Eq '^  error   file-missing +absent.png: '"
+printf 'scene:\n  garment: absent.glb\n' >scene.yaml
+status=0
+$TOILE info scene.yaml --strict >told || status=$?
+check "a scene's missing garment" sh -c "test $status -eq 1 && grep -Eq 'file-missing +.*absent.glb: scene.garment' told"
+check "the codes are listed" sh -c "$TOILE info findings | grep -Eq '^ +code +seam-open$'"

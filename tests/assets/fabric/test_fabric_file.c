@@ -129,7 +129,7 @@ static void check_probe(const tl_fabric_file *file)
     assert_near(file->physics.thickness_m, 4e-4, 1e-9);
     assert_true(isnan(file->physics.bend_warp));
     assert_near(file->back[2], 0.3, 1e-6);
-    assert_int_equal(file->missing, 1);
+    assert_int_equal(file->missing_count, 1);
     static const char *const used[] = {"material.front.basecolor", "material.front.roughness",
                                        "material.front.metalness", "material.front.alpha",
                                        "material.physics.weight",  "material.back.basecolor"};
@@ -214,7 +214,7 @@ static void the_formats_example_is_read(void **state)
     tl_error error;
     assert_ok(tl_fabric_file_open(test_data("u3m/Example_1.0.u3m"), &file, &error), error);
     assert_string_equal(file.name, "Example_0.9");
-    assert_int_equal(file.missing, 5); /* it comes without its pictures */
+    assert_int_equal(file.missing_count, 5); /* it comes without its pictures */
     assert_false(field_of(&file, "custom")->is_used);
     tl_fabric_file_release(&file);
 }

@@ -287,8 +287,38 @@ static void previews_lie_within_their_attribute(void **state)
     (void)state;
     static const uint8_t bytes[] = "\x76\x2f\x31\x01\x02\0\0\0preview\0preview\0\x08\0\0\0"
                                    "\x30\x75\0\0\x30\x75\0\0";
-    assert_refused(TOILE_SCRATCH_DIR "/preview.exr", bytes, sizeof bytes,
-                   "claims more bytes than the file has");
+    assert_refused(TOILE_SCRATCH_DIR "/preview.exr", bytes, sizeof bytes, "has not the size of its type");
+}
+
+/* The library goes by the type of a value, not by its size: what is left of a longer one would be its next
+ * attribute, with a claim that nobody has checked. Inside each value here is such an attribute, "b" of type
+ * "t", that claims 2 GB. */
+static void values_are_as_long_as_their_type(void **state)
+{
+    (void)state;
+    static const char inner[] = "b\0t\0\xff\xff\xff\x7f";
+    static const struct {
+        const char *type;
+        size_t length; /* of a sound value */
+        const char *value;
+    } cases[] = {{"float", 4, "\0\0\0\0"},
+                 {"compression", 1, "\0"},
+                 {"chlist", 19, "R\0\1\0\0\0\0\0\0\0\1\0\0\0\1\0\0\0"},
+                 {"chlist", 1, ""},
+                 {"preview", 8, "\0\0\0\0\0\0\0\0"},
+                 {"stringvector", 5, "\1\0\0\0a"}};
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        uint8_t bytes[128] = "\x76\x2f\x31\x01\x02";
+        uint8_t *at = bytes + 8, length = (uint8_t)(cases[i].length + sizeof inner - 1);
+        at = (uint8_t *)stpcpy((char *)at, "a") + 1;
+        at = (uint8_t *)stpcpy((char *)at, cases[i].type) + 1;
+        *at = length;
+        memcpy(at + 4, cases[i].value, cases[i].length);
+        memcpy(at + 4 + cases[i].length, inner, sizeof inner - 1);
+        at += 4 + length;
+        assert_refused(TOILE_SCRATCH_DIR "/long.exr", bytes, (size_t)(at + 1 - bytes),
+                       "has not the size of its type");
+    }
 }
 
 /* A file truncated at any byte is refused. */
@@ -360,6 +390,7 @@ int main(void)
         cmocka_unit_test(every_valid_file_loads),
         cmocka_unit_test(attributes_lie_within_the_file),
         cmocka_unit_test(previews_lie_within_their_attribute),
+        cmocka_unit_test(values_are_as_long_as_their_type),
         cmocka_unit_test(cut_files_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
