@@ -18,6 +18,9 @@ void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *memory, size_t size);
 void *__libc_memalign(size_t alignment, size_t size);
 
+/* Seen by the libraries, although names are hidden as a rule (CMakeLists.txt). */
+#define REPLACES __attribute__((weak, visibility("default")))
+
 static void *or_end(void *memory, size_t size)
 {
     if (!memory && size > 0)
@@ -25,12 +28,12 @@ static void *or_end(void *memory, size_t size)
     return memory;
 }
 
-__attribute__((weak)) void *malloc(size_t size)
+REPLACES void *malloc(size_t size)
 {
     return or_end(__libc_malloc(size), size);
 }
 
-__attribute__((weak)) void *calloc(size_t count, size_t size)
+REPLACES void *calloc(size_t count, size_t size)
 {
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes))
@@ -38,17 +41,17 @@ __attribute__((weak)) void *calloc(size_t count, size_t size)
     return or_end(__libc_calloc(count, size), bytes);
 }
 
-__attribute__((weak)) void *realloc(void *memory, size_t size)
+REPLACES void *realloc(void *memory, size_t size)
 {
     return or_end(__libc_realloc(memory, size), size);
 }
 
-__attribute__((weak)) void *aligned_alloc(size_t alignment, size_t size)
+REPLACES void *aligned_alloc(size_t alignment, size_t size)
 {
     return or_end(__libc_memalign(alignment, size), size);
 }
 
-__attribute__((weak)) int posix_memalign(void **out, size_t alignment, size_t size)
+REPLACES int posix_memalign(void **out, size_t alignment, size_t size)
 {
     if (alignment == 0 || alignment % sizeof(void *) != 0 || (alignment & (alignment - 1)) != 0)
         return EINVAL;
