@@ -1,14 +1,17 @@
-/* The C library's allocating functions for the whole program, the libraries that it uses included: when one
- * of them fails, the program ends as it does for tl_alloc (config/memory.h). Otherwise a failure would end in
- * whatever each library makes of it: a crash inside the GL driver, an abort, an exit status of 1.
+/* The C library's functions that give memory, for the whole program, the libraries that it uses included:
+ * when one of them fails, the program ends as it does for tl_alloc (config/memory.h). Otherwise a failure
+ * would end in whatever each library makes of it: a crash inside the GL driver, an abort, an exit status
+ * of 1.
  *
  * The program's definitions take the place of the C library's in every shared library (glibc manual,
  * "Replacing malloc"); the memory is still the C library's own, so free() stays its own too. Sanitizers
  * define these functions themselves. */
 #include "config/memory.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 
@@ -57,6 +60,23 @@ REPLACES int posix_memalign(void **out, size_t alignment, size_t size)
         return EINVAL;
     *out = aligned_alloc(alignment, size);
     return 0;
+}
+
+/* LLVM, which compiles the shaders of GL in software, takes its memory from the system, and aborts without.
+ * Huge pages are only tried. */
+REPLACES void *mmap(void *address, size_t size, int protection, int flags, int file, off_t offset)
+{
+    __typeof__(&mmap) next = (__typeof__(next))(size_t)dlsym(RTLD_NEXT, "mmap");
+    void *memory = next(address, size, protection, flags, file, offset);
+    if (memory == MAP_FAILED && errno == ENOMEM && (flags & MAP_ANONYMOUS) && !(flags & MAP_HUGETLB))
+        tl_memory_exhausted(size);
+    return memory;
+}
+
+/* What libraries call that were compiled for files beyond 2 GB. */
+REPLACES void *mmap64(void *address, size_t size, int protection, int flags, int file, off_t offset)
+{
+    return mmap(address, size, protection, flags, file, offset);
 }
 
 #endif
