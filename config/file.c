@@ -150,8 +150,7 @@ bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error
         writer->temporary = tl_format("%s.XXXXXX.tmp", writer->path);
         int descriptor = mkstemps(writer->temporary, 4);
         if (descriptor >= 0) {
-            tl_interrupt_guard(
-                writer->temporary); /* before fdopen asks for memory, which may end the program */
+            tl_interrupt_guard(writer->temporary); /* first, because fdopen may end the program */
             mode_t mask = umask(0);
             umask(mask);
             fchmod(descriptor,
