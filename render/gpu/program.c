@@ -181,9 +181,10 @@ static GLuint build(const tl_program *program, tl_error *error)
         if (!linked) {
             char log[512] = "";
             glGetProgramInfoLog(id, sizeof log, NULL, log);
+            const char *reason =
+                log[0] ? log : "the driver does not link them and gives no reason: update the driver";
             tl_fail(error, TL_INPUT, "%s + %s: %.*s", program->vertex, program->fragment,
-                    (int)strcspn(log, "\n"),
-                    log[0] ? log : "the driver does not link them and gives no reason: update the driver");
+                    (int)strcspn(reason, "\n"), reason);
             glDeleteProgram(id);
             id = 0;
         }
