@@ -10,6 +10,7 @@
 
 #include <dlfcn.h>
 #include <errno.h>
+#include <malloc.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 
@@ -52,6 +53,12 @@ REPLACES void *realloc(void *memory, size_t size)
 REPLACES void *aligned_alloc(size_t alignment, size_t size)
 {
     return or_end(__libc_memalign(alignment, size), size);
+}
+
+/* OpenMP's. */
+REPLACES void *memalign(size_t alignment, size_t size)
+{
+    return aligned_alloc(alignment, size);
 }
 
 REPLACES int posix_memalign(void **out, size_t alignment, size_t size)
