@@ -75,6 +75,12 @@ static void let_idle_threads_sleep(char **argv)
     prctl(PR_SET_NAME, "toile"); /* the kernel named it "exe" after the file that was executed */
 }
 
+/* Mesa's EGL would print lines of its own about what render/gpu reports in one. */
+static void silence_egl(void)
+{
+    setenv("EGL_LOG_LEVEL", "fatal", 0);
+}
+
 /* Bytes at the end of `text` that begin a sequence of UTF-8 and do not end it. */
 static size_t unfinished(const char *text, size_t length)
 {
@@ -128,6 +134,7 @@ static void clean_stdout(void)
 int main(int argc, char **argv)
 {
     let_idle_threads_sleep(argv);
+    silence_egl();
     keep_freed_memory();
     clean_stdout();
     setlocale(LC_ALL, "C"); /* numbers in files and results have a point, wherever the user lives */

@@ -1,7 +1,11 @@
 #include "config/error.h"
 
+#include "config/interrupt.h"
+
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
 void tl_clean_line(char *text)
 {
@@ -47,4 +51,18 @@ int tl_exit_status(enum tl_code code)
         break;
     }
     return 2;
+}
+
+void tl_end_program(const char *format, ...)
+{
+    char text[160] = "toile: ";
+    size_t start = strlen(text);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text + start, sizeof text - start - 1, format, arguments);
+    va_end(arguments);
+    strcat(text, "\n");
+    (void)!write(STDERR_FILENO, text, strlen(text)); /* stdio might allocate */
+    tl_interrupt_remove_guarded();
+    _exit(tl_exit_status(TL_DEVICE));
 }

@@ -36,4 +36,9 @@ void tl_clean_line(char *text);
 /* Exit status of the program for a code. */
 int tl_exit_status(enum tl_code code);
 
+/* Prints "toile: " and one line of at most 150 bytes, removes temporary files (config/interrupt.h) and ends
+ * the program with status 2: for what the system refuses and no caller can continue without. Allocates
+ * nothing. Threads: any. */
+void tl_end_program(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
+
 #endif

@@ -149,18 +149,18 @@ bool tl_writer_begin(struct tl_writer *writer, const char *path, tl_error *error
         sweep(writer->path);
         writer->temporary = tl_format("%s.XXXXXX.tmp", writer->path);
         int descriptor = mkstemps(writer->temporary, 4);
-        writer->stream = descriptor < 0 ? NULL : fdopen(descriptor, "wb");
-        if (writer->stream) {
+        if (descriptor >= 0) {
+            tl_interrupt_guard(writer->temporary); /* first, because fdopen may end the program */
             mode_t mask = umask(0);
             umask(mask);
             fchmod(descriptor,
                    0666 & ~mask); /* mkstemps makes private files; the result should be an ordinary one */
-            tl_interrupt_guard(writer->temporary);
+            writer->stream = fdopen(descriptor, "wb");
         }
     }
     if (!writer->stream) {
         int reason = errno;
-        release(writer);
+        tl_writer_abandon(writer);
         return tl_fail(error, TL_OUTPUT,
                        "%s: cannot be written: %s: choose a folder that exists and is writable", path,
                        strerror(reason));

@@ -1,7 +1,5 @@
 #include "config/memory.h"
 
-#include "config/interrupt.h"
-
 #include <inttypes.h>
 #include <limits.h>
 #include <stdarg.h>
@@ -12,15 +10,9 @@
 
 void tl_memory_exhausted(size_t bytes)
 {
-    char line[160];
-    int length =
-        snprintf(line, sizeof line,
-                 "toile: out of memory: %zu bytes were refused by the system: close other programs, or take "
-                 "smaller images and meshes\n",
-                 bytes);
-    (void)!write(STDERR_FILENO, line, (size_t)length); /* stdio might allocate */
-    tl_interrupt_remove_guarded();
-    _exit(tl_exit_status(TL_INPUT));
+    tl_end_program("out of memory: %zu bytes were refused by the system: close other programs, or take "
+                   "smaller images and meshes",
+                   bytes);
 }
 
 static void *insist(void *memory, size_t count, size_t size)

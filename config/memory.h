@@ -28,7 +28,7 @@ char *tl_copy_string(const char *text);
 /* printf into a new string; never NULL. */
 char *tl_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Prints the line, removes temporary files and ends the program. Allocates nothing. */
+/* Ends the program (tl_end_program). Allocates nothing. */
 void tl_memory_exhausted(size_t bytes) __attribute__((noreturn));
 
 /* ---- The allowance: bytes that the process may take ---- */

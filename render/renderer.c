@@ -107,7 +107,7 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
     if (!resources->trace || !resources->maps || !tl_lighting_create(&resources->lighting, gpu, error) ||
         !tl_present_create(&resources->present, gpu, error) ||
-        !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error))
+        !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error) || !tl_gpu_check(gpu, error))
         tl_renderer_destroy(&renderer);
     return renderer;
 }
@@ -295,12 +295,13 @@ static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, t
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         double started_s = tl_clock_s();
-        if (!tl_frame_jobs[i].run(&renderer->resources, plan->rows[i].level, error)) {
+        bool has_run = tl_frame_jobs[i].run(&renderer->resources, plan->rows[i].level, error);
+        /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
+        glFinish();
+        if (!has_run || !tl_gpu_check(renderer->resources.gpu, error)) {
             forget(renderer);
             return false;
         }
-        /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
-        glFinish();
         plan->rows[i].took_ms = 1000 * (tl_clock_s() - started_s);
         tl_debug("%s: %.2f ms, predicted %.2f ms", plan->rows[i].name, plan->rows[i].took_ms,
                  plan->rows[i].predicted_ms);
@@ -483,13 +484,25 @@ static bool require_image(const tl_renderer *renderer, const char *purpose, tl_e
     return true;
 }
 
+/* Hands an image that was read from GL over to the caller, if all of it was read. */
+static bool hand_over(const tl_renderer *renderer, tl_image *image, tl_image *out, tl_error *error)
+{
+    bool is_whole = tl_gpu_check(renderer->resources.gpu, error);
+    if (is_whole)
+        *out = *image;
+    else
+        tl_image_release(image);
+    return is_whole;
+}
+
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error)
 {
     if (!require_image(renderer, "read", error))
         return false;
     tl_gpu_reset_state(renderer->resources.gpu);
-    tl_linear_image_read(&renderer->resources.present.image, out);
-    return true;
+    tl_image image;
+    tl_linear_image_read(&renderer->resources.present.image, &image);
+    return hand_over(renderer, &image, out, error);
 }
 
 bool tl_renderer_read_capture(const tl_renderer *renderer, tl_image *out, tl_error *error)
@@ -528,8 +541,9 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
         .width = image->width, .height = image->height, .end_column = image->width};
     if (!require_image(renderer, "show", error) || !show(renderer, &whole, error))
         return false;
-    tl_picture_read(&renderer->resources.present.picture, out);
-    return true;
+    tl_image picture;
+    tl_picture_read(&renderer->resources.present.picture, &picture);
+    return hand_over(renderer, &picture, out, error);
 }
 
 bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,

@@ -68,7 +68,7 @@ bool tl_renderer_is_at_rest(const tl_renderer *renderer);
 
 /* Reads the HDR image back: F32 RGBA, linear, premultiplied by the coverage in alpha, black where nothing is.
  *
- * Errors: false, with `error` set and `out` unchanged, when no frame has been drawn.
+ * Errors: false, with `error` set and `out` unchanged, when no frame has been drawn and when GL lacks memory.
  * Lifetime: the caller releases `out` with tl_image_release. */
 bool tl_renderer_read(tl_renderer *renderer, tl_image *out, tl_error *error);
 
@@ -92,14 +92,16 @@ void tl_renderer_legend(const tl_renderer *renderer, struct tl_legend *out);
 /* Makes the layers (AOVs) of the last frame. Each pixel has the values of the one sample nearest to its
  * centre, because a mean of the normals or positions of different surfaces belongs to none of them.
  *
- * Errors: false, with `error` set and `out` empty, when the frame was drawn without tl_frame.aovs.
+ * Errors: false, with `error` set and `out` empty, when the frame was drawn without tl_frame.aovs and when
+ * GL lacks memory.
  * Lifetime: the caller releases `out` with tl_aovs_release. */
 bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_error *error);
 
 /* Makes the garment's layer of the last frame alone: F32, one channel, of the image's size, 1 where the
  * garment is the nearest surface, else 0.
  *
- * Errors: false, with `error` set and `out` empty, when the frame was drawn without tl_frame.aovs.
+ * Errors: false, with `error` set and `out` empty, when the frame was drawn without tl_frame.aovs and when
+ * GL lacks memory.
  * Lifetime: the caller releases `out` with tl_image_release. */
 bool tl_renderer_read_garment(const tl_renderer *renderer, tl_image *out, tl_error *error);
 

@@ -81,7 +81,10 @@ bool tl_renderer_read_aovs(const tl_renderer *renderer, struct tl_aovs *out, tl_
         return false;
     const struct tl_inspect_request request = inspect_request(renderer);
     tl_aovs_make(&request, has_strains(&renderer->resources.shapes), out);
-    return true;
+    if (tl_gpu_check(renderer->resources.gpu, error))
+        return true;
+    tl_aovs_release(out);
+    return false;
 }
 
 bool tl_renderer_read_garment(const tl_renderer *renderer, tl_image *out, tl_error *error)
@@ -91,7 +94,10 @@ bool tl_renderer_read_garment(const tl_renderer *renderer, tl_image *out, tl_err
         return false;
     const struct tl_inspect_request request = inspect_request(renderer);
     *out = tl_aovs_make_garment(&request);
-    return true;
+    if (tl_gpu_check(renderer->resources.gpu, error))
+        return true;
+    tl_image_release(out);
+    return false;
 }
 
 uint32_t tl_renderer_exponents(const tl_renderer *renderer)

@@ -3,6 +3,7 @@
 #include "config/log.h"
 #include "config/memory.h"
 
+#include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,8 @@ static bool take_over(tl_gpu *gpu, tl_error *error)
 static bool create_context(tl_gpu *gpu, tl_error *error)
 {
     const char *remedy = "install Mesa's EGL driver (libegl-mesa0)";
+    if (!dlopen("libEGL.so.1", RTLD_LAZY)) /* libepoxy would abort */
+        return tl_fail(error, TL_DEVICE, "EGL: %s: install libegl1", dlerror());
     if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
         return tl_fail(error, TL_DEVICE, "EGL: there is no surfaceless platform here: %s", remedy);
     gpu->display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
@@ -136,6 +139,21 @@ size_t tl_gpu_message_count(const tl_gpu *gpu)
 size_t tl_gpu_texture_bytes(const tl_gpu *gpu)
 {
     return gpu->texture_bytes;
+}
+
+bool tl_gpu_check(const tl_gpu *gpu, tl_error *error)
+{
+    const int flags_max = 8; /* GL may keep several; a lost context would report without end */
+    bool is_exhausted = false;
+    GLenum code = GL_NO_ERROR;
+    for (int i = 0; i < flags_max && (code = glGetError()) != GL_NO_ERROR; i++)
+        is_exhausted |= code == GL_OUT_OF_MEMORY;
+    return !is_exhausted ||
+           tl_fail(
+               error, TL_DEVICE,
+               "OpenGL: out of memory, with %zu MiB of textures: close other programs, or make the image, "
+               "light.regions or light.pem_size smaller",
+               gpu->texture_bytes >> 20);
 }
 
 int tl_gpu_texture_side_max(const tl_gpu *gpu)

@@ -31,6 +31,9 @@ bool tl_gpu_is_software(const tl_gpu *gpu);     /* Mesa's llvmpipe: it runs on t
 size_t tl_gpu_message_count(const tl_gpu *gpu); /* GL debug messages so far */
 size_t tl_gpu_texture_bytes(const tl_gpu *gpu); /* memory of all live textures, computed from their formats */
 int tl_gpu_texture_side_max(const tl_gpu *gpu); /* texels */
+/* Whether GL had the memory for all that was asked of it since the last check. Where it had not, textures and
+ * images that were read are not what they should be. */
+bool tl_gpu_check(const tl_gpu *gpu, tl_error *error);
 int tl_gpu_subpixel_bits(const tl_gpu *gpu); /* places are rounded to 2^-bits of a sample as they are drawn */
 
 typedef struct tl_texture {

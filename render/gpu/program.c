@@ -126,6 +126,10 @@ static bool expand(struct shader_source *source, const struct tl_embedded *file,
 static bool fail_with_log(const struct shader_source *source, const char *log, tl_error *error)
 {
     int line = 0, consumed = 0, length = (int)strcspn(log, "\n");
+    if (length == 0)
+        return tl_fail(error, TL_DEVICE,
+                       "%s: the driver does not compile it and gives no reason: update the driver",
+                       source->files[0]);
     if ((sscanf(log, "%*u:%d%n", &line, &consumed) == 1 || sscanf(log, "%*u(%d)%n", &line, &consumed) == 1) &&
         line >= 0 && line / LINES_MAX < source->file_count)
         return tl_fail(error, TL_INPUT, "%s:%d%.*s", source->files[line / LINES_MAX], line % LINES_MAX,
@@ -147,7 +151,7 @@ static GLuint compile(GLenum kind, const tl_program *program, const char *name, 
     shader = glCreateShader(kind);
     glShaderSource(shader, 1, (const GLchar *const *)&source.text, NULL);
     glCompileShader(shader);
-    GLint compiled;
+    GLint compiled = GL_FALSE; /* stays where there is no shader */
     glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
     if (!compiled) {
         char log[512] = "";
@@ -172,13 +176,15 @@ static GLuint build(const tl_program *program, tl_error *error)
         glAttachShader(id, vertex);
         glAttachShader(id, fragment);
         glLinkProgram(id);
-        GLint linked;
+        GLint linked = GL_FALSE;
         glGetProgramiv(id, GL_LINK_STATUS, &linked);
         if (!linked) {
             char log[512] = "";
             glGetProgramInfoLog(id, sizeof log, NULL, log);
+            const char *reason =
+                log[0] ? log : "the driver does not link them and gives no reason: update the driver";
             tl_fail(error, TL_INPUT, "%s + %s: %.*s", program->vertex, program->fragment,
-                    (int)strcspn(log, "\n"), log);
+                    (int)strcspn(reason, "\n"), reason);
             glDeleteProgram(id);
             id = 0;
         }
