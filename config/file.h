@@ -4,8 +4,8 @@
  * beside the target, and renames it over the target on commit, after flushing; a full disk or an abandoned
  * write leaves no file behind and the old target untouched. What a killed process left is removed an hour
  * later by the next writer of the same target. A second Ctrl-C and a lack of memory remove the temporary
- * file too (config/interrupt.h). Not atomic: writing to a device such as /dev/full or /dev/null, which is written
- * directly. */
+ * file too (config/interrupt.h). Not atomic: writing to a device such as /dev/full or /dev/null, which is
+ * written directly. */
 #ifndef TOILE_CONFIG_FILE_H
 #define TOILE_CONFIG_FILE_H
 
