@@ -5,6 +5,7 @@
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_memory.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_place.h"
 #include "app/view/review/review_read.h"
 #include "app/view/review/review_wipe.h"
 #include "app/view/review_commands.h"
@@ -299,10 +300,13 @@ void tl_review_build_panel(struct tl_review *review)
     struct question question;
     char status[256], progress[256], left[256] = "", right[256] = "", label[256], moment[64];
     float times[TL_FRAME_TIMES_SHOWN];
-    char read_out[512];
+    char read_out[512], amount[96];
     float marks[TL_REVIEW_MARKS][2];
     struct tl_panel_legend legend;
     tl_review_list_buttons(review, &buttons);
+    struct tl_gizmo_shapes shapes;
+    tl_review_place_shapes(review, &shapes);
+    tl_review_place_amount(review, amount, sizeof amount);
     tl_review_read_out(review, read_out, sizeof read_out);
     if (review->wipe.renderer)
         tl_review_wipe_labels(review, left, right, sizeof left);
@@ -318,8 +322,11 @@ void tl_review_build_panel(struct tl_review *review)
         .wipe = {tl_review_wipe_column(review, width), left, right},
         .legend = tl_review_legend(review, &legend) ? &legend : NULL,
         .read_out = read_out,
+        .amount = amount,
         .marks = (const float(*)[2])marks,
         .mark_count = tl_review_marks(review, marks),
+        .shapes = shapes.of,
+        .shape_count = shapes.count,
         .progress = tl_review_progress(review, progress, sizeof progress),
         .buttons = buttons.of,
         .button_count = buttons.count,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 namespace
 {
@@ -193,6 +194,44 @@ void draw_marks(const tl_panel_input &input)
     list->PopClipRect();
 }
 
+/* Each over a dark copy of itself that is a little larger, so that it is seen on any cloth. */
+void draw_shape(ImDrawList &list, const tl_panel_shape &shape, const ImVec2 *points)
+{
+    const int count = static_cast<int>(shape.count);
+    const float border = 1.5f;
+    const ImU32 colour = ImGui::ColorConvertFloat4ToU32(
+        ImVec4(shape.colour[0], shape.colour[1], shape.colour[2], shape.colour[3]));
+    if (shape.text) {
+        const ImVec2 size = ImGui::CalcTextSize(shape.text);
+        const ImVec2 corner(points[0].x - 0.5f * size.x, points[0].y - 0.5f * size.y);
+        list.AddText(ImVec2(corner.x + 1, corner.y + 1), shade, shape.text);
+        list.AddText(corner, colour, shape.text);
+    } else if (shape.width > 0) {
+        list.AddPolyline(points, count, shade, 0, shape.width + 2 * border);
+        list.AddPolyline(points, count, colour, 0, shape.width);
+    } else {
+        list.AddConvexPolyFilled(points, count, colour);
+        list.AddPolyline(points, count, shade, ImDrawFlags_Closed, border);
+    }
+}
+
+void draw_shapes(const tl_panel_input &input)
+{
+    const ImGuiIO &io = ImGui::GetIO();
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->PushClipRect(ImVec2(0, 0), ImVec2(view_width(input), io.DisplaySize.y));
+    for (size_t i = 0; i < input.shape_count; i++) {
+        tl_panel_shape shape = input.shapes[i];
+        std::vector<ImVec2> points;
+        for (size_t k = 0; k < shape.count; k++)
+            points.emplace_back(shape.points[k][0] / io.DisplayFramebufferScale.x,
+                                shape.points[k][1] / io.DisplayFramebufferScale.y);
+        shape.width /= io.DisplayFramebufferScale.x;
+        draw_shape(*list, shape, points.data());
+    }
+    list->PopClipRect();
+}
+
 /* Next to the pointer, towards the middle of the view. */
 void draw_read_out(const tl_panel_input &input)
 {
@@ -208,6 +247,23 @@ void draw_read_out(const tl_panel_input &input)
     make_room(input.read_out);
     ImGui::Begin("read out", nullptr, overlay_flags);
     ImGui::TextUnformatted(input.read_out);
+    ImGui::End();
+}
+
+/* Below the pointer, where it covers no handle; above it at the view's lower edge. */
+void draw_amount(const tl_panel_input &input)
+{
+    if (!input.amount || !input.amount[0])
+        return;
+    const ImGuiIO &io = ImGui::GetIO();
+    const float apart = 28;
+    const bool is_low = io.MousePos.y + 3 * apart > io.DisplaySize.y;
+    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x, io.MousePos.y + (is_low ? -apart : apart)),
+                            ImGuiCond_Always, ImVec2(0.5f, is_low ? 1.0f : 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.85f);
+    make_room(input.amount);
+    ImGui::Begin("amount", nullptr, overlay_flags);
+    ImGui::TextUnformatted(input.amount);
     ImGui::End();
 }
 
@@ -300,12 +356,14 @@ void tl_panel_overlay_draw(const tl_panel_input &input)
 {
     draw_wipe(input);
     draw_marks(input);
+    draw_shapes(input);
     draw_status(input);
     draw_notice(input);
     draw_legend(input);
     draw_message(input);
     draw_progress(input);
     draw_read_out(input);
+    draw_amount(input);
     draw_help(input);
 }
 

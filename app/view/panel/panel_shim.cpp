@@ -241,7 +241,7 @@ void note_texts(tl_panel_fonts *fonts, const tl_panel_input &input)
 {
     for (const char *text :
          {input.title, input.message, input.status, input.notice, input.strip.label, input.wipe.left,
-          input.wipe.right, input.progress.what, input.read_out, input.question})
+          input.wipe.right, input.progress.what, input.read_out, input.amount, input.question})
         tl_panel_fonts_note(fonts, text);
     for (size_t i = 0; i < input.measure_count; i++)
         note_lines(fonts, input.measures[i].lines, input.measures[i].count);

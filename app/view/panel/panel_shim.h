@@ -58,6 +58,15 @@ struct tl_panel_legend {
     float entry_colours[TL_PANEL_LEGEND_ENTRIES][3];
 };
 
+/* A line, a filled convex polygon, or a text about its first point, over the view; framebuffer pixels. */
+struct tl_panel_shape {
+    const float (*points)[2];
+    size_t count;
+    float colour[4];  /* sRGB and opacity, [0, 1] */
+    float width;      /* of the line; 0: filled */
+    const char *text; /* NULL: none */
+};
+
 /* The frames of what is played back; a slider goes to one. */
 struct tl_panel_timeline {
     int frame, last;   /* last 0: none is shown */
@@ -90,8 +99,11 @@ struct tl_panel_input {
     struct tl_panel_timeline timeline;
     const struct tl_panel_legend *legend; /* NULL: none */
     const char *read_out;                 /* lines next to the pointer, or "" */
+    const char *amount;                   /* of a drag: one line below the pointer, or "" */
     const float (*marks)[2];              /* rings over the view, framebuffer pixels */
     size_t mark_count;
+    const struct tl_panel_shape *shapes; /* the first is drawn first */
+    size_t shape_count;
     const struct tl_panel_button *buttons;
     size_t button_count;
     const char *const *favourites; /* "table.key" of the options at the top */
