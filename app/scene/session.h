@@ -110,6 +110,11 @@ void tl_session_succeed(tl_session *fresh, const tl_session *old);
  * Threads: the session's. */
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
 
+/* Gives the options units, up, avatar_units and avatar_up the values that their models were read with: those
+ * of `scene`, where auto was decided so. The scene is the same, and is not loaded again for it.
+ * Errors: none. Threads: the session's. */
+void tl_session_name_reading(tl_session *session, const struct tl_scene_params *scene);
+
 /* Exchanges the environments of two sessions, and the options that decide them.
  * Errors: none.
  * Lifetime: ends the last tl_session_frame of either.

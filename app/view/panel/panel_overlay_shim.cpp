@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <vector>
 
 namespace
@@ -62,20 +63,53 @@ void draw_status(const tl_panel_input &input)
     ImGui::End();
 }
 
-/* One line below the status. */
-void draw_notice(const tl_panel_input &input)
+/* Rows of buttons, each behind its heading; what holds at present is lighter. */
+void draw_choices(const tl_panel_input &input, tl_panel_result &result)
+{
+    const ImU32 chosen = IM_COL32(150, 115, 45, 255);
+    float indent = 0;
+    for (size_t i = 0; i < input.choice_count; i++)
+        indent = std::max(indent, ImGui::CalcTextSize(input.choices[i].row).x);
+    indent += 2 * ImGui::GetStyle().ItemSpacing.x;
+    for (size_t i = 0; i < input.choice_count; i++) {
+        const tl_panel_choice &choice = input.choices[i];
+        if (i == 0 || strcmp(input.choices[i - 1].row, choice.row) != 0) {
+            ImGui::AlignTextToFramePadding();
+            ImGui::TextUnformatted(choice.row);
+            ImGui::SameLine(indent);
+        } else {
+            ImGui::SameLine();
+        }
+        if (choice.is_chosen)
+            ImGui::PushStyleColor(ImGuiCol_Button, chosen);
+        if (ImGui::Button(choice.label))
+            result.choice = static_cast<int>(i);
+        if (choice.is_chosen)
+            ImGui::PopStyleColor();
+        if (choice.help && ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", choice.help);
+    }
+}
+
+/* Below the status; the image stays in use beside it. */
+void draw_notice(const tl_panel_input &input, tl_panel_result &result)
 {
     if (!input.notice || !input.notice[0])
         return;
     const ImVec4 warm(0.98f, 0.80f, 0.45f, 1.0f);
     const float wrap = 0.8f * view_width(input), line = 2.4f * ImGui::GetFontSize();
-    make_room(input.notice, wrap);
-    begin_overlay("notice", input, 0, line / ImGui::GetIO().DisplaySize.y);
+    tl_panel_place_over_view(input, 0, line / ImGui::GetIO().DisplaySize.y);
+    ImGui::SetNextWindowBgAlpha(0.85f);
+    if (input.choice_count == 0)
+        make_room(input.notice, wrap);
+    ImGui::Begin("notice", nullptr,
+                 input.choice_count > 0 ? overlay_flags & ~ImGuiWindowFlags_NoMouseInputs : overlay_flags);
     ImGui::PushStyleColor(ImGuiCol_Text, warm);
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
     ImGui::TextUnformatted(input.notice);
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
+    draw_choices(input, result);
     ImGui::End();
 }
 
@@ -352,13 +386,13 @@ void tl_panel_place_over_view(const tl_panel_input &input, float x, float y)
     ImGui::SetNextWindowPos(ImVec2(place_x, place_y), ImGuiCond_Always, ImVec2(x, y));
 }
 
-void tl_panel_overlay_draw(const tl_panel_input &input)
+void tl_panel_overlay_draw(const tl_panel_input &input, tl_panel_result &result)
 {
     draw_wipe(input);
     draw_marks(input);
     draw_shapes(input);
     draw_status(input);
-    draw_notice(input);
+    draw_notice(input, result);
     draw_legend(input);
     draw_message(input);
     draw_progress(input);

@@ -336,7 +336,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1, -1, -1, {}, nullptr};
+    tl_panel_result result = {false, false, -1, -1, -1, -1, {}, nullptr};
     ImGui_ImplOpenGL3_NewFrame();
     note_texts(panel->fonts, *input);
     if (tl_panel_fonts_update(panel->fonts)) {
@@ -352,7 +352,7 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
     panel->place = {};
     if (input->width > 0)
         draw_panel(*panel, *input, result);
-    tl_panel_overlay_draw(*input);
+    tl_panel_overlay_draw(*input, result);
     if (input->question)
         draw_question(*input, result);
     result.editing = ImGui::IsAnyItemActive();

@@ -87,12 +87,21 @@ struct tl_panel_list {
     size_t count;
 };
 
+/* An answer to the notice: a button in a row of its own heading. */
+struct tl_panel_choice {
+    char label[48];
+    const char *row, *help;
+    bool is_chosen; /* what holds at present */
+};
+
 struct tl_panel_input {
     const char *title;
     const char *message; /* the last report, or ""; over the view */
     bool message_is_error;
     const char *status; /* motion without input, or ""; over the view */
-    const char *notice; /* what is to be accepted, or NULL or ""; below the status */
+    const char *notice; /* what is asked or to be accepted, or NULL or ""; below the status */
+    const struct tl_panel_choice *choices; /* its answers; those of a row stand together */
+    size_t choice_count;
     struct tl_panel_strip strip;
     struct tl_panel_wipe wipe;
     struct tl_panel_progress progress;
@@ -134,6 +143,7 @@ struct tl_panel_result {
     bool editing; /* a widget is held or typed into: further edits are expected */
     int button;   /* index of the one that was pressed, -1 for none */
     int answer;   /* index of the one that was chosen, -1 for none */
+    int choice;   /* index of the notice's answer that was pressed, -1 for none */
     int frame;    /* that the timeline was moved to, -1 for none */
     struct tl_panel_note note;
     const struct tl_option *listed; /* whose list of choices is open; NULL: none */

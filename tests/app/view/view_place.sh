@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The handles that place a garment, in the real window: a drag of the X arrow moves the garment by the closed form of
-# its camera, Esc and undo take a drag back. TOILE is the program.
+# Placing a garment in the real window. The handles: a drag of the X arrow moves the garment by the closed form of its
+# camera, Esc and undo take a drag back. The question about a file whose units are in doubt: it is asked once, and its
+# answer is a part of the scene. TOILE is the program.
 set -eu
 . "$(dirname "$0")/view_room.sh"
 
@@ -66,6 +67,39 @@ sleep 0.5
 drag 1 $((x + 90)) $y $((x + 110)) $y # turns the view
 press m "view: arrows move the garment"
 [ "$(grep -c "view: --move" log)" = 6 ] || fail "a drag that was not of a handle placed the garment"
+xdotool key q
+closed
+
+# 36 units are 36 cm, or 0.91 m in inches.
+awk '/^v / { print "v", 36 * $2, 36 * $3, 0; next } { print }' sheet.obj >doubt.obj
+ask() { $TOILE view --preset draft --garment doubt.obj --set light.regions=24 --set light.pem_size=16 >>out 2>log & viewer=$!; logged "view: ready"; }
+: >log
+ask
+grep -q "view: asks how doubt.obj is to be read: --units in --up y so far" log || fail "nothing is asked"
+press Return "view: keeps --units in --up y"
+press ctrl+z "view: undone: scene.units auto -> in" # what was kept is a part of the scene
+press u "view: reads it in decimetres" # asks again, and shows its answers
+logged "view: asks how doubt.obj" 2
+# Its row of units, by clicks from the left: each reads the file otherwise, and the text above and the gaps do nothing.
+for x in $(seq 60 20 460); do
+    for y in 90 100 110; do
+        xdotool mousemove $x $y click 1
+        sleep 0.1
+        ! grep -q "view: reads it in centimetres" log || break 2
+    done
+done
+logged "view: reads it in centimetres"
+sleep 1
+press Return "view: keeps --units cm --up y"
+press ctrl+z "view: undone: scene.units"
+press ctrl+y "view: redone: scene.units"
+sleep 2 # the journal is written
+kill -KILL "$viewer"
+wait "$viewer" 2>/dev/null || true
+: >log
+ask
+logged "view: recovered"
+! grep -q "view: asks" log || fail "asked again"
 xdotool key q
 closed
 [ ! -s out ] || fail "something on standard output"
