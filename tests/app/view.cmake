@@ -2,7 +2,7 @@
 # small program of X11's, whose headers come with GL's.
 toile_test(scene/orbit unit toile_app)
 toile_test(view/loader unit toile_app)
-toile_test(view/gizmo unit toile_app)
+toile_test(view/gizmo/gizmo unit toile_app)
 toile_test(view/review_commands unit toile_app)
 toile_test(view/history unit toile_app)
 toile_test(view/journal unit toile_app)
