@@ -36,10 +36,10 @@ static void report_line(char *line)
  * the file's own axes: such models are not turned unless they are told to. */
 static bool is_z_up(const tl_model *model, int up, bool moves, const char *option)
 {
-    if (up != TL_UP_AUTO || moves || !model->units.z_up)
+    if (up != TL_UP_AUTO || moves)
         return up == TL_UP_Z;
     report_line(tl_units_describe_up(model->name, &model->units, option));
-    return true;
+    return model->units.z_up;
 }
 
 static bool place_avatar(const struct tl_settings *settings, tl_avatar *avatar, tl_error *error)
@@ -171,10 +171,13 @@ static bool place_garment(const struct tl_settings *settings, const tl_avatar *w
 {
     const struct tl_scene_params *scene = &settings->scene;
     const tl_mesh *mesh = &garment->model.mesh;
-    if (wearer && !garment->model.units.metric)
-        garment->model.units.z_up |=
-            tl_units_lies_z_up(tl_box_of(mesh->positions, mesh->vertex_count),
-                               tl_box_of(wearer->model.mesh.positions, wearer->model.mesh.vertex_count));
+    struct tl_units_reading *reading = &garment->model.units;
+    if (wearer && !reading->metric) {
+        struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
+        struct tl_box body = tl_box_of(wearer->model.mesh.positions, wearer->model.mesh.vertex_count);
+        reading->z_up |= tl_units_lies_z_up(box, body);
+        reading->deep &= !tl_units_lies_y_up(box, body);
+    }
     const struct tl_placing placing = {
         .z_up = is_z_up(&garment->model, scene->up, tl_scene_plays_motion(settings), "--up"),
         .scale = scene->scale,

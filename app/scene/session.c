@@ -29,10 +29,26 @@ static void pose_avatar(tl_session *session, double time_s)
                       session->avatar->model.mesh.vertex_count);
 }
 
+/* About the ground, onto which a garment without an avatar is lifted after it was placed. */
+static void place_drawn(tl_session *session)
+{
+    struct tl_placing placing = session->shown_placed;
+    struct tl_moving *dress = &session->dress;
+    tl_mesh drawn = {.vertex_count = dress->model->mesh.vertex_count,
+                     .positions = dress->positions,
+                     .normals = dress->normals,
+                     .tangents = dress->tangents};
+    if (placing.scale == 0)
+        return;
+    placing.move_m.y += session->standing.lifted_m * (1 - placing.scale);
+    tl_placing_apply(&placing, &drawn);
+}
+
 static void read_back_cloth(tl_session *session)
 {
     tl_cloth_positions(session->cloth, session->dress.positions);
     tl_moving_update(&session->dress);
+    place_drawn(session);
 }
 
 /* A garment from a file stands as its maker left it; panels with open seams have to be sewn first. */
@@ -58,10 +74,12 @@ static bool is_only_sewn(const tl_session *session)
  * has moved. */
 static void read_back_start(tl_session *session)
 {
-    if (session->authored && !tl_session_plays_clip(session))
-        tl_moving_restart_as_authored(&session->dress);
-    else
+    if (!session->authored || tl_session_plays_clip(session)) {
         read_back_cloth(session);
+        return;
+    }
+    tl_moving_restart_as_authored(&session->dress);
+    place_drawn(session);
 }
 
 static bool drape(tl_session *session, tl_error *error)
@@ -579,6 +597,21 @@ enum tl_garment_state tl_session_garment_state(const tl_session *session)
                      ? !session->authored && tl_cloth_is_settled(session->cloth)
                      : tl_cloth_frame_speed(session->cloth) < session->settings.cloth.settle_speed;
     return rests ? TL_GARMENT_AT_REST : TL_GARMENT_MOVED;
+}
+
+bool tl_session_show_placed(tl_session *session, const struct tl_placing *placing)
+{
+    const struct tl_placing *shown = &session->shown_placed;
+    const struct tl_placing present = shown->scale != 0 ? *shown : (struct tl_placing){.scale = 1};
+    if (!session->cloth || (present.scale == placing->scale && present.turn_deg == placing->turn_deg &&
+                            glms_vec3_eqv(present.move_m, placing->move_m)))
+        return false;
+    session->shown_placed = *placing;
+    if (session->frame == 0)
+        read_back_start(session);
+    else
+        read_back_cloth(session);
+    return true;
 }
 
 float tl_session_lifted_m(const tl_session *session)

@@ -85,7 +85,7 @@ bool tl_session_restart(tl_session *session, const struct tl_settings *settings,
  * with the session. Threads: the session's. */
 const struct tl_settings *tl_session_settings(const tl_session *session);
 
-/* ---- Loading on a worker thread (app/view/review/loader.h) ---- */
+/* ---- Loading on a worker thread (app/view/loader/loader.h) ---- */
 
 /* Whether a change from `old` to `new` requires: loading the scene again; reading another environment;
  * rebuilding or redrawing the appearance. Errors: none. Threads: pure. */
@@ -109,6 +109,11 @@ void tl_session_succeed(tl_session *fresh, const tl_session *old);
  * Lifetime: takes the contents of *made and empties it; ends the last tl_session_frame.
  * Threads: the session's. */
 void tl_session_replace_light(tl_session *session, struct tl_moving_light *made, const char *name);
+
+/* Gives the options units, up, avatar_units and avatar_up the values that their models were read with: those
+ * of `scene`, where auto was decided so. The scene is the same, and is not loaded again for it.
+ * Errors: none. Threads: the session's. */
+void tl_session_name_reading(tl_session *session, const struct tl_scene_params *scene);
 
 /* Exchanges the environments of two sessions, and the options that decide them.
  * Errors: none.
@@ -207,6 +212,11 @@ bool tl_session_is_undraped(const tl_session *session);
 /* By how much the garment stands above where its file has it: one without an avatar is lifted out of the
  * ground. Errors: none. Threads: the session's. */
 float tl_session_lifted_m(const tl_session *session);
+
+/* Draws the garment as if it were placed so on top of how it was loaded, until it is loaded again: what a
+ * drag shows before the scene follows. The cloth and its contacts stay where they are. False: it is drawn so
+ * already, or is no cloth. Errors: none. Lifetime: ends the last tl_session_frame. Threads: the session's. */
+bool tl_session_show_placed(tl_session *session, const struct tl_placing *placing);
 
 /* One line about a garment that is of another size than the body that wears it, or lies inside it; NULL:
  * there is nothing to say. Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or

@@ -63,6 +63,14 @@ void tl_session_replace_light(tl_session *session, struct tl_moving_light *made,
     snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
 }
 
+void tl_session_name_reading(tl_session *session, const struct tl_scene_params *scene)
+{
+    session->settings.scene.units = scene->units;
+    session->settings.scene.up = scene->up;
+    session->settings.scene.avatar_units = scene->avatar_units;
+    session->settings.scene.avatar_up = scene->avatar_up;
+}
+
 bool tl_session_restart(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
     tl_session *fresh = tl_session_create(settings, error);

@@ -32,7 +32,8 @@ struct tl_session {
     tl_collider *collider;
     tl_playback *playback; /* NULL: the garment is simulated */
     struct tl_moving dress;
-    struct tl_moving board; /* made when first asked for; empty: not yet, or there is no pattern */
+    struct tl_placing shown_placed; /* tl_session_show_placed; a scale of 0: as loaded */
+    struct tl_moving board;         /* made when first asked for; empty: not yet, or there is no pattern */
 
     struct {
         bool wanted;        /* whatever the image shows */

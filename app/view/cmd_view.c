@@ -9,6 +9,7 @@
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_memory.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_place.h"
 #include "app/view/review/review_wipe.h"
 #include "app/view/review/rhythm.h"
 #include "app/view/review_begin.h"
@@ -55,8 +56,8 @@ static bool panel_is_due(const struct tl_review *review)
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    bool is_used = review->drag == TL_DRAG_WIPE || review->editing || tl_panel_wants_pointer(review->panel) ||
-                   tl_panel_wants_keys(review->panel) ||
+    bool is_used = review->drag == TL_DRAG_WIPE || review->placing.shown || review->editing ||
+                   tl_panel_wants_pointer(review->panel) || tl_panel_wants_keys(review->panel) ||
                    (review->drag == TL_DRAG_NONE && review->pointer_x >= (float)width);
     return tl_panel_is_due(tl_clock_s(), review->times.panel_s, is_used, review->is_budgeted);
 }
@@ -72,6 +73,7 @@ static bool run_one_frame(struct tl_review *review, bool always_shows, tl_error 
     tl_review_load(review);
     tl_review_lap(review, "taking over what was loaded");
     tl_review_move(review);
+    tl_review_follow_place(review);
     if (!tl_review_update_image(review, error))
         return false;
     review->times.lap_s = tl_clock_s();

@@ -8,6 +8,7 @@
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_move.h"
 #include "app/view/review/review_place.h"
+#include "app/view/review/review_reading.h"
 #include "app/view/review/review_wipe.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
@@ -213,6 +214,12 @@ void tl_act_keep_reading(struct tl_review *review, int argument)
         tl_review_report(review, "nothing was guessed that could be kept");
 }
 
+void tl_act_place(struct tl_review *review, int argument)
+{
+    (void)argument;
+    tl_review_place_toggle(review);
+}
+
 void tl_act_options(struct tl_review *review, int argument)
 {
     (void)argument;
@@ -229,7 +236,7 @@ void tl_act_options(struct tl_review *review, int argument)
 void tl_act_back(struct tl_review *review, int argument)
 {
     (void)argument;
-    if (tl_review_cancel_question(review))
+    if (tl_review_place_cancel(review) || tl_review_cancel_question(review))
         return;
     if (tl_panel_close(review->panel))
         review->redraws = 3;
@@ -237,7 +244,7 @@ void tl_act_back(struct tl_review *review, int argument)
         tl_panel_use_keys(review->panel, false);
     else if (review->help_shown)
         review->help_shown = false;
-    else if (tl_review_stop_loading(review) || tl_review_keep_reading(review))
+    else if (tl_review_stop_loading(review) || tl_review_keep_reading(review) || tl_review_place_hide(review))
         return;
     else if (review->message_is_error && review->message[0])
         tl_review_clear_message(review);

@@ -20,6 +20,7 @@ tl_review_action tl_act_pin;   /* pins the vertex that is pulled; takes all pins
 tl_review_action tl_act_next_units; /* 1: the next unit, -1: the one before */
 tl_review_action tl_act_next_up;
 tl_review_action tl_act_keep_reading;
+tl_review_action tl_act_place; /* shows or hides the handles that place the garment */
 
 /* Camera. */
 enum tl_act_direction { TL_ACT_LEFT, TL_ACT_RIGHT, TL_ACT_UP, TL_ACT_DOWN };

@@ -22,6 +22,11 @@ static bool is_playing(const struct tl_review *review)
     return review->playing;
 }
 
+static bool is_placing(const struct tl_review *review)
+{
+    return review->placing.shown;
+}
+
 /* clang-format off */
 /* Keys of a row: one, with modifiers, with an argument of the action, with both; the digits 1 to 9. */
 #define KEY(name)                          {GLFW_KEY_##name, 0, 1, 0}
@@ -41,6 +46,8 @@ const struct tl_review_command tl_review_commands[] = {
      .keys = {TO(U, 1), WITH_TO(SHIFT, U, -1)}},
     {"read the file with Z up, with Y up", tl_act_next_up, TL_SECTION_CLOTH, .keys = {KEY(A)}},
     {"keep units and axis as they were guessed", tl_act_keep_reading, TL_SECTION_CLOTH, .keys = {KEY(ENTER)}},
+    {"show handles that move, turn and size it", tl_act_place, TL_SECTION_CLOTH, .keys = {KEY(M)},
+     .button = "Place", .button_on = "Done", .is_on = is_placing},
     {"back to the start", tl_act_reset, TL_SECTION_CLOTH, .keys = {KEY(R)}, .button = "Reset"},
     {"pin what is pulled; else remove all pins", tl_act_pin, TL_SECTION_CLOTH, .keys = {KEY(P)}},
 
@@ -95,6 +102,7 @@ const size_t tl_review_command_count = TL_COUNT(tl_review_commands);
 
 const struct tl_review_gesture tl_review_gestures[] = {
     {TL_SECTION_CLOTH, "Ctrl+drag", "pull the cloth"},
+    {TL_SECTION_CLOTH, "drag a handle", "Shift: fine; Ctrl: in steps; Esc: back"},
     {TL_SECTION_CLOTH, "Ctrl+Shift+drag", "move a garment; right drag: turn it"},
     {TL_SECTION_CLOTH, "Ctrl+Shift+wheel", "size it"},
     {TL_SECTION_CAMERA, "drag", "turn about the figure"},

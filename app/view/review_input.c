@@ -64,9 +64,11 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
     review->pointer_y = event->y;
     tl_review_stop_moving(review);
     if (places(event->modifiers))
-        tl_review_place_begin(review);
+        tl_review_place_begin(review, event->x, event->y, event->button != GLFW_MOUSE_BUTTON_LEFT);
     else if (event->button != GLFW_MOUSE_BUTTON_LEFT)
         review->drag = TL_DRAG_PAN;
+    else if (tl_review_place_catch(review, event->x, event->y))
+        return;
     else if (is_on_wipe(review, event->x, width))
         review->drag = TL_DRAG_WIPE;
     else if (event->modifiers & GLFW_MOD_CONTROL)
@@ -83,6 +85,7 @@ static void on_release(struct tl_review *review, const struct tl_window_event *e
 {
     if (review->drag == TL_DRAG_NONE || event->button != review->drag_button)
         return;
+    tl_review_place_end(review);
     tl_review_hand_release(review);
 }
 
@@ -90,12 +93,13 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    float dx = (event->x - review->pointer_x) / (float)height,
-          dy = (event->y - review->pointer_y) / (float)height;
+    const float right = event->x - review->pointer_x, down = event->y - review->pointer_y;
+    float dx = right / (float)height, dy = down / (float)height;
     review->pointer_x = event->x;
     review->pointer_y = event->y;
     switch (review->drag) {
     case TL_DRAG_NONE:
+        tl_review_place_hover(review, event->x, event->y);
         return;
     case TL_DRAG_ORBIT:
         tl_orbit_turn(&review->wanted.camera, dx, dy);
@@ -113,7 +117,7 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
         return;
     case TL_DRAG_PLACE:
         if (review->drag_button == GLFW_MOUSE_BUTTON_LEFT)
-            tl_review_place_move(review, dx, dy);
+            tl_review_place_drag(review, right, down, event->modifiers);
         else
             tl_review_place_turn(review, dx);
         return;
@@ -134,9 +138,9 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     tl_review_stop_moving(review);
     if (places(event->modifiers)) {
         const float factor_per_step = 1.02f;
-        if (tl_review_place_begin(review))
+        if (tl_review_place_begin(review, event->x, event->y, false))
             tl_review_place_scale(review, powf(factor_per_step, event->steps));
-        tl_review_hand_release(review);
+        tl_review_place_end(review);
         return;
     }
     tl_review_fix_camera(review);
@@ -173,6 +177,8 @@ static void on_key(struct tl_review *review, const struct tl_window_event *event
         argument;
     if (review->drag == TL_DRAG_CLOTH) /* Ctrl is held in order to pull */
         modifiers &= ~GLFW_MOD_CONTROL;
+    if (review->drag == TL_DRAG_PLACE) /* they choose how fine it is */
+        modifiers &= ~(GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
     const struct tl_review_command *command = tl_review_command_of_key(event->key, modifiers, &argument);
     if (command && (!event->repeated || command->repeats))
         command->act(review, argument);

@@ -5,7 +5,9 @@
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_memory.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_place.h"
 #include "app/view/review/review_read.h"
+#include "app/view/review/review_reading.h"
 #include "app/view/review/review_wipe.h"
 #include "app/view/review_commands.h"
 #include "config/log.h"
@@ -220,6 +222,8 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
     }
     if (result->frame >= 0)
         tl_review_go_to_frame(review, result->frame);
+    if (result->choice >= 0)
+        tl_review_choose_reading(review, (size_t)result->choice);
     if (result->answer >= 0)
         tl_review_answer(review, (size_t)result->answer);
     else if (result->button >= 0)
@@ -299,10 +303,14 @@ void tl_review_build_panel(struct tl_review *review)
     struct question question;
     char status[256], progress[256], left[256] = "", right[256] = "", label[256], moment[64];
     float times[TL_FRAME_TIMES_SHOWN];
-    char read_out[512];
+    char read_out[512], amount[96];
     float marks[TL_REVIEW_MARKS][2];
     struct tl_panel_legend legend;
+    struct tl_panel_choice choices[TL_REVIEW_CHOICES];
     tl_review_list_buttons(review, &buttons);
+    struct tl_gizmo_shapes shapes;
+    tl_review_place_shapes(review, &shapes);
+    tl_review_place_amount(review, amount, sizeof amount);
     tl_review_read_out(review, read_out, sizeof read_out);
     if (review->wipe.renderer)
         tl_review_wipe_labels(review, left, right, sizeof left);
@@ -313,13 +321,18 @@ void tl_review_build_panel(struct tl_review *review)
         .message_is_error = review->message_is_error,
         .status = status,
         .notice = review->reading.notice,
+        .choices = choices,
+        .choice_count = tl_review_reading_choices(review, choices),
         .strip = strip_of(review, times, label, sizeof label),
         .timeline = timeline_of(review, moment, sizeof moment),
         .wipe = {tl_review_wipe_column(review, width), left, right},
         .legend = tl_review_legend(review, &legend) ? &legend : NULL,
         .read_out = read_out,
+        .amount = amount,
         .marks = (const float(*)[2])marks,
         .mark_count = tl_review_marks(review, marks),
+        .shapes = shapes.of,
+        .shape_count = shapes.count,
         .progress = tl_review_progress(review, progress, sizeof progress),
         .buttons = buttons.of,
         .button_count = buttons.count,

@@ -48,6 +48,13 @@ struct tl_placing tl_placing_about(const struct tl_placing *placing, vec3s point
     return changed;
 }
 
+struct tl_placing tl_placing_between(const struct tl_placing *from, const struct tl_placing *to)
+{
+    struct tl_placing between = {.scale = to->scale / from->scale, .turn_deg = to->turn_deg - from->turn_deg};
+    between.move_m = glms_vec3_sub(to->move_m, tl_placing_point(&between, from->move_m));
+    return between;
+}
+
 void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh)
 {
     float angle = glm_rad(placing->turn_deg), sine = sinf(angle), cosine = cosf(angle);

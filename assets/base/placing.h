@@ -31,6 +31,10 @@ vec3s tl_placing_origin(const struct tl_placing *placing, vec3s placed);
 struct tl_placing tl_placing_about(const struct tl_placing *placing, vec3s point, float turn_deg,
                                    float factor);
 
+/* The placing that takes a point placed by `from` to where `to` places it. Neither alters which axis is up.
+ * Threads: pure. */
+struct tl_placing tl_placing_between(const struct tl_placing *from, const struct tl_placing *to);
+
 /* Places positions, normals and tangents. Threads: one per mesh. */
 void tl_placing_apply(const struct tl_placing *placing, tl_mesh *mesh);
 

@@ -92,12 +92,18 @@ static float share_within(struct tl_box box, struct tl_box other)
     return share;
 }
 
+#define LIES_WITHIN 0.5f /* a share of a garment's box that is not there by chance */
+
+bool tl_units_lies_y_up(struct tl_box garment, struct tl_box body)
+{
+    return share_within(garment, body) > LIES_WITHIN;
+}
+
 bool tl_units_lies_z_up(struct tl_box garment, struct tl_box body)
 {
-    const float most = 0.5f;
     const struct tl_box turned = {{{garment.lower.x, garment.lower.z, -garment.upper.y}},
                                   {{garment.upper.x, garment.upper.z, -garment.lower.y}}};
-    return share_within(garment, body) == 0 && share_within(turned, body) > most;
+    return share_within(garment, body) == 0 && share_within(turned, body) > LIES_WITHIN;
 }
 
 struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, bool is_metric)
@@ -106,6 +112,7 @@ struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, b
     struct tl_units_reading reading = {
         .units = wanted, .longest = glms_vec3_max(size), .fits = true, .metric = is_metric};
     reading.z_up = !is_metric && looks_z_up(box);
+    reading.deep = !is_metric && size.z > size.y;
     if (wanted != TL_UNITS_AUTO)
         return reading;
     if (is_metric && !(reading.longest >= ABSURD_M))
@@ -114,6 +121,13 @@ struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, b
         guess(&reading);
     reading.absurd = is_metric && reading.guessed;
     return reading;
+}
+
+unsigned tl_units_doubts(const struct tl_units_reading *reading)
+{
+    bool units = reading->guessed && (reading->other != TL_UNITS_AUTO || !reading->fits || reading->absurd);
+    bool up = reading->z_up || reading->deep;
+    return (units ? TL_DOUBT_UNITS : 0u) | (up ? TL_DOUBT_UP : 0u);
 }
 
 char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option)
@@ -133,7 +147,9 @@ char *tl_units_describe(const char *name, const struct tl_units_reading *reading
 
 char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading, const char *option)
 {
-    return reading->z_up
-               ? tl_format("%s: stands along Z: turned upright; %s y leaves it as it is", name, option)
+    if (reading->z_up)
+        return tl_format("%s: stands along Z: turned upright; %s y leaves it as it is", name, option);
+    return reading->deep
+               ? tl_format("%s: deeper than high: left as it is; %s z turns it upright", name, option)
                : NULL;
 }

@@ -36,7 +36,15 @@ struct tl_units_reading {
     bool fits;           /* the size is that of a garment or a body */
     bool metric;         /* its format is in metres with Y up */
     bool z_up;           /* stands along Z, and its format does not say that Y is up */
+    bool deep;           /* deeper than high with Y up, and its format does not say that Y is up */
 };
+
+/* What of a reading is in doubt, and worth a question. Units: they were guessed, and a second one is
+ * possible, none fits, or the format's metres are absurd. Up: the format does not state it, and the model is
+ * deeper (along Z) than high (along Y), as bodies and what they wear seldom are, whichever axis was chosen.
+ */
+enum tl_doubts { TL_DOUBT_UNITS = 1, TL_DOUBT_UP = 2 };
+unsigned tl_units_doubts(const struct tl_units_reading *reading);
 
 /* Decides the units of a file whose positions have this box. `wanted` other than AUTO decides; then
  * `is_metric` means metres, unless absurd; then the size. */
@@ -51,11 +59,14 @@ void tl_units_weigh(struct tl_units_reading *reading, struct tl_box box, double 
 /* Whether a garment lies where its body is only with Z up: half of its box is then within the body's, and
  * nothing of it with Y up. Metres; `body` stands with Y up. */
 bool tl_units_lies_z_up(struct tl_box garment, struct tl_box body);
+/* Whether it lies where its body is with Y up. */
+bool tl_units_lies_y_up(struct tl_box garment, struct tl_box body);
 
 /* One line to report, such as "skirt.obj: 812 units at its longest: taken as millimetres ...; --units
  * overrides this" with `option` for --units: new string, NULL when nothing was guessed. */
 char *tl_units_describe(const char *name, const struct tl_units_reading *reading, const char *option);
-/* The same for a model that stands along Z and is therefore turned upright; `option` for --up. */
+/* The same for a model that stands along Z and is therefore turned upright, or whose axis is in doubt;
+ * `option` for --up. */
 char *tl_units_describe_up(const char *name, const struct tl_units_reading *reading, const char *option);
 
 #endif

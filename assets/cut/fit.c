@@ -61,16 +61,26 @@ static bool extreme_girths(const tl_mesh *mesh, const float shares[2], float *na
     return *widest_m > 0;
 }
 
+static float longest_side(const tl_mesh *mesh)
+{
+    struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
+    return glms_vec3_max(glms_vec3_sub(box.upper, box.lower));
+}
+
 char *tl_describe_size(const char *name, const tl_mesh *garment, const char *body_name, const tl_mesh *body)
 {
     /* Knits are worn stretched by some percent; coats are wider than bodies by a quarter. */
-    const float too_small = 0.9f, too_large = 4.0f / 3;
+    const float too_small = 0.9f, too_large = 4.0f / 3, too_long = 1.25f, too_short = 0.1f;
     float narrowest_m, widest_m, body_narrowest_m, body_widest_m;
     struct tl_waist waist;
+    const char *remedy = "it was made for another body, or its units are others; --units and --scale size it";
+    float garment_m = longest_side(garment), body_m = longest_side(body);
+    if (garment_m > too_long * body_m || garment_m < too_short * body_m)
+        return tl_format("%s: %.3g times as large as %s (%.3g m and %.3g m at their longest): %s", name,
+                         (double)(garment_m / body_m), body_name, (double)garment_m, (double)body_m, remedy);
     if (!tl_mesh_waist(body, &waist) || !extreme_girths(body, trunk, &body_narrowest_m, &body_widest_m) ||
         !extreme_girths(garment, all_of_it, &narrowest_m, &widest_m))
         return NULL;
-    const char *remedy = "it was made for another body, or its units are others; --units and --scale size it";
     double small = (double)(widest_m / waist.girth.length_m), large = (double)(narrowest_m / body_widest_m);
     if (small < (double)too_small)
         return tl_format("%s: at its widest %.2f m around, %.2f of the waist of %s: %s", name,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
+#include <vector>
 
 namespace
 {
@@ -61,20 +63,53 @@ void draw_status(const tl_panel_input &input)
     ImGui::End();
 }
 
-/* One line below the status. */
-void draw_notice(const tl_panel_input &input)
+/* Rows of buttons, each behind its heading; what holds at present is lighter. */
+void draw_choices(const tl_panel_input &input, tl_panel_result &result)
+{
+    const ImU32 chosen = IM_COL32(150, 115, 45, 255);
+    float indent = 0;
+    for (size_t i = 0; i < input.choice_count; i++)
+        indent = std::max(indent, ImGui::CalcTextSize(input.choices[i].row).x);
+    indent += 2 * ImGui::GetStyle().ItemSpacing.x;
+    for (size_t i = 0; i < input.choice_count; i++) {
+        const tl_panel_choice &choice = input.choices[i];
+        if (i == 0 || strcmp(input.choices[i - 1].row, choice.row) != 0) {
+            ImGui::AlignTextToFramePadding();
+            ImGui::TextUnformatted(choice.row);
+            ImGui::SameLine(indent);
+        } else {
+            ImGui::SameLine();
+        }
+        if (choice.is_chosen)
+            ImGui::PushStyleColor(ImGuiCol_Button, chosen);
+        if (ImGui::Button(choice.label))
+            result.choice = static_cast<int>(i);
+        if (choice.is_chosen)
+            ImGui::PopStyleColor();
+        if (choice.help && ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", choice.help);
+    }
+}
+
+/* Below the status; the image stays in use beside it. */
+void draw_notice(const tl_panel_input &input, tl_panel_result &result)
 {
     if (!input.notice || !input.notice[0])
         return;
     const ImVec4 warm(0.98f, 0.80f, 0.45f, 1.0f);
     const float wrap = 0.8f * view_width(input), line = 2.4f * ImGui::GetFontSize();
-    make_room(input.notice, wrap);
-    begin_overlay("notice", input, 0, line / ImGui::GetIO().DisplaySize.y);
+    tl_panel_place_over_view(input, 0, line / ImGui::GetIO().DisplaySize.y);
+    ImGui::SetNextWindowBgAlpha(0.85f);
+    if (input.choice_count == 0)
+        make_room(input.notice, wrap);
+    ImGui::Begin("notice", nullptr,
+                 input.choice_count > 0 ? overlay_flags & ~ImGuiWindowFlags_NoMouseInputs : overlay_flags);
     ImGui::PushStyleColor(ImGuiCol_Text, warm);
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + wrap);
     ImGui::TextUnformatted(input.notice);
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
+    draw_choices(input, result);
     ImGui::End();
 }
 
@@ -193,6 +228,44 @@ void draw_marks(const tl_panel_input &input)
     list->PopClipRect();
 }
 
+/* Each over a dark copy of itself that is a little larger, so that it is seen on any cloth. */
+void draw_shape(ImDrawList &list, const tl_panel_shape &shape, const ImVec2 *points)
+{
+    const int count = static_cast<int>(shape.count);
+    const float border = 1.5f;
+    const ImU32 colour = ImGui::ColorConvertFloat4ToU32(
+        ImVec4(shape.colour[0], shape.colour[1], shape.colour[2], shape.colour[3]));
+    if (shape.text) {
+        const ImVec2 size = ImGui::CalcTextSize(shape.text);
+        const ImVec2 corner(points[0].x - 0.5f * size.x, points[0].y - 0.5f * size.y);
+        list.AddText(ImVec2(corner.x + 1, corner.y + 1), shade, shape.text);
+        list.AddText(corner, colour, shape.text);
+    } else if (shape.width > 0) {
+        list.AddPolyline(points, count, shade, 0, shape.width + 2 * border);
+        list.AddPolyline(points, count, colour, 0, shape.width);
+    } else {
+        list.AddConvexPolyFilled(points, count, colour);
+        list.AddPolyline(points, count, shade, ImDrawFlags_Closed, border);
+    }
+}
+
+void draw_shapes(const tl_panel_input &input)
+{
+    const ImGuiIO &io = ImGui::GetIO();
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    list->PushClipRect(ImVec2(0, 0), ImVec2(view_width(input), io.DisplaySize.y));
+    for (size_t i = 0; i < input.shape_count; i++) {
+        tl_panel_shape shape = input.shapes[i];
+        std::vector<ImVec2> points;
+        for (size_t k = 0; k < shape.count; k++)
+            points.emplace_back(shape.points[k][0] / io.DisplayFramebufferScale.x,
+                                shape.points[k][1] / io.DisplayFramebufferScale.y);
+        shape.width /= io.DisplayFramebufferScale.x;
+        draw_shape(*list, shape, points.data());
+    }
+    list->PopClipRect();
+}
+
 /* Next to the pointer, towards the middle of the view. */
 void draw_read_out(const tl_panel_input &input)
 {
@@ -208,6 +281,23 @@ void draw_read_out(const tl_panel_input &input)
     make_room(input.read_out);
     ImGui::Begin("read out", nullptr, overlay_flags);
     ImGui::TextUnformatted(input.read_out);
+    ImGui::End();
+}
+
+/* Below the pointer, where it covers no handle; above it at the view's lower edge. */
+void draw_amount(const tl_panel_input &input)
+{
+    if (!input.amount || !input.amount[0])
+        return;
+    const ImGuiIO &io = ImGui::GetIO();
+    const float apart = 28;
+    const bool is_low = io.MousePos.y + 3 * apart > io.DisplaySize.y;
+    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x, io.MousePos.y + (is_low ? -apart : apart)),
+                            ImGuiCond_Always, ImVec2(0.5f, is_low ? 1.0f : 0.0f));
+    ImGui::SetNextWindowBgAlpha(0.85f);
+    make_room(input.amount);
+    ImGui::Begin("amount", nullptr, overlay_flags);
+    ImGui::TextUnformatted(input.amount);
     ImGui::End();
 }
 
@@ -296,16 +386,18 @@ void tl_panel_place_over_view(const tl_panel_input &input, float x, float y)
     ImGui::SetNextWindowPos(ImVec2(place_x, place_y), ImGuiCond_Always, ImVec2(x, y));
 }
 
-void tl_panel_overlay_draw(const tl_panel_input &input)
+void tl_panel_overlay_draw(const tl_panel_input &input, tl_panel_result &result)
 {
     draw_wipe(input);
     draw_marks(input);
+    draw_shapes(input);
     draw_status(input);
-    draw_notice(input);
+    draw_notice(input, result);
     draw_legend(input);
     draw_message(input);
     draw_progress(input);
     draw_read_out(input);
+    draw_amount(input);
     draw_help(input);
 }
 

@@ -10,7 +10,7 @@ extern "C" {
  * size lie at that point, so that (0.5, 0.5) centres it and (1, 1) puts it into the lower right corner. */
 void tl_panel_place_over_view(const tl_panel_input &input, float x, float y);
 
-void tl_panel_overlay_draw(const tl_panel_input &input);
+void tl_panel_overlay_draw(const tl_panel_input &input, tl_panel_result &result);
 void tl_panel_strip_draw(const tl_panel_strip &strip);
 
 #endif

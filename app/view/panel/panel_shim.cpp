@@ -241,7 +241,7 @@ void note_texts(tl_panel_fonts *fonts, const tl_panel_input &input)
 {
     for (const char *text :
          {input.title, input.message, input.status, input.notice, input.strip.label, input.wipe.left,
-          input.wipe.right, input.progress.what, input.read_out, input.question})
+          input.wipe.right, input.progress.what, input.read_out, input.amount, input.question})
         tl_panel_fonts_note(fonts, text);
     for (size_t i = 0; i < input.measure_count; i++)
         note_lines(fonts, input.measures[i].lines, input.measures[i].count);
@@ -336,7 +336,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1, -1, -1, {}, nullptr};
+    tl_panel_result result = {false, false, -1, -1, -1, -1, {}, nullptr};
     ImGui_ImplOpenGL3_NewFrame();
     note_texts(panel->fonts, *input);
     if (tl_panel_fonts_update(panel->fonts)) {
@@ -352,7 +352,7 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
     panel->place = {};
     if (input->width > 0)
         draw_panel(*panel, *input, result);
-    tl_panel_overlay_draw(*input);
+    tl_panel_overlay_draw(*input, result);
     if (input->question)
         draw_question(*input, result);
     result.editing = ImGui::IsAnyItemActive();

@@ -58,6 +58,15 @@ struct tl_panel_legend {
     float entry_colours[TL_PANEL_LEGEND_ENTRIES][3];
 };
 
+/* A line, a filled convex polygon, or a text about its first point, over the view; framebuffer pixels. */
+struct tl_panel_shape {
+    const float (*points)[2];
+    size_t count;
+    float colour[4];  /* sRGB and opacity, [0, 1] */
+    float width;      /* of the line; 0: filled */
+    const char *text; /* NULL: none */
+};
+
 /* The frames of what is played back; a slider goes to one. */
 struct tl_panel_timeline {
     int frame, last;   /* last 0: none is shown */
@@ -78,20 +87,32 @@ struct tl_panel_list {
     size_t count;
 };
 
+/* An answer to the notice: a button in a row of its own heading. */
+struct tl_panel_choice {
+    char label[48];
+    const char *row, *help;
+    bool is_chosen; /* what holds at present */
+};
+
 struct tl_panel_input {
     const char *title;
     const char *message; /* the last report, or ""; over the view */
     bool message_is_error;
     const char *status; /* motion without input, or ""; over the view */
-    const char *notice; /* what is to be accepted, or NULL or ""; below the status */
+    const char *notice; /* what is asked or to be accepted, or NULL or ""; below the status */
+    const struct tl_panel_choice *choices; /* its answers; those of a row stand together */
+    size_t choice_count;
     struct tl_panel_strip strip;
     struct tl_panel_wipe wipe;
     struct tl_panel_progress progress;
     struct tl_panel_timeline timeline;
     const struct tl_panel_legend *legend; /* NULL: none */
     const char *read_out;                 /* lines next to the pointer, or "" */
+    const char *amount;                   /* of a drag: one line below the pointer, or "" */
     const float (*marks)[2];              /* rings over the view, framebuffer pixels */
     size_t mark_count;
+    const struct tl_panel_shape *shapes; /* the first is drawn first */
+    size_t shape_count;
     const struct tl_panel_button *buttons;
     size_t button_count;
     const char *const *favourites; /* "table.key" of the options at the top */
@@ -122,6 +143,7 @@ struct tl_panel_result {
     bool editing; /* a widget is held or typed into: further edits are expected */
     int button;   /* index of the one that was pressed, -1 for none */
     int answer;   /* index of the one that was chosen, -1 for none */
+    int choice;   /* index of the notice's answer that was pressed, -1 for none */
     int frame;    /* that the timeline was moved to, -1 for none */
     struct tl_panel_note note;
     const struct tl_option *listed; /* whose list of choices is open; NULL: none */

@@ -10,7 +10,8 @@
  *     review_draw    when an image is drawn, and how it gets on the screen
  *     review_move    turntable, glides to saved views, camera paths
  *     review_hand    the pointer's point on the garment, and the hand that pulls it
- *     review_place   units, axes and place of the files
+ *     review_place   where the garment's file stands, and the handles that move it
+ *     review_reading units and axes of the files
  *     review_wipe    two appearances, or two drapes, side by side
  *     review_read    the legend of the image's colours, and the values under the pointer
  *     review_keep    state that is kept between runs; files that are reloaded when they are edited
@@ -23,13 +24,14 @@
 #include "app/budget/governor.h"
 #include "app/scene/path.h"
 #include "app/scene/session.h"
+#include "app/view/gizmo/gizmo.h"
+#include "app/view/loader/loader.h"
 #include "app/view/memory/history.h"
 #include "app/view/memory/journal.h"
 #include "app/view/memory/recent.h"
 #include "app/view/memory/saved_views.h"
 #include "app/view/memory/state.h"
 #include "app/view/panel/panel_shim.h"
-#include "app/view/review/loader.h"
 #include "app/view/thumbnails/thumbnails.h"
 #include "app/view/window/file_chooser.h"
 #include "app/view/window/file_watch.h"
@@ -96,6 +98,17 @@ struct tl_review_reading {
     char kept[TL_READING_COUNT][TL_STRING_SIZE];
     char kept_size[512];
     char notice[1024]; /* "": none is shown */
+};
+
+/* Placing the garment's file by the pointer. */
+struct tl_review_placing {
+    bool shown;                       /* the handles */
+    enum tl_gizmo_handle under, held; /* the pointer; held: NONE but in a drag of a handle */
+    bool is_anywhere;                 /* a drag that began beside the handles, with keys that choose it */
+    struct tl_gizmo gizmo;            /* when the drag began */
+    struct tl_placing before;
+    vec2s from, to; /* pixels; `to` goes slower than the pointer while the drag is fine */
+    struct tl_gizmo_change change;
 };
 
 struct tl_review;
@@ -166,6 +179,7 @@ struct tl_review {
     vec3s grab_target,
         grab_at; /* metres: the pointer's point in that plane, and the hand, which follows it */
 
+    struct tl_review_placing placing;
     struct tl_review_reading reading;
     struct tl_review_recent recent;
     char *title;

@@ -2,7 +2,7 @@
 
 #include "app/view/review/review_keep.h"
 #include "app/view/review/review_move.h"
-#include "app/view/review/review_place.h"
+#include "app/view/review/review_reading.h"
 #include "app/view/review/review_wipe.h"
 #include "config/interrupt.h"
 #include "config/log.h"
@@ -158,6 +158,7 @@ static void take_session(struct tl_review *review, tl_session **loaded)
     tl_session *old = review->session;
     if (review->wipe.renderer)
         tl_review_fix_camera(review);
+    tl_session_show_placed(old, &(struct tl_placing){.scale = 1}); /* A stays where it was */
     tl_session_succeed(*loaded, old);
     review->session = *loaded;
     *loaded = NULL;
@@ -186,7 +187,8 @@ static void finish(struct tl_review *review)
         if (review->drapes_again)
             tl_info("view: %s hangs in %s", made_of.scene.garment, made_of.scene.fabric);
         review->reported_frame = -1;
-        review->drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
+        if (review->drag == TL_DRAG_CLOTH)
+            review->drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
         tl_review_note_reading(review);
         tl_review_keep_recent(review);
     } else {

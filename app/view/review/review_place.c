@@ -1,215 +1,18 @@
 #include "app/view/review/review_place.h"
 
-#include "app/view/review/review_edit.h"
+#include "app/scene/orbit.h"
 #include "app/view/review/review_move.h"
+#include "app/view/review/review_reading.h"
 #include "assets/base/placing.h"
-#include "config/memory.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* ---- Which file ---- */
-
-static const char *name_of(const struct tl_settings *settings, enum tl_reading_of of)
-{
-    return of == TL_READING_GARMENT ? settings->scene.garment : tl_settings_avatar(&settings->scene);
-}
-
-static const tl_model *model_of(const struct tl_review *review, enum tl_reading_of of)
-{
-    const struct tl_session_models models = tl_session_models(review->session);
-    return of == TL_READING_GARMENT ? models.garment : models.avatar;
-}
-
-/* Whether the model was read from a file whose units are an option: built-in ones and patterns are metric. */
-static bool has_units(const struct tl_review *review, enum tl_reading_of of)
-{
-    const tl_model *model = model_of(review, of);
-    return model && tl_option_is_file_name(name_of(&review->wanted, of)) && model->units.longest > 0;
-}
-
-/* As asked for, also while that is loading; else as it was guessed. */
-static enum tl_units units_of(const struct tl_review *review, enum tl_reading_of of)
-{
-    const struct tl_scene_params *scene = &review->wanted.scene;
-    enum tl_units units = (enum tl_units)(of == TL_READING_GARMENT ? scene->units : scene->avatar_units);
-    return units != TL_UNITS_AUTO ? units : model_of(review, of)->units.units;
-}
-
-static enum tl_up up_of(const struct tl_review *review, enum tl_reading_of of)
-{
-    const struct tl_scene_params *scene = &review->wanted.scene;
-    enum tl_up up = (enum tl_up)(of == TL_READING_GARMENT ? scene->up : scene->avatar_up);
-    bool moves =
-        of == TL_READING_GARMENT ? strcmp(scene->motion, "none") != 0 : model_of(review, of)->rig != NULL;
-    if (up != TL_UP_AUTO)
-        return up;
-    return model_of(review, of)->units.z_up && !moves ? TL_UP_Z : TL_UP_Y;
-}
-
-/* Metres with Y up are what a file is expected to have. */
-static bool was_guessed(const struct tl_review *review, enum tl_reading_of of)
-{
-    if (!has_units(review, of))
-        return false;
-    const struct tl_units_reading *reading = &model_of(review, of)->units;
-    const struct tl_scene_params *scene = &tl_session_settings(review->session)->scene;
-    bool chose_up = (of == TL_READING_GARMENT ? scene->up : scene->avatar_up) == TL_UP_AUTO &&
-                    up_of(review, of) == TL_UP_Z;
-    bool is_usual = reading->units == TL_UNITS_M && reading->fits && !reading->absurd;
-    return chose_up || (reading->guessed && !is_usual);
-}
-
-static bool is_kept(const struct tl_review *review, enum tl_reading_of of)
-{
-    return strcmp(review->reading.kept[of], name_of(&review->wanted, of)) == 0;
-}
-
-/* ---- The notice ---- */
-
-/* The options that read a file as it is read, for the command line. */
-static char *options_of(const struct tl_review *review, enum tl_reading_of of)
-{
-    const char *units = tl_units_names[units_of(review, of)];
-    const char *up = tl_up_names[up_of(review, of)];
-    return of == TL_READING_GARMENT
-               ? tl_format("--units %s --up %s", units, up)
-               : tl_format("--set scene.avatar_units=%s --set scene.avatar_up=%s", units, up);
-}
-
-static char *describe(const struct tl_review *review, enum tl_reading_of of)
-{
-    const struct tl_units_reading *reading = &model_of(review, of)->units;
-    const char *path = name_of(&review->wanted, of), *slash = strrchr(path, '/');
-    double length = (double)reading->longest;
-    char *options = options_of(review, of);
-    enum tl_units units = units_of(review, of);
-    char *text = tl_format("%s: %.4g units long, taken as %s (%.3g m), %c up%s\n"
-                           "Enter keeps this, U changes the unit, A the axis: %s",
-                           slash ? slash + 1 : path, length, tl_units_plurals[units],
-                           length * tl_units_metres(units), up_of(review, of) == TL_UP_Z ? 'Z' : 'Y',
-                           reading->fits ? "" : "; no unit fits this size", options);
-    free(options);
-    return text;
-}
-
-/* What is said about sizes is said about this garment on this body. */
-static const char *open_size_note(const struct tl_review *review)
-{
-    const char *note = tl_session_size_note(review->session);
-    return note && strcmp(note, review->reading.kept_size) != 0 ? note : NULL;
-}
-
-static void write_notice(struct tl_review *review)
-{
-    struct tl_review_reading *reading = &review->reading;
-    const char *size = open_size_note(review);
-    char *read_as = reading->of != TL_READING_NONE ? describe(review, reading->of) : tl_copy_string("");
-    snprintf(reading->notice, sizeof reading->notice, "%s%s%s%s%s", read_as, read_as[0] && size ? "\n" : "",
-             size ? size : "", size && !read_as[0] ? "\nEnter closes this" : "",
-             size ? "\nD drapes the garment; Ctrl + Shift and a drag moves it, the wheel sizes it" : "");
-    free(read_as);
-    review->redraws = review->redraws > 1 ? review->redraws : 1;
-}
-
-/* A file that is being changed stays; else the first whose reading was guessed and is not accepted. */
-void tl_review_note_reading(struct tl_review *review)
-{
-    struct tl_review_reading *reading = &review->reading;
-    bool stays = reading->of != TL_READING_NONE && has_units(review, reading->of) &&
-                 strcmp(reading->name, name_of(&review->wanted, reading->of)) == 0;
-    for (int of = TL_READING_GARMENT; of < TL_READING_COUNT && !stays; of++) {
-        enum tl_reading_of candidate = (enum tl_reading_of)of;
-        stays = was_guessed(review, candidate) && !is_kept(review, candidate);
-        reading->of = stays ? candidate : TL_READING_NONE;
-    }
-    if (stays)
-        snprintf(reading->name, sizeof reading->name, "%s", name_of(&review->wanted, reading->of));
-    write_notice(review);
-}
-
-bool tl_review_keep_reading(struct tl_review *review)
-{
-    struct tl_review_reading *reading = &review->reading;
-    if (!reading->notice[0])
-        return false;
-    if (reading->of != TL_READING_NONE) {
-        char *options = options_of(review, reading->of);
-        snprintf(reading->kept[reading->of], sizeof reading->kept[0], "%s", reading->name);
-        tl_review_report(review, "keeps %s", options);
-        free(options);
-    } else if (open_size_note(review))
-        snprintf(reading->kept_size, sizeof reading->kept_size, "%s", open_size_note(review));
-    reading->of = TL_READING_NONE;
-    tl_review_note_reading(review);
-    return true;
-}
-
-/* ---- Units and axes ---- */
-
-/* The file that U and A mean. */
-static bool choose_file(struct tl_review *review)
-{
-    struct tl_review_reading *reading = &review->reading;
-    if (reading->of == TL_READING_NONE)
-        reading->of = has_units(review, TL_READING_GARMENT)  ? TL_READING_GARMENT
-                      : has_units(review, TL_READING_AVATAR) ? TL_READING_AVATAR
-                                                             : TL_READING_NONE;
-    if (reading->of == TL_READING_NONE)
-        tl_review_report(review,
-                         "built-in garments and patterns have their size: there is no unit to change");
-    else
-        snprintf(reading->name, sizeof reading->name, "%s", name_of(&review->wanted, reading->of));
-    return reading->of != TL_READING_NONE;
-}
-
-/* Whether a garment or a body could be as long as the file would be in a unit: a wrong one can make millions
- * of edges that are too long. */
-static bool is_conceivable(const struct tl_units_reading *reading, int units)
-{
-    double length_m = (double)reading->longest * tl_units_metres((enum tl_units)units);
-    return length_m >= 0.1 && length_m <= 10;
-}
-
-static bool set_up(struct tl_review *review, enum tl_reading_of of, enum tl_up up)
-{
-    return tl_review_set(review, of == TL_READING_GARMENT ? "scene.up" : "scene.avatar_up", tl_up_names[up]);
-}
-
-/* The axis stays: it was guessed for the size that the file had, and in another unit the guess may be
- * another. */
-void tl_review_next_units(struct tl_review *review, int by)
-{
-    if (!choose_file(review))
-        return;
-    enum tl_reading_of of = review->reading.of;
-    const struct tl_units_reading *reading = &model_of(review, of)->units;
-    int present = (int)units_of(review, of), next = present;
-    const int count = TL_UNITS_IN; /* those after AUTO */
-    do
-        next = (next - 1 + by + count) % count + 1;
-    while (next != present && !is_conceivable(reading, next));
-    if (next == present)
-        tl_review_report(review, "in no other unit it would be from 0.1 to 10 m long");
-    else if (set_up(review, of, up_of(review, of)) &&
-             tl_review_set(review, of == TL_READING_GARMENT ? "scene.units" : "scene.avatar_units",
-                           tl_units_names[next]))
-        tl_review_report(review, "reads it in %s", tl_units_plurals[next]);
-}
-
-void tl_review_next_up(struct tl_review *review)
-{
-    if (!choose_file(review))
-        return;
-    enum tl_reading_of of = review->reading.of;
-    enum tl_up next = up_of(review, of) == TL_UP_Z ? TL_UP_Y : TL_UP_Z;
-    if (set_up(review, of, next))
-        tl_review_report(review, "reads it with %c up", next == TL_UP_Z ? 'Z' : 'Y');
-}
-
-/* ---- Where the garment stands ---- */
+/* ---- The options ---- */
 
 static struct tl_placing placing_of(const struct tl_scene_params *scene)
 {
@@ -218,24 +21,42 @@ static struct tl_placing placing_of(const struct tl_scene_params *scene)
                                .move_m = {{scene->move_m[0], scene->move_m[1], scene->move_m[2]}}};
 }
 
+/* In steps that are smaller than a pixel, so that the options stay short. */
+static float in_steps(float value, float steps_per_unit)
+{
+    return roundf(value * steps_per_unit) / steps_per_unit;
+}
+
 static void set_placing(struct tl_review *review, const struct tl_placing *placing)
 {
     struct tl_scene_params *scene = &review->wanted.scene;
     scene->scale = glm_clamp(placing->scale, 0.001f, 1000);
-    scene->turn_deg = placing->turn_deg;
+    scene->turn_deg = tl_orbit_wrap_deg(placing->turn_deg);
     for (int i = 0; i < 3; i++)
-        scene->move_m[i] = glm_clamp(roundf(placing->move_m.raw[i] * 1e4f) / 1e4f, -1000, 1000);
+        scene->move_m[i] = glm_clamp(in_steps(placing->move_m.raw[i], 1e4f), -1000, 1000);
     review->changed = true;
-    tl_review_report(review, "--move %g,%g,%g --turn %g --scale %g", (double)scene->move_m[0],
-                     (double)scene->move_m[1], (double)scene->move_m[2], (double)scene->turn_deg,
-                     (double)scene->scale);
+    tl_review_note_motion(review);
+}
+
+static const char *reason_against(const struct tl_review *review)
+{
+    if (!tl_review_has_units(review, TL_READING_GARMENT))
+        return "only a garment from a file can be moved: others are cut to their body";
+    if (strcmp(review->wanted.scene.motion, "none") != 0)
+        return "a motion plays where it was recorded: the garment cannot be moved";
+    return NULL;
+}
+
+static struct tl_box box_of_garment(const struct tl_review *review)
+{
+    const tl_mesh *mesh = &tl_session_garment(review->session)->mesh;
+    return tl_box_of(mesh->positions, mesh->vertex_count);
 }
 
 /* Where the middle of the garment is to be, while the session may still have it elsewhere. */
 static vec3s wanted_middle(const struct tl_review *review)
 {
-    const tl_mesh *mesh = &tl_session_garment(review->session)->mesh;
-    struct tl_box box = tl_box_of(mesh->positions, mesh->vertex_count);
+    struct tl_box box = box_of_garment(review);
     vec3s middle = glms_vec3_lerp(box.lower, box.upper, 0.5f);
     middle.y -= tl_session_lifted_m(review->session);
     const struct tl_placing shown = placing_of(&tl_session_settings(review->session)->scene);
@@ -243,32 +64,117 @@ static vec3s wanted_middle(const struct tl_review *review)
     return tl_placing_point(&wanted, tl_placing_origin(&shown, middle));
 }
 
-bool tl_review_place_begin(struct tl_review *review)
+void tl_review_follow_place(struct tl_review *review)
 {
-    const struct tl_scene_params *scene = &review->wanted.scene;
-    if (!has_units(review, TL_READING_GARMENT))
-        tl_review_report(review, "only a garment from a file can be moved: others are cut to their body");
-    else if (strcmp(scene->motion, "none") != 0)
-        tl_review_report(review, "a motion plays where it was recorded: the garment cannot be moved");
-    else
-        review->drag = TL_DRAG_PLACE;
-    if (review->drag == TL_DRAG_PLACE)
-        tl_review_fix_camera(review); /* which follows a scene that it frames */
-    return review->drag == TL_DRAG_PLACE;
+    const struct tl_scene_params *shown = &tl_session_settings(review->session)->scene;
+    const struct tl_scene_params *wanted = &review->wanted.scene;
+    const struct tl_placing from = placing_of(shown), to = placing_of(wanted);
+    bool is_same = strcmp(shown->garment, wanted->garment) == 0 && !reason_against(review);
+    const struct tl_placing between = tl_placing_between(&from, is_same ? &to : &from);
+    review->image_is_old |= tl_session_show_placed(review->session, &between);
 }
 
-void tl_review_place_move(struct tl_review *review, float dx, float dy)
+/* ---- The handles ---- */
+
+static struct tl_gizmo gizmo_of(const struct tl_review *review)
 {
-    const struct tl_camera camera = tl_session_frame(review->session).camera;
-    struct tl_placing placing = placing_of(&review->wanted.scene);
-    vec3s ahead = glms_vec3_normalize(glms_vec3_sub(camera.target, camera.eye));
-    vec3s right = glms_vec3_normalize(glms_vec3_cross(ahead, (vec3s){{0, 1, 0}}));
-    vec3s above = glms_vec3_cross(right, ahead);
-    float depth = glms_vec3_dot(glms_vec3_sub(wanted_middle(review), camera.eye), ahead);
-    float height_m = 2 * depth * tanf(0.5f * glm_rad(review->wanted.camera.fov_deg));
-    placing.move_m = glms_vec3_muladds(right, dx * height_m, placing.move_m);
-    placing.move_m = glms_vec3_muladds(above, -dy * height_m, placing.move_m);
-    set_placing(review, &placing);
+    struct tl_gizmo gizmo = {.camera = tl_session_frame(review->session).camera,
+                             .scale = tl_window_scale(review->window),
+                             .pivot = wanted_middle(review),
+                             .stretch = 1};
+    gizmo.pivot.y += tl_session_lifted_m(review->session);
+    tl_review_size(review, &gizmo.width, &gizmo.height);
+    return gizmo;
+}
+
+static bool has_handles(const struct tl_review *review)
+{
+    return review->placing.shown && !reason_against(review);
+}
+
+void tl_review_place_toggle(struct tl_review *review)
+{
+    struct tl_review_placing *placing = &review->placing;
+    const char *reason = reason_against(review);
+    if (reason && !placing->shown) {
+        tl_review_report(review, "%s", reason);
+        return;
+    }
+    placing->shown = !placing->shown;
+    tl_review_place_hover(review, review->pointer_x, review->pointer_y);
+    tl_review_report(review, placing->shown ? "arrows move the garment, the ring turns it, the box sizes it; "
+                                              "Shift: fine, Ctrl: in steps, Esc: back"
+                                            : "hides the handles");
+}
+
+bool tl_review_place_hide(struct tl_review *review)
+{
+    bool was_shown = review->placing.shown;
+    review->placing.shown = false;
+    return was_shown;
+}
+
+void tl_review_place_hover(struct tl_review *review, float x, float y)
+{
+    review->placing.under = TL_GIZMO_NONE;
+    if (has_handles(review) && !tl_panel_wants_pointer(review->panel)) {
+        const struct tl_gizmo gizmo = gizmo_of(review);
+        review->placing.under = tl_gizmo_under(&gizmo, (vec2s){{x, y}});
+    }
+}
+
+static void begin(struct tl_review *review, enum tl_gizmo_handle handle, float x, float y)
+{
+    struct tl_review_placing *placing = &review->placing;
+    tl_review_fix_camera(review); /* which follows a scene that it frames */
+    review->drag = TL_DRAG_PLACE;
+    placing->held = handle;
+    placing->gizmo = gizmo_of(review);
+    placing->before = placing_of(&review->wanted.scene);
+    placing->from = placing->to = (vec2s){{x, y}};
+    placing->change = (struct tl_gizmo_change){.factor = 1};
+    if (review->playing)
+        tl_review_set_playing(review, false);
+}
+
+bool tl_review_place_catch(struct tl_review *review, float x, float y)
+{
+    tl_review_place_hover(review, x, y);
+    enum tl_gizmo_handle handle = review->placing.under;
+    if (handle != TL_GIZMO_NONE)
+        begin(review, handle, x, y);
+    review->placing.is_anywhere = false;
+    return handle != TL_GIZMO_NONE;
+}
+
+bool tl_review_place_begin(struct tl_review *review, float x, float y, bool turns)
+{
+    const char *reason = reason_against(review);
+    if (reason)
+        tl_review_report(review, "%s", reason);
+    else
+        begin(review, turns ? TL_GIZMO_NONE : TL_GIZMO_VIEW, x, y);
+    review->placing.is_anywhere = true;
+    return !reason;
+}
+
+void tl_review_place_drag(struct tl_review *review, float dx, float dy, int modifiers)
+{
+    struct tl_review_placing *placing = &review->placing;
+    const float steps_per_degree = 10, steps_of_size = 1000;
+    bool is_fine = !placing->is_anywhere && (modifiers & GLFW_MOD_SHIFT);
+    bool snaps = !placing->is_anywhere && (modifiers & GLFW_MOD_CONTROL);
+    placing->to = glms_vec2_muladds((vec2s){{dx, dy}}, is_fine ? 0.1f : 1, placing->to);
+    struct tl_gizmo_change change = tl_gizmo_drag(&placing->gizmo, placing->held, placing->from, placing->to);
+    change.turn_deg = in_steps(change.turn_deg, steps_per_degree);
+    change.factor = in_steps(change.factor, steps_of_size);
+    placing->change = snaps ? tl_gizmo_snap(&change) : change;
+    vec3s middle = placing->gizmo.pivot;
+    middle.y -= tl_session_lifted_m(review->session);
+    struct tl_placing wanted =
+        tl_placing_about(&placing->before, middle, placing->change.turn_deg, placing->change.factor);
+    wanted.move_m = glms_vec3_add(wanted.move_m, placing->change.move_m);
+    set_placing(review, &wanted);
 }
 
 void tl_review_place_turn(struct tl_review *review, float dx)
@@ -285,4 +191,75 @@ void tl_review_place_scale(struct tl_review *review, float factor)
     const struct tl_placing placing = placing_of(&review->wanted.scene);
     const struct tl_placing sized = tl_placing_about(&placing, wanted_middle(review), 0, factor);
     set_placing(review, &sized);
+}
+
+void tl_review_place_end(struct tl_review *review)
+{
+    const struct tl_scene_params *scene = &review->wanted.scene;
+    if (review->drag != TL_DRAG_PLACE)
+        return;
+    review->drag = TL_DRAG_NONE;
+    review->placing.held = TL_GIZMO_NONE;
+    review->changed = true;
+    tl_review_report(review, "--move %g,%g,%g --turn %g --scale %g", (double)scene->move_m[0],
+                     (double)scene->move_m[1], (double)scene->move_m[2], (double)scene->turn_deg,
+                     (double)scene->scale);
+}
+
+bool tl_review_place_cancel(struct tl_review *review)
+{
+    if (review->drag != TL_DRAG_PLACE)
+        return false;
+    set_placing(review, &review->placing.before);
+    review->drag = TL_DRAG_NONE;
+    review->placing.held = TL_GIZMO_NONE;
+    tl_review_report(review, "the garment stays where it was");
+    return true;
+}
+
+/* ---- What is shown ---- */
+
+void tl_review_place_shapes(const struct tl_review *review, struct tl_gizmo_shapes *out)
+{
+    const struct tl_review_placing *placing = &review->placing;
+    bool is_held = placing->held != TL_GIZMO_NONE;
+    out->count = 0;
+    if (!has_handles(review))
+        return;
+    struct tl_gizmo gizmo = gizmo_of(review);
+    gizmo.stretch = is_held ? placing->change.factor : 1;
+    tl_gizmo_list_shapes(&gizmo, is_held ? placing->held : placing->under, is_held, out);
+}
+
+void tl_review_place_amount(const struct tl_review *review, char *text, size_t size)
+{
+    const struct tl_review_placing *placing = &review->placing;
+    const struct tl_gizmo_change *change = &placing->change;
+    const double mm = 1000;
+    text[0] = '\0';
+    switch (placing->held) {
+    case TL_GIZMO_X:
+    case TL_GIZMO_Y:
+    case TL_GIZMO_Z:
+        snprintf(text, size, "%c %+.1f mm", "XYZ"[placing->held - TL_GIZMO_X],
+                 mm * (double)change -> move_m.raw[placing->held - TL_GIZMO_X]);
+        break;
+    case TL_GIZMO_VIEW:
+        snprintf(text, size, "X %+.1f, Y %+.1f, Z %+.1f mm", mm * (double)change->move_m.x,
+                 mm * (double)change->move_m.y, mm * (double)change->move_m.z);
+        break;
+    case TL_GIZMO_TURN:
+        snprintf(text, size, "%+.1f\u00b0", (double)change->turn_deg);
+        break;
+    case TL_GIZMO_SIZE: {
+        struct tl_box box = box_of_garment(review);
+        float shown_scale = tl_session_settings(review->session)->scene.scale;
+        snprintf(text, size, "\u00d7 %.3f: %.3f m high", (double)change->factor,
+                 (double)((box.upper.y - box.lower.y) / shown_scale * review->wanted.scene.scale));
+        break;
+    }
+    case TL_GIZMO_NONE:
+    case TL_GIZMO_COUNT:
+        break;
+    }
 }

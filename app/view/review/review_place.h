@@ -1,31 +1,42 @@
-/* How the files of the scene were read (their units and the axis that points up), and where the garment's
- * file stands. Owns `reading`.
+/* Where the garment's file stands: the scene's options scale, turn_deg and move_m, set by handles over the
+ * image or by drags with Ctrl and Shift held. Owns `placing`.
  *
- * A reading that was guessed, and a garment of another size than its body, are shown until they are accepted.
- * U, A and drags set the scene's options units, up, scale, turn_deg and move_m, and the notice says how the
- * command line does the same. */
+ * A drag moves the garment as it is drawn; when it ends, the scene is loaded with the new place. Only a
+ * garment from a file that plays no motion can be placed. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_PLACE_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_PLACE_H
 
+#include "app/view/gizmo/gizmo_shapes.h"
 #include "app/view/review/review.h"
 
-/* After a scene was loaded: what of it was guessed. */
-void tl_review_note_reading(struct tl_review *review);
-/* Accepts what is shown; false: nothing is. */
-bool tl_review_keep_reading(struct tl_review *review);
+/* Shows or hides the handles; reports why there are none. */
+void tl_review_place_toggle(struct tl_review *review);
+/* Hides them; false: they are not shown. */
+bool tl_review_place_hide(struct tl_review *review);
 
-/* Reads the file in the next unit (by 1) or the previous one (by -1); turns it to the other axis. The file is
- * the one that the notice is about, or the garment's, or the body's. */
-void tl_review_next_units(struct tl_review *review, int by);
-void tl_review_next_up(struct tl_review *review);
-
-/* Starts to move the garment's file; reports why it cannot. */
-bool tl_review_place_begin(struct tl_review *review);
-/* A drag by view heights: moves it in the plane of the image, or turns it about the vertical through its
- * middle. */
-void tl_review_place_move(struct tl_review *review, float dx, float dy);
+/* The handle under the pointer is marked from now on. Pixels. */
+void tl_review_place_hover(struct tl_review *review, float x, float y);
+/* Starts to drag the handle under the pointer; false: there is none. */
+bool tl_review_place_catch(struct tl_review *review, float x, float y);
+/* Starts a drag that moves the garment in the plane of the image, wherever the pointer is; `turns`: one of
+ * tl_review_place_turn. Reports why the garment cannot be moved. */
+bool tl_review_place_begin(struct tl_review *review, float x, float y, bool turns);
+/* A drag that was begun goes on: Shift makes it ten times as fine, Ctrl snaps to whole steps. */
+void tl_review_place_drag(struct tl_review *review, float dx, float dy, int modifiers);
+/* By view heights: turns the garment about the vertical through its middle. */
 void tl_review_place_turn(struct tl_review *review, float dx);
 /* Sizes it about its middle. */
 void tl_review_place_scale(struct tl_review *review, float factor);
+/* Ends a drag and reports the place as the command line has it. */
+void tl_review_place_end(struct tl_review *review);
+/* Ends a drag as if it had not begun; false: there is none. */
+bool tl_review_place_cancel(struct tl_review *review);
+
+/* Draws the garment where it is wanted while the session still has it elsewhere; called every frame. */
+void tl_review_follow_place(struct tl_review *review);
+
+/* What is drawn over the view, and next to the pointer: "X +12.5 mm" in a drag, else "". */
+void tl_review_place_shapes(const struct tl_review *review, struct tl_gizmo_shapes *out);
+void tl_review_place_amount(const struct tl_review *review, char *text, size_t size);
 
 #endif

@@ -1,7 +1,7 @@
 #include "app/view/review/review_wipe.h"
 
 #include "app/scene/appearance.h"
-#include "app/view/review/review_place.h"
+#include "app/view/review/review_reading.h"
 #include "config/log.h"
 #include "config/memory.h"
 

@@ -83,14 +83,6 @@ static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
     queue(window, event);
 }
 
-static void on_move(GLFWwindow *handle, double x, double y)
-{
-    tl_window *window = glfwGetWindowUserPointer(handle);
-    window->pointer_x = x;
-    window->pointer_y = y;
-    queue(window, pointer_event(window, TL_WINDOW_MOVE));
-}
-
 /* GLFW tells them of keys and buttons only. */
 static int held_modifiers(GLFWwindow *handle)
 {
@@ -102,6 +94,16 @@ static int held_modifiers(GLFWwindow *handle)
     for (size_t i = 0; i < TL_COUNT(keys); i++)
         modifiers |= glfwGetKey(handle, keys[i][0]) == GLFW_PRESS ? keys[i][1] : 0;
     return modifiers;
+}
+
+static void on_move(GLFWwindow *handle, double x, double y)
+{
+    tl_window *window = glfwGetWindowUserPointer(handle);
+    window->pointer_x = x;
+    window->pointer_y = y;
+    struct tl_window_event event = pointer_event(window, TL_WINDOW_MOVE);
+    event.modifiers = held_modifiers(handle);
+    queue(window, event);
 }
 
 static void on_wheel(GLFWwindow *handle, double x, double y)

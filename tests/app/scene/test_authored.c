@@ -140,9 +140,64 @@ static void either_can_be_told(void **state)
     tl_session_destroy(&session);
 }
 
+static void assert_drawn_alike(tl_session *session, tl_session *other)
+{
+    tl_surface shown = surface_of(session), expected = surface_of(other);
+    assert_int_equal(shown.vertex_count, expected.vertex_count);
+    for (size_t i = 0; i < shown.vertex_count; i++) {
+        assert_near(glms_vec3_distance(shown.positions[i], expected.positions[i]), 0, 1e-5);
+        assert_near(glms_vec3_distance(shown.normals[i], expected.normals[i]), 0, 1e-4);
+    }
+}
+
+/* A garment that is drawn as if it were placed otherwise is drawn as it will be once it is loaded so, lifted
+ * out of the ground alike, and goes on so while it moves. */
+static void a_place_is_shown_before_it_is_loaded(void **state)
+{
+    (void)state;
+    const char *path = test_data("garments/diffcloth_dress-v5k-f10k.obj");
+    struct tl_settings settings = settings_of(path, "none", "auto");
+    tl_garment in_file;
+    tl_error error = {0};
+    assert_ok(tl_garment_load(path, &in_file, &error), error);
+    const tl_mesh *mesh = &in_file.model.mesh;
+    float lowest_m = tl_box_of(mesh->positions, mesh->vertex_count).lower.y;
+    tl_garment_release(&in_file);
+    /* Both reach 0.5 m below the ground. */
+    const struct tl_placing from = {.scale = 1, .move_m = {{0, -0.5f - lowest_m, 0}}};
+    const struct tl_placing to = {
+        .scale = 1.25f, .turn_deg = 40, .move_m = {{0.3f, -0.5f - 1.25f * lowest_m, -0.2f}}};
+    const struct tl_placing placing = tl_placing_between(&from, &to), none = {.scale = 1};
+    settings.scene.move_m[1] = from.move_m.y;
+    tl_session *session = tl_session_create(&settings, &error), *plain = tl_session_create(&settings, &error);
+    settings.scene.scale = to.scale;
+    settings.scene.turn_deg = to.turn_deg;
+    for (int k = 0; k < 3; k++)
+        settings.scene.move_m[k] = to.move_m.raw[k];
+    tl_session *placed = tl_session_create(&settings, &error);
+    assert_ok(session && plain && placed, error);
+    uint64_t revision = surface_of(session).motion_revision;
+    assert_false(tl_session_show_placed(session, &none));
+    assert_true(tl_session_show_placed(session, &placing));
+    assert_false(tl_session_show_placed(session, &placing));
+    assert_true(surface_of(session).motion_revision > revision);
+    assert_true(surface_of(session).has_own_normals);
+    assert_drawn_alike(session, placed);
+    assert_ok(tl_session_advance(session, &error) && tl_session_advance(plain, &error), error);
+    assert_true(surface_of(session).positions[0].x != surface_of(plain).positions[0].x);
+    assert_true(tl_session_show_placed(session, &none));
+    assert_drawn_alike(session, plain);
+    assert_ok(tl_session_reset(session, &error) && tl_session_reset(plain, &error), error);
+    assert_drawn_alike(session, plain);
+    tl_session_destroy(&session);
+    tl_session_destroy(&plain);
+    tl_session_destroy(&placed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(files_stand_as_authored),
+                                       cmocka_unit_test(a_place_is_shown_before_it_is_loaded),
                                        cmocka_unit_test(either_can_be_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,6 +34,7 @@ overlay_place overlay_draw_help(const tl_panel_line *help, size_t count, int wid
     io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
     io.Fonts->GetTexDataAsRGBA32(&texels, &atlas_width, &atlas_height);
     tl_panel_input input = {};
+    tl_panel_result result = {};
     input.message = "";
     input.help = help;
     input.help_count = count;
@@ -44,7 +45,7 @@ overlay_place overlay_draw_help(const tl_panel_line *help, size_t count, int wid
     for (int frame = 0; frame < 4; frame++) { /* ImGui knows a window's size from its second frame on */
         io.DeltaTime = 1 / 60.0f;
         ImGui::NewFrame();
-        tl_panel_overlay_draw(input);
+        tl_panel_overlay_draw(input, result);
         ImGui::Render();
         place = place_of(*ImGui::GetDrawData());
     }

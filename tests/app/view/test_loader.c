@@ -3,7 +3,7 @@
  * test. */
 #include "tests/app/quick_session.h"
 
-#include "app/view/review/loader.h"
+#include "app/view/loader/loader.h"
 
 #include <stdatomic.h>
 #include <time.h>

@@ -84,10 +84,25 @@ static void changes_about_a_point_keep_it(void **state)
     }
 }
 
+/* What is placed one way and taken over to another way is where that one places it. */
+static void one_place_leads_to_another(void **state)
+{
+    (void)state;
+    const struct tl_placing from = {.scale = 2, .turn_deg = 30, .move_m = {{1, -2, 0.5f}}};
+    const struct tl_placing to = {.scale = 0.5f, .turn_deg = -75, .move_m = {{-3, 0.25f, 4}}};
+    const vec3s point = {{0.3f, 1.2f, -0.4f}};
+    const struct tl_placing between = tl_placing_between(&from, &to), none = tl_placing_between(&to, &to);
+    vec3s taken = tl_placing_point(&between, tl_placing_point(&from, point));
+    vec3s placed = tl_placing_point(&to, point);
+    assert_at(taken, placed.x, placed.y, placed.z);
+    assert_false(tl_placing_moves(&none));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_changes_by_default), cmocka_unit_test(z_up_stands),
-        cmocka_unit_test(size_direction_and_place_follow), cmocka_unit_test(changes_about_a_point_keep_it)};
+        cmocka_unit_test(size_direction_and_place_follow), cmocka_unit_test(changes_about_a_point_keep_it),
+        cmocka_unit_test(one_place_leads_to_another)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

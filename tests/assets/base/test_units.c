@@ -160,8 +160,45 @@ static void a_body_shows_the_axis(void **state)
     assert_true(tl_units_lies_z_up(lying, body));
     assert_false(tl_units_lies_z_up(upright, body));
     assert_false(tl_units_lies_z_up(beside, body));
+    assert_true(tl_units_lies_y_up(upright, body));
+    assert_false(tl_units_lies_y_up(lying, body));
     const struct tl_box shoes = {{{-0.25f, 0, -0.05f}}, {{0.25f, 0.12f, 0.1f}}}; /* within it either way */
     assert_false(tl_units_lies_z_up(shoes, body));
+}
+
+/* One unit that fits is no question, two are, and so is none, and metres that cannot be; an axis is one where
+ * the model is deeper than high, if its format does not state it. */
+static void what_is_in_doubt(void **state)
+{
+    (void)state;
+    static const struct {
+        float height, depth; /* units */
+        enum tl_units wanted;
+        bool is_metric;
+        unsigned doubts;
+    } cases[] = {
+        {1.2f, 0.5f, TL_UNITS_AUTO, false, 0},
+        {140, 50, TL_UNITS_AUTO, false, 0}, /* centimetres: inches would be 3.6 m */
+        {812, 300, TL_UNITS_AUTO, false, 0},
+        {36, 20, TL_UNITS_AUTO, false, TL_DOUBT_UNITS}, /* or inches */
+        {36, 20, TL_UNITS_CM, false, 0},
+        {0.1f, 0.05f, TL_UNITS_AUTO, false, TL_DOUBT_UNITS}, /* no unit fits */
+        {0.1f, 0.05f, TL_UNITS_AUTO, true, 0},
+        {1200, 500, TL_UNITS_AUTO, true, TL_DOUBT_UNITS}, /* as metres, absurd */
+        {0.5f, 1.2f, TL_UNITS_AUTO, false, TL_DOUBT_UP},
+        {0.5f, 0.6f, TL_UNITS_AUTO, false, TL_DOUBT_UP}, /* a wide skirt, which is left as it is */
+        {0.5f, 0.6f, TL_UNITS_AUTO, true, 0},
+        {20, 50, TL_UNITS_AUTO, false, TL_DOUBT_UNITS | TL_DOUBT_UP},
+    };
+    for (size_t i = 0; i < TL_COUNT(cases); i++) {
+        struct tl_box box = box_of_size(0.9f * cases[i].height, cases[i].height, cases[i].depth);
+        struct tl_units_reading reading = tl_units_read(box, cases[i].wanted, cases[i].is_metric);
+        assert_int_equal(tl_units_doubts(&reading), cases[i].doubts);
+        char *line = tl_units_describe_up("skirt.obj", &reading, "--up");
+        assert_int_equal(line != NULL, (cases[i].doubts & TL_DOUBT_UP) != 0);
+        assert_true(!line || strstr(line, "--up"));
+        free(line);
+    }
 }
 
 int main(void)
@@ -170,7 +207,7 @@ int main(void)
         cmocka_unit_test(units_are_guessed_from_sizes), cmocka_unit_test(fitting_guesses_have_garment_sizes),
         cmocka_unit_test(stated_units_are_used),        cmocka_unit_test(guesses_are_reported),
         cmocka_unit_test(models_along_z_are_detected),  cmocka_unit_test(poses_have_one_size),
-        cmocka_unit_test(a_body_shows_the_axis),
+        cmocka_unit_test(a_body_shows_the_axis),        cmocka_unit_test(what_is_in_doubt),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,6 +87,29 @@ static void size_is_told_by_girths(void **state)
     tl_mesh_release(&body);
 }
 
+/* By lengths first, which need no girths: of a sheet beside a body. */
+static void size_is_told_by_lengths(void **state)
+{
+    (void)state;
+    const float trunk[][3] = {{0.2f, 0, 0}};
+    tl_mesh body = tubes(trunk, 1);
+    struct tl_box box = tl_box_of(body.positions, body.vertex_count);
+    const double body_m = (double)(box.upper.y - box.lower.y);
+    const double ratios[] = {0.095, 0.105, 1, 1.2, 1.3, 25.4};
+    for (size_t i = 0; i < TL_COUNT(ratios); i++) {
+        vec3s corners[] = {{{0, 0, 0}}, {{(float)(ratios[i] * body_m), 0, 0}}, {{0, 0, 0.01f}}};
+        const tl_mesh garment = {.vertex_count = 3, .positions = corners};
+        char *line = tl_describe_size("sheet.obj", &garment, "body", &body);
+        char *expected = tl_format("%.3g times as large as body", ratios[i]);
+        bool is_told = ratios[i] < 0.1 || ratios[i] > 1.25;
+        assert_int_equal(line != NULL, is_told);
+        assert_true(!is_told || strstr(line, expected));
+        free(line);
+        free(expected);
+    }
+    tl_mesh_release(&body);
+}
+
 /* A body 1.62 m high whose waist is a tube of 1.2 times the form's girth, at (0.02, -0.03): the middle
  * between 0.56 and 0.66 of its height is where the narrowest section is found first. A garment of two points
  * on the form's waist and one 10 cm below is moved there, and only if it is scaled its lengths change. */
@@ -144,6 +167,7 @@ int main(void)
         cmocka_unit_test(girth_of_a_tube_is_its_circle),
         cmocka_unit_test(girth_ignores_arms),
         cmocka_unit_test(size_is_told_by_girths),
+        cmocka_unit_test(size_is_told_by_lengths),
         cmocka_unit_test(another_waist_is_told),
         cmocka_unit_test(refit_alters_the_size_and_else_nothing_does),
     };

@@ -5,8 +5,8 @@
  * writes. Ownership: a loader owns what it has loaded until it is taken. Threads: these calls belong to the
  * window's thread. Errors: those of tl_session_create, tl_moving_light_open and tl_session_make_appearance;
  * TL_DEVICE when no thread can be started. */
-#ifndef TOILE_APP_VIEW_WINDOW_LOADER_H
-#define TOILE_APP_VIEW_WINDOW_LOADER_H
+#ifndef TOILE_APP_VIEW_LOADER_LOADER_H
+#define TOILE_APP_VIEW_LOADER_LOADER_H
 
 #include "app/scene/session.h"
 #include "render/renderer.h"

@@ -1,4 +1,4 @@
-#include "app/view/review/loader.h"
+#include "app/view/loader/loader.h"
 
 #include "config/interrupt.h"
 #include "config/log.h"

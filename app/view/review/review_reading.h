@@ -1,0 +1,30 @@
+/* How the files of the scene were read: their units and the axis that points up. Owns `reading`.
+ *
+ * A reading that is in doubt (assets/base/units.h) is asked about, and a garment of another size than its
+ * body is shown, until they are accepted. The answers, U and A set the scene's options units and up, which
+ * are in no doubt any more when the scene is opened again; the question names them as the command line has
+ * them. */
+#ifndef TOILE_APP_VIEW_REVIEW_REVIEW_READING_H
+#define TOILE_APP_VIEW_REVIEW_REVIEW_READING_H
+
+#include "app/view/review/review.h"
+
+/* Whether the model was read from a file whose units are an option: built-in ones and patterns are metric. */
+bool tl_review_has_units(const struct tl_review *review, enum tl_reading_of of);
+
+/* After a scene was loaded: what of it is in doubt. */
+void tl_review_note_reading(struct tl_review *review);
+/* Accepts what is shown; false: nothing is. */
+bool tl_review_keep_reading(struct tl_review *review);
+
+/* The answers to what is asked: units and axes with the height that each gives, and to keep it. */
+#define TL_REVIEW_CHOICES 9
+size_t tl_review_reading_choices(const struct tl_review *review, struct tl_panel_choice *out);
+void tl_review_choose_reading(struct tl_review *review, size_t index);
+
+/* Reads the file in the next unit (by 1) or the previous one (by -1); turns it to the other axis. The file is
+ * the one that the notice is about, or the garment's, or the body's. */
+void tl_review_next_units(struct tl_review *review, int by);
+void tl_review_next_up(struct tl_review *review);
+
+#endif
