@@ -346,7 +346,7 @@ static vec3s facing_z(struct test_device *device, const tl_material *material, f
     for (size_t i = 0; i < square.mesh.vertex_count; i++)
         square.mesh.tangents[i].w = handedness;
     square.material = *material;
-    square.mesh.parts[0].uv_metres = 1;
+    square.mesh.parts[0].uv_metres = 2; /* its side: a weave lies to scale */
     test_shape_refresh(&square);
     tl_frame frame = test_frame((vec3s){{0, 0, from_behind ? -3.0f : 3.0f}}, (vec3s){{0, 0, 0}}, 0.1f,
                                 &square.surface, 1, environment);
