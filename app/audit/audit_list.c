@@ -19,10 +19,10 @@ const struct tl_audit_kind tl_audit_kinds[TL_AUDIT_CODES] = {
     [TL_AUDIT_UNITS_GUESSED] = {"units-guessed", false,
                                 "the file states no unit of length: it was guessed from the size",
                                 "deliver glTF, which is in metres, or agree on --units"},
-    [TL_AUDIT_UP_GUESSED] =
-        {"up-guessed", false,
-         "the file states no upward axis: its shape stands along Z, and is turned upright",
-         "export it with Y up, or agree on --up"},
+    [TL_AUDIT_UP_GUESSED] = {"up-guessed", false,
+                             "the file states no upward axis: its shape stands along Z, and is turned "
+                             "upright, or is deeper than high, and is left",
+                             "export it with Y up, or agree on --up"},
     [TL_AUDIT_SEAM_OPEN] = {"seam-open", true,
                             "two borders lie along one another within a millimetre, but nothing joins them",
                             "weld or sew them: borders of a seam need the same vertices"},

@@ -236,7 +236,7 @@ static void a_one_sided_strip(void **state)
     for (int i = 0; i < SQUARES; i++)
         for (int side = -1; side < 2; side += 2) {
             double turn = 2 * M_PI * i / SQUARES, radius = 0.3 + 0.05 * side * cos(turn / 2);
-            add_place(&sheet, radius * cos(turn), 0.05 * side * sin(turn / 2), -radius * sin(turn));
+            add_place(&sheet, radius * cos(turn), radius * sin(turn), 0.05 * side * sin(turn / 2));
         }
     for (int i = 0; i < SQUARES; i++) {
         bool last = i == SQUARES - 1;
