@@ -114,7 +114,7 @@ const struct tl_invariant tl_invariants[] = {
     {"cloth.crossing", "the cloth does not pass through itself: pairs of triangles that cross", 0,
      "planes separate what is near, and nothing else can reach (cloth/contact/keep_apart.h)", false,
      tl_measure_crossing},
-    {"cloth.seams", "no seam of cloth that was draped is open: pairs of vertices that are apart", 0,
+    {"cloth.seams", "no seam is open: pairs of vertices that are apart", 0,
      "sewing welds what meets, and draws until it has met", false, tl_measure_seams},
     {"cloth.energy",
      "kinetic and potential energy do not exceed the minimum of the total energy since something last drove "

@@ -98,7 +98,7 @@ void tl_measure_crossing(const struct tl_checked *checked, struct tl_finding *fi
 
 void tl_measure_seams(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->cloth || !checked->cloth->report.settled)
+    if (!checked->cloth)
         return;
     tl_finding_add(finding, (double)checked->cloth->report.open_seams);
     tl_finding_place(finding, "garment: %zu pieces", checked->cloth->report.piece_count);

@@ -137,13 +137,14 @@ void _exit(int status)
         syscall(SYS_exit_group, status);
 }
 
-/* Whether this process is a copy in which the allocation is to fail. */
-static int is_refused(void)
+/* Whether this process is a copy in which the allocation is to fail. An allocation of no bytes may give NULL
+ * at any time: it is none. */
+static int is_refused(size_t bytes)
 {
     static long stride = -2;
     if (stride == -2)
         stride = inject_number("INJECT_MEMORY");
-    if (stride <= 0 || is_copy || ++inject_account.calls % stride != 0)
+    if (stride <= 0 || bytes == 0 || is_copy || ++inject_account.calls % stride != 0)
         return 0;
     int reason = errno, status = 0;
     pid_t copy = _Fork();
@@ -175,7 +176,7 @@ void *__libc_malloc(size_t size)
     static __typeof__(&__libc_malloc) real;
     if (!real)
         real = NEXT(__libc_malloc);
-    return is_refused() ? NULL : real(size);
+    return is_refused(size) ? NULL : real(size);
 }
 
 void *__libc_calloc(size_t count, size_t size)
@@ -183,7 +184,7 @@ void *__libc_calloc(size_t count, size_t size)
     static __typeof__(&__libc_calloc) real;
     if (!real)
         real = NEXT(__libc_calloc);
-    return is_refused() ? NULL : real(count, size);
+    return is_refused(count * size) ? NULL : real(count, size);
 }
 
 void *__libc_realloc(void *memory, size_t size)
@@ -191,7 +192,7 @@ void *__libc_realloc(void *memory, size_t size)
     static __typeof__(&__libc_realloc) real;
     if (!real)
         real = NEXT(__libc_realloc);
-    return is_refused() ? NULL : real(memory, size);
+    return is_refused(size) ? NULL : real(memory, size);
 }
 
 void *__libc_memalign(size_t alignment, size_t size)
@@ -199,5 +200,5 @@ void *__libc_memalign(size_t alignment, size_t size)
     static __typeof__(&__libc_memalign) real;
     if (!real)
         real = NEXT(__libc_memalign);
-    return is_refused() ? NULL : real(alignment, size);
+    return is_refused(size) ? NULL : real(alignment, size);
 }

@@ -43,7 +43,7 @@ shoot # 4: light from elsewhere
 
 press shift+2 "view 2 saved"
 press "Left Left Page_Up 3" "view 3 is empty"
-xdotool mousemove 1180 296 click 1 # the fabric's colour, by name
+xdotool mousemove 1180 320 click 1 # the fabric's colour, by name
 logged "keys go to the panel"
 xdotool key ctrl+a
 xdotool type navy
@@ -52,7 +52,7 @@ logged "keys go to the view"
 xdotool mousemove 450 300
 sleep 1
 press ctrl+z "undone: material.diffuse"
-xdotool mousemove 1232 246 click 1 # the list of fabrics
+xdotool mousemove 1232 270 click 1 # the list of fabrics
 logged "thumbnail of none"
 xdotool key Escape
 xdotool mousemove 450 300
