@@ -1,4 +1,4 @@
-/* An audit of a file: what in it would go wrong at whoever receives it, as findings with codes, places and
+/* An audit of a file: the problems that it would cause its recipient, as findings with codes, places and
  * severities that a supplier's gate can act on (`toile info --strict --json`).
  *
  * Codes are stable: a code keeps its name and its severity once it has been published. tl_audit_kinds is the

@@ -90,6 +90,8 @@ static bool let_fall(tl_session *session, const struct tl_settings *settings, st
 
 /* ---- Strips and sheets ---- */
 
+#define SUBSTEPS_MAX 100000000 /* of the reference solver: the largest that its option takes */
+
 /* The scene's solver, with as many substeps as each mesh needs, for cloth that only gravity drives; nothing
  * is near enough to meet itself. */
 static struct tl_cloth_params params_of_trial(const struct tl_settings *settings)
@@ -97,6 +99,7 @@ static struct tl_cloth_params params_of_trial(const struct tl_settings *settings
     struct tl_cloth_params params = settings->cloth;
     params.wind[0] = params.wind[1] = params.wind[2] = 0;
     params.substeps = 0;
+    params.reference_substeps = SUBSTEPS_MAX;
     params.pin_above_m = 0;
     params.pin_colour = TL_PIN_NO_COLOUR;
     params.pin_openings[0] = 0;

@@ -75,7 +75,7 @@ static const char *const kind_names[KINDS] = {"",       "write",  "sync",  "rena
 #define COPIES 100 /* of one run, in each of which an allocation fails, without --all */
 
 struct bench {
-    const char *program, *library;
+    const char *program, *preload;
     char *root, *folder, *out, *err, *report;
     int takes_all;
     int failures;
@@ -150,7 +150,7 @@ static int run(struct bench *bench, const struct command *command, struct trial 
     setenv("LP_NUM_THREADS", trial.kind == CALL_THREAD ? "2" : "0", 1);
     set_number("INJECT_GL", trial.kind == KIND_GL, trial.n);
     set_number("INJECT_MEMORY", trial.kind == KIND_ALLOCATION, trial.n);
-    setenv("LD_PRELOAD", bench->library, 1);
+    setenv("LD_PRELOAD", bench->preload, 1);
     struct learning learning = {learns, bench};
     struct supervised supervised = {.folder = bench->folder,
                                     .out = bench->out,
@@ -394,7 +394,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "usage: test_inject PROGRAM LIBRARY [--all] [COMMAND...]\n");
         return 2;
     }
-    struct bench bench = {.program = argv[1], .library = argv[2]};
+    struct bench bench = {.program = argv[1], .preload = argv[2]};
     bench.takes_all = argc > 3 && strcmp(argv[3], "--all") == 0;
     int first = bench.takes_all ? 4 : 3;
     make_bench(&bench);

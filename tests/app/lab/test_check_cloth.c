@@ -61,6 +61,12 @@ static void faults_of_cloth_are_named(void **state)
     assert_breaks(&checked, "cloth.strain", "garment"); /* no number is no pass */
     *place = outside;
 
+    /* ... a seam is open. */
+    checked = check_cloth(session, &watched, &frame);
+    assert_true(verdict_on(&checked, "cloth.seams").ok);
+    watched.report.open_seams = 1;
+    assert_breaks(&checked, "cloth.seams", "garment");
+
     /* ... all of it is drawn apart by an eighth, by which no edge is too long. */
     for (size_t i = 0; i < cloth->particles.count; i++)
         cloth->particles.x[i] = vec3d_scale(cloth->particles.x[i], 1.125);
@@ -70,23 +76,28 @@ static void faults_of_cloth_are_named(void **state)
     tl_session_destroy(&session);
 }
 
+/* The session in which the trials were run. */
+static tl_session *try_fabric(const struct tl_settings *settings, struct tl_trials *trials)
+{
+    tl_error error = {0};
+    tl_session *session = tl_session_create(settings, &error);
+    assert_ok(session != NULL, error);
+    assert_ok(tl_trials_run(session, settings, trials, &error), error);
+    return session;
+}
+
 /* What is known of the fabric's trials beforehand, and that wrong outcomes are named. */
 static void trials_are_measured(void **state)
 {
     (void)state;
     struct tl_settings settings = quick_settings(NULL);
     struct tl_trials trials;
-    tl_error error = {0};
-    tl_session *session = tl_session_create(&settings, &error);
-    assert_ok(session != NULL, error);
-    assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+    tl_session *session = try_fabric(&settings, &trials);
     assert_false(trials.fall.is_measured); /* it was not at rest */
     assert_true(trials.droop.is_measured && trials.slide.is_measured);
     tl_session_destroy(&session);
     settings.cloth.settle_s = 10;
-    session = tl_session_create(&settings, &error);
-    assert_ok(session != NULL, error);
-    assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
+    session = try_fabric(&settings, &trials);
     assert_true(trials.fall.is_measured && trials.droop.is_measured && trials.slide.is_measured);
     assert_near(trials.fall.expected_m, 9.81 * 0.0526, 0.03); /* less than g t^2 / 2 by what air takes */
     tl_frame frame = tl_session_frame(session);
@@ -116,8 +127,7 @@ static void trials_of_every_solver(void **state)
     struct tl_settings settings = quick_settings(NULL);
     struct tl_trials trials;
     tl_error error = {0};
-    tl_session *session = tl_session_create(&settings, &error);
-    assert_ok(session != NULL, error);
+    tl_session *session = try_fabric(&settings, &trials);
     for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
         settings.cloth.solver = solver;
         assert_ok(tl_trials_run(session, &settings, &trials, &error), error);
