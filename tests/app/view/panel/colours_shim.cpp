@@ -1,4 +1,4 @@
-#include "tests/app/view/colours_shim.h"
+#include "tests/app/view/panel/colours_shim.h"
 
 extern "C" {
 #include "app/view/panel/panel_rows_shim.h"
@@ -7,6 +7,8 @@ extern "C" {
 
 #include <cstdint>
 #include <imgui.h>
+
+#include "tests/app/view/panel/pointer_shim.h"
 
 namespace
 {
@@ -43,27 +45,6 @@ void draw(scene &scene)
     scene.result->changed |= result.changed;
     if (scene.result->note.error.code == TL_OK && !scene.result->note.remark[0])
         scene.result->note = result.note;
-}
-
-void click(scene &scene, ImVec2 place)
-{
-    ImGuiIO &io = ImGui::GetIO();
-    io.MousePos = place;
-    draw(scene);
-    io.MouseDown[0] = true;
-    draw(scene);
-    io.MouseDown[0] = false;
-    draw(scene);
-}
-
-void press(scene &scene, int key, bool ctrl)
-{
-    ImGuiIO &io = ImGui::GetIO();
-    io.KeyCtrl = ctrl;
-    io.KeysDown[key] = true;
-    draw(scene);
-    io.KeysDown[key] = io.KeyCtrl = false;
-    draw(scene);
 }
 
 void begin(scene &scene)

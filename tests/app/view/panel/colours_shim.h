@@ -1,6 +1,6 @@
 /* The row of a colour in the panel, without a window: driven by pointer and keys. */
-#ifndef TOILE_TESTS_APP_VIEW_COLOURS_SHIM_H
-#define TOILE_TESTS_APP_VIEW_COLOURS_SHIM_H
+#ifndef TOILE_TESTS_APP_VIEW_PANEL_COLOURS_SHIM_H
+#define TOILE_TESTS_APP_VIEW_PANEL_COLOURS_SHIM_H
 
 #include "app/view/panel/panel_shim.h"
 

@@ -1,4 +1,4 @@
-#include "tests/app/view/column_shim.h"
+#include "tests/app/view/panel/column_shim.h"
 
 #include "app/view/panel/panel_column_shim.h"
 

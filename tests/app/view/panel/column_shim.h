@@ -1,6 +1,6 @@
 /* A panel's column without a window: Dear ImGui draws a text of 8 x 8 texels a letter into a target. */
-#ifndef TOILE_TESTS_APP_VIEW_COLUMN_SHIM_H
-#define TOILE_TESTS_APP_VIEW_COLUMN_SHIM_H
+#ifndef TOILE_TESTS_APP_VIEW_PANEL_COLUMN_SHIM_H
+#define TOILE_TESTS_APP_VIEW_PANEL_COLUMN_SHIM_H
 
 #ifdef __cplusplus
 extern "C" {

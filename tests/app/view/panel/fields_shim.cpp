@@ -1,10 +1,12 @@
-#include "tests/app/view/fields_shim.h"
+#include "tests/app/view/panel/fields_shim.h"
 
 #include "app/view/panel/panel_text_shim.h"
 
 #include <cstdint>
 #include <cstring>
 #include <imgui.h>
+
+#include "tests/app/view/panel/pointer_shim.h"
 
 namespace
 {
@@ -36,27 +38,6 @@ void draw(field &field)
     field.corner = ImGui::GetItemRectMin();
     ImGui::End();
     ImGui::Render();
-}
-
-void click(field &field, ImVec2 place)
-{
-    ImGuiIO &io = ImGui::GetIO();
-    io.MousePos = place;
-    draw(field);
-    io.MouseDown[0] = true;
-    draw(field);
-    io.MouseDown[0] = false;
-    draw(field);
-}
-
-void press(field &field, int key, bool ctrl)
-{
-    ImGuiIO &io = ImGui::GetIO();
-    io.KeyCtrl = ctrl;
-    io.KeysDown[key] = true;
-    draw(field);
-    io.KeysDown[key] = io.KeyCtrl = false;
-    draw(field);
 }
 
 void edit(field &field)

@@ -1,6 +1,6 @@
 /* A text field that is driven without a window. */
-#ifndef TOILE_TESTS_APP_VIEW_FIELDS_SHIM_H
-#define TOILE_TESTS_APP_VIEW_FIELDS_SHIM_H
+#ifndef TOILE_TESTS_APP_VIEW_PANEL_FIELDS_SHIM_H
+#define TOILE_TESTS_APP_VIEW_PANEL_FIELDS_SHIM_H
 
 #ifdef __cplusplus
 extern "C" {

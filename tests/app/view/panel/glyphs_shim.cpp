@@ -1,4 +1,4 @@
-#include "tests/app/view/glyphs_shim.h"
+#include "tests/app/view/panel/glyphs_shim.h"
 
 #include <imgui.h>
 #include <imgui_internal.h>

@@ -1,6 +1,6 @@
 /* Looks into the atlas of Dear ImGui's current context, without a window. */
-#ifndef TOILE_TESTS_APP_VIEW_GLYPHS_SHIM_H
-#define TOILE_TESTS_APP_VIEW_GLYPHS_SHIM_H
+#ifndef TOILE_TESTS_APP_VIEW_PANEL_GLYPHS_SHIM_H
+#define TOILE_TESTS_APP_VIEW_PANEL_GLYPHS_SHIM_H
 
 #ifdef __cplusplus
 extern "C" {

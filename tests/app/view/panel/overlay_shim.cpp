@@ -1,4 +1,4 @@
-#include "tests/app/view/overlay_shim.h"
+#include "tests/app/view/panel/overlay_shim.h"
 
 #include "app/view/panel/panel_overlay_shim.h"
 

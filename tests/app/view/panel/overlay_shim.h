@@ -1,6 +1,6 @@
 /* The overlay of the window's keys, drawn without a window. */
-#ifndef TOILE_TESTS_APP_VIEW_OVERLAY_SHIM_H
-#define TOILE_TESTS_APP_VIEW_OVERLAY_SHIM_H
+#ifndef TOILE_TESTS_APP_VIEW_PANEL_OVERLAY_SHIM_H
+#define TOILE_TESTS_APP_VIEW_PANEL_OVERLAY_SHIM_H
 
 #include "app/view/panel/panel_shim.h"
 

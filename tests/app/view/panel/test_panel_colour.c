@@ -3,7 +3,7 @@
 #include "tests/testing.h"
 
 #include "config/colour/srgb.h"
-#include "tests/app/view/colours_shim.h"
+#include "tests/app/view/panel/colours_shim.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* The panel's column, which is kept as a texture: it is drawn again when its drawing differs or the glyphs
  * have another texture, and only then. */
-#include "tests/app/view/column_shim.h"
+#include "tests/app/view/panel/column_shim.h"
 
 #include "tests/testing.h"
 

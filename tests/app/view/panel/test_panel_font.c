@@ -1,6 +1,6 @@
 /* The panel's fonts: an atlas that holds every code point that was noted and that one of the system's fonts
  * has. */
-#include "tests/app/view/glyphs_shim.h"
+#include "tests/app/view/panel/glyphs_shim.h"
 
 #include "tests/testing.h"
 

@@ -2,7 +2,7 @@
  * ones are cut off, and it does not cover the panel. */
 #include "app/view/review_commands.h"
 #include "config/memory.h"
-#include "tests/app/view/overlay_shim.h"
+#include "tests/app/view/panel/overlay_shim.h"
 #include "tests/testing.h"
 
 static void help_stays_within_the_view(void **state)

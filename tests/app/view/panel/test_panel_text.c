@@ -1,5 +1,5 @@
 /* Text fields of the panel whose text is changed by the program between two edits. */
-#include "tests/app/view/fields_shim.h"
+#include "tests/app/view/panel/fields_shim.h"
 
 #include "tests/testing.h"
 
