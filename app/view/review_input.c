@@ -166,11 +166,8 @@ static bool answer(struct tl_review *review, const struct tl_window_event *event
 
 static void on_key(struct tl_review *review, const struct tl_window_event *event)
 {
-    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE) {
-        if (event->key > 0 && event->key <= GLFW_KEY_LAST)
-            tl_panel_press(review->panel, event->key);
+    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE)
         return;
-    }
     if (answer(review, event))
         return;
     int modifiers = event->modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER),
@@ -190,6 +187,9 @@ static void handle(struct tl_review *review, const struct tl_window_event *event
     case TL_WINDOW_KEY:
         on_key(review, event);
         break;
+    case TL_WINDOW_KEY_UP:
+    case TL_WINDOW_TEXT:
+        break; /* for the panel only */
     case TL_WINDOW_PRESS:
         on_press(review, event);
         break;
@@ -222,6 +222,7 @@ void tl_review_handle_events(struct tl_review *review)
     const int panel_frames = 3; /* ImGui reacts to an event within this many frames */
     struct tl_window_event event;
     while (tl_window_next(review->window, &event)) {
+        tl_panel_take(review->panel, &event);
         handle(review, &event);
         tl_window_event_release(&event);
         review->redraws = panel_frames;

@@ -206,6 +206,8 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
                          const struct tl_settings *before, const struct tl_review_buttons *buttons)
 {
     review->editing = result->editing;
+    if (result->behind && review->redraws == 0)
+        review->redraws = 1;
     review->listed = result->listed;
     if (review->panel_has_keys != tl_panel_wants_keys(review->panel))
         tl_debug("view: keys go to the %s", review->panel_has_keys ? "view" : "panel");

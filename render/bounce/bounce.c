@@ -75,11 +75,16 @@ static void follow_materials(struct tl_bounce *bounce, const struct tl_triangle_
                                                              material->glossiness)
                                                  : front;
             vec3s emission = mean_colour(&material->emission_map, material->emission);
+            vec3s transmission = glms_vec3_minv(
+                material->transmission,
+                glms_vec3_subs(glms_vec3_negate(glms_vec3_maxv(front, back)), -MOST_REFLECTED));
             for (size_t i = part->first_index; i < part->first_index + part->index_count; i++) {
                 size_t v = bounce->first_vertex[s] + surface->indices[i];
                 bounce->albedos[2 * v] = front;
                 bounce->albedos[2 * v + 1] = back;
                 bounce->emissions[2 * v] = bounce->emissions[2 * v + 1] = emission;
+                bounce->transmissions[v] = transmission;
+                bounce->openness[v] = material->openness;
             }
         }
     }
@@ -90,6 +95,8 @@ static void free_vertices(struct tl_bounce *bounce)
     free(bounce->first_vertex);
     free(bounce->albedos);
     free(bounce->emissions);
+    free(bounce->transmissions);
+    free(bounce->openness);
     free(bounce->found);
     free(bounce->shown);
     free(bounce->direct);
@@ -114,6 +121,8 @@ static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_reque
     size_t count = 2 * bounce->vertex_count;
     bounce->albedos = TL_NEW_ARRAY(vec3s, count);
     bounce->emissions = TL_NEW_ARRAY(vec3s, count);
+    bounce->transmissions = TL_NEW_ARRAY(vec3s, bounce->vertex_count);
+    bounce->openness = TL_NEW_ARRAY(float, bounce->vertex_count);
     bounce->found = TL_NEW_ARRAY(struct tl_bounced, count);
     bounce->shown = TL_NEW_ARRAY(struct tl_bounced, count);
     bounce->direct = TL_NEW_ARRAY(vec3s, count);
@@ -151,11 +160,15 @@ static void follow_sky(struct tl_bounce *bounce, const struct tl_bounce_request 
 
 /* ---- What is wanted ---- */
 
+/* What lets light through is lit from both sides. */
 static void want(struct tl_bounce *bounce, size_t surface, const uint32_t corners[3], bool back)
 {
-    for (int k = 0; k < 3; k++) /* threads may want one vertex at once: they write the same */
-        __atomic_store_n(&bounce->wanted[2 * (bounce->first_vertex[surface] + corners[k]) + back],
-                         bounce->update, __ATOMIC_RELAXED);
+    for (int k = 0; k < 3; k++) { /* threads may want one vertex at once: they write the same */
+        const size_t vertex = bounce->first_vertex[surface] + corners[k];
+        __atomic_store_n(&bounce->wanted[2 * vertex + back], bounce->update, __ATOMIC_RELAXED);
+        if (glms_vec3_max(bounce->transmissions[vertex]) > 0)
+            __atomic_store_n(&bounce->wanted[2 * vertex + !back], bounce->update, __ATOMIC_RELAXED);
+    }
 }
 
 static void want_triangle(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
@@ -242,37 +255,80 @@ static void add_bounced(struct tl_bounced *sum, const struct tl_bounced *light, 
         sum->along[c] = glms_vec3_muladds(light->along[c], share, sum->along[c]);
 }
 
-/* Follows one ray to its end: a surface, the ground or the sky. */
-static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
-                       vec3s direction, struct gathered *sums)
+/* What a ray meets first, as far as it was not shown already. */
+struct met {
+    vec3s sent;
+    float cover;    /* the share of the ray that ends there */
+    float beyond_m; /* where the rest goes on */
+    bool is_known;  /* false: the light that it sends is not known yet */
+};
+
+static struct met meet(struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
+                       vec3s direction, float from_m)
 {
-    vec3s sky = sky_towards(bounce, request, direction), sent;
-    struct tl_trace_hit hit = tl_trace_nearest(request->trace, origin, direction, 0,
+    struct tl_trace_hit hit = tl_trace_nearest(request->trace, origin, direction, from_m,
                                                tl_ground_distance(request->ground, origin, direction));
+    struct met met = {.is_known = true, .beyond_m = INFINITY};
     vec3s point;
     uint32_t triangle;
     float weights[3];
-    float cover = 0;
-    sums->all = glms_vec3_add(sums->all, sky);
     if (hit.surface != TL_TRACE_NONE) {
         const uint32_t *corners = request->ranges->surfaces[hit.surface]->indices + 3 * (size_t)hit.triangle;
         const float shares[3] = {1 - hit.u - hit.v, hit.u, hit.v};
         want(bounce, hit.surface, corners, hit.back);
-        if (!sent_from(bounce, hit.surface, corners, hit.back, shares, &sent))
-            return;
-        cover = 1;
+        met.is_known = sent_from(bounce, hit.surface, corners, hit.back, shares, &met.sent);
+        met.cover = 1 - bounce->openness[bounce->first_vertex[hit.surface] + corners[0]];
+        met.beyond_m = hit.distance_m + tl_trace_offset(request->trace);
     } else if (tl_ground_meet(request->ground, origin, direction, &point, &triangle, weights)) {
         const size_t last = request->ranges->surface_count - 1;
         const uint32_t *corners = request->ground->indices + 3 * (size_t)triangle;
         want(bounce, last, corners, false);
-        if (!sent_from(bounce, last, corners, false, weights, &sent))
+        met.is_known = sent_from(bounce, last, corners, false, weights, &met.sent);
+        met.cover = tl_ground_cover(request->ground, point.x, point.z);
+    }
+    return met;
+}
+
+/* Follows one ray to its end, through open sheets: to a surface, the ground or the sky. The last sheet counts
+ * as closed. */
+static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
+                       vec3s direction, struct gathered *sums)
+{
+    const vec3s sky = sky_towards(bounce, request, direction);
+    vec3s sent = {{0, 0, 0}};
+    float share = 1, from_m = 0;
+    sums->all = glms_vec3_add(sums->all, sky);
+    for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS && share > 0; layer++) {
+        struct met met = meet(bounce, request, origin, direction, from_m);
+        if (!met.is_known)
             return;
-        cover = tl_ground_cover(request->ground, point.x, point.z);
+        if (layer == TL_TRANSPARENCY_LAYERS && met.cover > 0)
+            met.cover = 1;
+        sent = glms_vec3_muladds(met.sent, share * met.cover, sent);
+        share *= 1 - met.cover;
+        from_m = met.beyond_m;
+        if (!(from_m < INFINITY))
+            break;
     }
     sums->count++;
-    if (cover > 0)
-        count_hit(&sums->light, direction, glms_vec3_scale(sent, cover));
-    sums->open = glms_vec3_add(sums->open, glms_vec3_scale(sky, 1 - cover));
+    count_hit(&sums->light, direction, sent);
+    sums->open = glms_vec3_add(sums->open, glms_vec3_scale(sky, share));
+}
+
+/* The share of a ray's light that open sheets let through; 0 behind anything else. */
+static float shown_to(const struct tl_bounce_request *request, vec3s origin, vec3s direction, float to_m)
+{
+    const struct tl_ray_packet packet = {.count = 1,
+                                         .origin_x = {origin.x},
+                                         .origin_y = {origin.y},
+                                         .origin_z = {origin.z},
+                                         .direction_x = {direction.x},
+                                         .direction_y = {direction.y},
+                                         .direction_z = {direction.z},
+                                         .to_m = to_m};
+    float shown[16];
+    tl_trace_transmittance_packet(request->trace, &packet, shown);
+    return shown[0];
 }
 
 static vec3s sunlight(const struct tl_bounce_request *request, vec3s origin, vec3s normal)
@@ -282,9 +338,10 @@ static vec3s sunlight(const struct tl_bounce_request *request, vec3s origin, vec
         const struct tl_sun *sun = &request->suns->items[i];
         vec3s direction = tl_turn_direction(sun->direction, request->environment_yaw);
         float cosine = glms_vec3_dot(normal, direction);
-        if (!(cosine > 0) || tl_trace_occluded(request->trace, origin, direction, 0, INFINITY))
+        if (!(cosine > 0))
             continue;
-        float open = tl_ground_visibility(request->ground, origin, direction);
+        float open = shown_to(request, origin, direction, INFINITY) *
+                     tl_ground_visibility(request->ground, origin, direction);
         light = glms_vec3_add(light, glms_vec3_scale(sun->power, open * cosine / (float)M_PI));
     }
     return light;
@@ -296,9 +353,10 @@ static vec3s lamplight(const struct tl_bounce_request *request, vec3s origin, ve
     for (size_t i = 0; i < request->lamp_count; i++) {
         const struct tl_lamplight lamp = tl_lamp_at(&request->lamps[i], origin, normal);
         float cosine = glms_vec3_dot(normal, lamp.direction);
-        if (!(cosine > 0) || tl_trace_occluded(request->trace, origin, lamp.direction, 0, lamp.distance_m))
+        if (!(cosine > 0))
             continue;
-        float open = tl_ground_visibility_to(request->ground, origin, lamp.direction, lamp.distance_m);
+        float open = shown_to(request, origin, lamp.direction, lamp.distance_m) *
+                     tl_ground_visibility_to(request->ground, origin, lamp.direction, lamp.distance_m);
         light = glms_vec3_add(light, glms_vec3_scale(lamp.irradiance, open * cosine / (float)M_PI));
     }
     return light;
@@ -410,17 +468,24 @@ static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ra
     }
 }
 
+/* What arrives at a vertex and is sent on. */
+static vec3s received(const struct tl_bounce *bounce, const struct tl_bounce_request *request, size_t at)
+{
+    return request->all ? glms_vec3_add(bounce->direct[at], bounce->found[at].arrives) : bounce->direct[at];
+}
+
 /* The light that vertices send on from now on. */
 static void send(struct tl_bounce *bounce, const struct tl_bounce_request *request, const struct probe *due,
                  size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        size_t at = 2 * (bounce->first_vertex[due[i].surface] + due[i].vertex) + due[i].back;
+        const size_t vertex = bounce->first_vertex[due[i].surface] + due[i].vertex;
+        const size_t at = 2 * vertex + due[i].back, other = 2 * vertex + !due[i].back;
         bounce->rounds[at] = (uint16_t)(request->moved ? 1 : bounce->rounds[at] + 1);
-        vec3s light = bounce->direct[at];
-        if (request->all)
-            light = glms_vec3_add(light, bounce->found[at].arrives);
-        bounce->sent[at] = glms_vec3_muladd(bounce->albedos[at], light, bounce->emissions[at]);
+        vec3s sent =
+            glms_vec3_muladd(bounce->albedos[at], received(bounce, request, at), bounce->emissions[at]);
+        bounce->sent[at] =
+            glms_vec3_muladd(bounce->transmissions[vertex], received(bounce, request, other), sent);
     }
 }
 
@@ -460,8 +525,8 @@ void tl_bounce_release(struct tl_bounce *bounce)
 size_t tl_bounce_bytes(const struct tl_bounce *bounce)
 {
     return 2 * bounce->vertex_count *
-               (4 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint16_t) + sizeof(uint32_t) +
-                sizeof(float)) +
+               (4 * sizeof(vec3s) + sizeof(vec3s) / 2 + sizeof(float) / 2 + 2 * sizeof(struct tl_bounced) +
+                sizeof(uint16_t) + sizeof(uint32_t) + sizeof(float)) +
            (bounce->first_vertex ? (bounce->surface_count + 1) * sizeof(size_t) : 0);
 }
 

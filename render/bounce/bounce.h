@@ -13,8 +13,8 @@
  *
  * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
  * is traced in each update, in directions that are fixed to the surface, so that nothing flickers; at rest
- * further directions are averaged in until all have had their rounds. Open cloth counts as closed, and what a
- * surface lets through is not sent on.
+ * further directions are averaged in until all have had their rounds. Rays pass open cloth as they do in the
+ * reference, and a surface that transmits sends on what its other side received.
  *
  * World space, metres; linear radiance, Rec. 709. Errors: none. Lifetime: a plain struct that starts as {0}
  * and owns its arrays. Threads: one call at a time; OpenMP inside; results do not depend on the number of
@@ -42,6 +42,8 @@ struct tl_bounce {
     uint32_t update;          /* counts updates, from 1 */
     vec3s *emissions;         /* [2 vertex_count]: front, back: radiance */
     vec3s *albedos;           /* [2 vertex_count]: front, back */
+    vec3s *transmissions;     /* [vertex_count]: from either side to the other */
+    float *openness;          /* [vertex_count] */
     struct tl_bounced *found; /* ...: mean of the vertex's own rays */
     struct tl_bounced *shown; /* ...: mean with its neighbours' */
     vec3s *direct;            /* ...: E / pi of the environment, suns and lamps */

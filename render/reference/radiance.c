@@ -73,10 +73,24 @@ static void light_hits(struct paths *paths)
     hits->points.any_layered = false;
 }
 
-/* Follows a path from a point to what it hits; through open sheets with what these let through. The last
- * layer counts as closed, as for rays from the camera. */
+static void add_hit(struct paths *paths, int owner, const struct tl_shading_point *hit, vec3s weight)
+{
+    struct path_hits *hits = &paths->hits;
+    const int h = hits->points.count;
+    tl_shading_points_add(&hits->points, hit);
+    hits->owner[h] = owner;
+    hits->weight[h] = weight;
+    hits->lamplight[h] = tl_reference_lamps(paths->scene, hit, &paths->rays);
+    if (hits->points.count == TL_SHADING_POINTS)
+        light_hits(paths);
+}
+
+/* Follows a path from a point to what it hits. Where it is one of many, it sends light back from every open
+ * sheet that it meets; a path that stands alone ends at one of them, chosen by chance, or its light would
+ * multiply with every bounce. The last layer counts as closed, as for rays from the camera. */
 static void follow(struct paths *paths, int owner, vec3s origin, vec3s direction, vec3s weight)
 {
+    const bool is_alone = paths->samples == 1;
     struct tl_ray_differential ray = {.origin = origin, .direction = direction, .to_m = INFINITY};
     for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS && glms_vec3_max(weight) > 0; layer++) {
         struct tl_shading_point hit = tl_shading_point_find(paths->scene, &ray);
@@ -84,14 +98,10 @@ static void follow(struct paths *paths, int owner, vec3s origin, vec3s direction
         if (!(hit.cover > 0))
             return;
         float openness = hit.layered && layer < TL_TRANSPARENCY_LAYERS ? hit.layers.openness : 0;
-        struct path_hits *hits = &paths->hits;
-        int h = hits->points.count;
-        tl_shading_points_add(&hits->points, &hit);
-        hits->owner[h] = owner;
-        hits->weight[h] = glms_vec3_scale(weight, hit.cover * (1 - openness));
-        hits->lamplight[h] = tl_reference_lamps(paths->scene, &hit, &paths->rays);
-        if (hits->points.count == TL_SHADING_POINTS)
-            light_hits(paths);
+        if (is_alone && openness > 0) /* 1: it passes */
+            openness = tl_random_unit(&paths->random) < (double)openness ? 1 : 0;
+        if (openness < 1)
+            add_hit(paths, owner, &hit, glms_vec3_scale(weight, hit.cover * (1 - openness)));
         weight = glms_vec3_scale(weight, openness);
         ray.from_m = hit.distance_m + paths->scene->offset_m;
     }

@@ -4,6 +4,7 @@ extern "C" {
 }
 #include "app/view/panel/panel_column_shim.h"
 #include "app/view/panel/panel_font_shim.h"
+#include "app/view/panel/panel_inputs_shim.h"
 #include "app/view/panel/panel_overlay_shim.h"
 #include "app/view/panel/panel_pictures_shim.h"
 #include "app/view/panel/panel_text_shim.h"
@@ -22,11 +23,10 @@ struct tl_panel {
     tl_panel_fonts *fonts;
     tl_panel_column *column;
     tl_panel_pictures *pictures;
+    tl_panel_inputs *inputs;
     tl_panel_column_place place;    /* of the last frame that was built */
     bool has_platform, has_drawing; /* whether ImGui's backends are initialised */
     bool uses_keys, takes_focus;    /* takes_focus: in the next frame */
-    int pressed[8];                 /* keys for the next frame */
-    int pressed_count;
 };
 
 namespace
@@ -254,13 +254,6 @@ void note_texts(tl_panel_fonts *fonts, const tl_panel_input &input)
                                 tl_panel_row_text(&input.bindings[i], &input.bindings[i].table->rows[row]));
 }
 
-/* ImGui samples the keys when a frame begins and would miss one that was released before. */
-void hold_keys(const tl_panel &panel, bool held)
-{
-    for (int i = 0; i < panel.pressed_count; i++)
-        ImGui::GetIO().KeysDown[panel.pressed[i]] = held;
-}
-
 } // namespace
 
 struct tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float scale, tl_error *error)
@@ -271,8 +264,9 @@ struct tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float s
     panel->fonts = tl_panel_fonts_create(font_size * scale, scale);
     panel->column = tl_panel_column_create(gpu);
     panel->pictures = tl_panel_pictures_create(gpu);
+    panel->inputs = tl_panel_inputs_create();
     choose_style(scale);
-    panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, true);
+    panel->has_platform = ImGui_ImplGlfw_InitForOpenGL(window, false);
     panel->has_drawing = panel->has_platform && ImGui_ImplOpenGL3_Init("#version 450 core");
     if (!panel->has_drawing) {
         tl_fail(error, TL_DEVICE, "the panel cannot be drawn with this OpenGL: update the graphics driver");
@@ -291,6 +285,7 @@ void tl_panel_destroy(tl_panel **panel)
         ImGui_ImplGlfw_Shutdown();
     tl_panel_column_destroy(&(*panel)->column);
     tl_panel_pictures_destroy(&(*panel)->pictures);
+    tl_panel_inputs_destroy(&(*panel)->inputs);
     tl_panel_fonts_destroy(&(*panel)->fonts);
     ImGui::DestroyContext();
     delete *panel;
@@ -308,11 +303,9 @@ bool tl_panel_wants_keys(const tl_panel *panel)
     return panel->uses_keys || ImGui::GetIO().WantTextInput;
 }
 
-void tl_panel_press(tl_panel *panel, int key)
+void tl_panel_take(tl_panel *panel, const struct tl_window_event *event)
 {
-    const int room = sizeof panel->pressed / sizeof panel->pressed[0];
-    if (panel->pressed_count < room)
-        panel->pressed[panel->pressed_count++] = key;
+    tl_panel_inputs_take(panel->inputs, *event);
 }
 
 bool tl_panel_close(tl_panel *panel)
@@ -336,7 +329,7 @@ void tl_panel_use_keys(tl_panel *panel, bool used)
 
 struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_input *input)
 {
-    tl_panel_result result = {false, false, -1, -1, -1, -1, {}, nullptr};
+    tl_panel_result result = {false, false, false, -1, -1, -1, -1, {}, nullptr};
     ImGui_ImplOpenGL3_NewFrame();
     note_texts(panel->fonts, *input);
     if (tl_panel_fonts_update(panel->fonts)) {
@@ -345,7 +338,7 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
         tl_panel_column_forget(panel->column);
     }
     ImGui_ImplGlfw_NewFrame();
-    hold_keys(*panel, true);
+    result.behind = tl_panel_inputs_apply(panel->inputs);
     ImGui::NewFrame();
     tl_panel_forget_text();
     tl_panel_pictures_follow(panel->pictures, input->list);
@@ -357,8 +350,6 @@ struct tl_panel_result tl_panel_build(tl_panel *panel, const struct tl_panel_inp
         draw_question(*input, result);
     result.editing = ImGui::IsAnyItemActive();
     ImGui::Render();
-    hold_keys(*panel, false);
-    panel->pressed_count = 0;
     return result;
 }
 

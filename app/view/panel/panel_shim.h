@@ -8,6 +8,7 @@
 #ifndef TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 #define TOILE_APP_VIEW_PANEL_PANEL_SHIM_H
 
+#include "app/view/window/window.h"
 #include "assets/base/image.h"
 #include "config/options.h"
 #include "render/gpu/gpu.h"
@@ -141,6 +142,7 @@ struct tl_panel_note {
 struct tl_panel_result {
     bool changed; /* an option was edited */
     bool editing; /* a widget is held or typed into: further edits are expected */
+    bool behind;  /* events are left for the next frame */
     int button;   /* index of the one that was pressed, -1 for none */
     int answer;   /* index of the one that was chosen, -1 for none */
     int choice;   /* index of the notice's answer that was pressed, -1 for none */
@@ -149,15 +151,15 @@ struct tl_panel_result {
     const struct tl_option *listed; /* whose list of choices is open; NULL: none */
 };
 
-/* Installs its input callbacks, which call the window's own first. `gpu`: of the window's context. `scale`:
+/* `gpu`: of the window's context. `scale`:
  * of the window's content, 1 on a plain screen. TL_DEVICE when the GL context cannot draw it. */
 tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float scale, tl_error *error);
 void tl_panel_destroy(tl_panel **panel);
 
 bool tl_panel_wants_pointer(const tl_panel *panel);
 bool tl_panel_wants_keys(const tl_panel *panel);
-/* Passes a key (GLFW_KEY_*) to the next frame, even if it was released before that frame. */
-void tl_panel_press(tl_panel *panel, int key);
+/* Queues an event of the window; every one must be passed. */
+void tl_panel_take(tl_panel *panel, const struct tl_window_event *event);
 /* Closes the open list or picker. False when there is none. */
 bool tl_panel_close(tl_panel *panel);
 /* Turns keyboard navigation of the panel's widgets on or off. */

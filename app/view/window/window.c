@@ -65,12 +65,17 @@ static int key_of_layout(int key, int scancode)
 
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int modifiers)
 {
-    if (action == GLFW_RELEASE)
-        return;
-    queue(glfwGetWindowUserPointer(handle), (struct tl_window_event){.type = TL_WINDOW_KEY,
-                                                                     .key = key_of_layout(key, scancode),
-                                                                     .modifiers = modifiers,
-                                                                     .repeated = action == GLFW_REPEAT});
+    queue(glfwGetWindowUserPointer(handle),
+          (struct tl_window_event){.type = action == GLFW_RELEASE ? TL_WINDOW_KEY_UP : TL_WINDOW_KEY,
+                                   .key = key_of_layout(key, scancode),
+                                   .modifiers = modifiers,
+                                   .repeated = action == GLFW_REPEAT});
+}
+
+static void on_text(GLFWwindow *handle, unsigned character)
+{
+    queue(glfwGetWindowUserPointer(handle),
+          (struct tl_window_event){.type = TL_WINDOW_TEXT, .key = (int)character});
 }
 
 static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
@@ -144,6 +149,7 @@ static void listen_to(tl_window *window)
 {
     glfwSetWindowUserPointer(window->handle, window);
     glfwSetKeyCallback(window->handle, on_key);
+    glfwSetCharCallback(window->handle, on_text);
     glfwSetMouseButtonCallback(window->handle, on_button);
     glfwSetCursorPosCallback(window->handle, on_move);
     glfwSetScrollCallback(window->handle, on_wheel);

@@ -15,6 +15,8 @@ typedef struct tl_window tl_window;
 
 enum tl_window_event_type {
     TL_WINDOW_KEY,     /* pressed, or held: `repeated` */
+    TL_WINDOW_KEY_UP,  /* released */
+    TL_WINDOW_TEXT,    /* a character that keys have written: `key` */
     TL_WINDOW_PRESS,   /* mouse button down */
     TL_WINDOW_RELEASE, /* mouse button up */
     TL_WINDOW_MOVE,    /* pointer */
@@ -26,8 +28,8 @@ enum tl_window_event_type {
 
 struct tl_window_event {
     enum tl_window_event_type type;
-    int key;       /* GLFW_KEY_*: letters by the keyboard's layout, others by position */
-    int button;    /* GLFW_MOUSE_BUTTON_* */
+    int key;    /* GLFW_KEY_*: letters by the keyboard's layout, others by position; TEXT: a Unicode number */
+    int button; /* GLFW_MOUSE_BUTTON_* */
     int modifiers; /* GLFW_MOD_* */
     bool repeated; /* KEY: it is held */
     float x, y;    /* pointer */
