@@ -1,6 +1,7 @@
 #include "render/brdf/lobe_fit.h"
 
 #include "render/brdf/slope_fan.h"
+#include "render/brdf/ward_lanes.h"
 
 #include <math.h>
 
@@ -306,6 +307,74 @@ int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
         return is_ggx(brdf) ? fit_ggx(brdf, frame, v, max_count, lobes)
                             : fit_facets(brdf, frame, v, max_count, lobes);
     }
+}
+
+/* Ward's facets, alike but for widths and colours, whose fit has a closed form. */
+static bool are_lanes(const struct tl_brdf_sum *sum)
+{
+    const struct tl_gloss *first = &sum->items[0].gloss;
+    for (int i = 0; i < sum->count; i++) {
+        const struct tl_gloss *gloss = &sum->items[i].gloss;
+        if (gloss->model != TL_REFLECT_WARD || gloss->ward != first->ward ||
+            gloss->fresnel != TL_FRESNEL_SCHLICK)
+            return false;
+    }
+    return true;
+}
+
+/* Lane i is gloss i of the sum; idle lanes repeat the first. */
+TL_CLONES static void fit_lanes(const struct tl_brdf_sum *sum, vec3s local, int max_count,
+                                struct tl_ward_lanes *ward)
+{
+    ward->gloss = &sum->items[0].gloss;
+    for (int i = 0; i < TL_LANES; i++) {
+        const struct tl_gloss *gloss = &sum->items[i < sum->count ? i : 0].gloss;
+        for (int c = 0; c < 3; c++)
+            ward->viewer[c][i] = local.raw[c];
+        ward->square[0][i] = gloss->width_weft * gloss->width_weft;
+        ward->square[1][i] = gloss->width_warp * gloss->width_warp;
+    }
+    tl_ward_fit(ward, max_count, sum->count);
+}
+
+/* The lobes of lane i, in the space of the frame's vectors. Lanes with fewer than `ward->count` have none at
+ * both ends. */
+static int take_lane(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
+                     const struct tl_ward_lanes *ward, int i, struct tl_fitted_lobe *lobes)
+{
+    const vec3s plain = tl_brdf_fresnel(brdf, 1), away = glms_vec3_sub(tl_brdf_fresnel(brdf, 0), plain);
+    vec3s scale;
+    for (int c = 0; c < 3; c++) {
+        const float sum = plain.raw[c] * ward->sum[0][i] + away.raw[c] * ward->sum[1][i];
+        const float albedo = plain.raw[c] * ward->albedo[0][i] + away.raw[c] * ward->albedo[1][i];
+        scale.raw[c] = sum > 1e-20f ? albedo / sum : 0;
+    }
+    int count = 0;
+    for (int k = 0; k < ward->count; k++) {
+        if (!(ward->plain[k][i] > 0))
+            continue;
+        vec3s weight = glms_vec3_scale(plain, ward->plain[k][i]);
+        weight = glms_vec3_muladds(away, ward->away[k][i], weight);
+        vec3s direction = glms_vec3_scale(frame->tangent, ward->local[k][0][i]);
+        direction = glms_vec3_muladds(frame->bitangent, ward->local[k][1][i], direction);
+        direction = glms_vec3_muladds(frame->normal, ward->local[k][2][i], direction);
+        lobes[count++] = (struct tl_fitted_lobe){direction, ward->exponent[i], glms_vec3_mul(scale, weight)};
+    }
+    return count;
+}
+
+int tl_lobe_fit_sum(const struct tl_brdf_sum *sum, const struct tl_brdf_frame *frame, vec3s v, int max_count,
+                    struct tl_fitted_lobe lobes[TL_LOBE_FIT_SUM_MAX])
+{
+    int count = 0;
+    const bool by_lanes = are_lanes(sum) && glms_vec3_dot(frame->normal, v) > 0;
+    struct tl_ward_lanes ward;
+    if (by_lanes)
+        fit_lanes(sum, local_of(frame, v), max_count, &ward);
+    for (int i = 0; i < sum->count; i++)
+        count += by_lanes ? take_lane(&sum->items[i], frame, &ward, i, &lobes[count])
+                          : tl_lobe_fit_make(&sum->items[i], frame, v, max_count, &lobes[count]);
+    return count;
 }
 
 void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *min, float *max)

@@ -6,6 +6,7 @@
 #include "render/brdf/lobe_fit.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
+#include "render/light/seen_lobes_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,10 +27,9 @@ struct sums {
 };
 
 /* The lobes of a sample beyond the two: a multi-lobe fit, and a coat. Environment's frame. */
-#define LOBES_MAX ((1 + TL_THREADS_MAX) * TL_LOBE_FIT_MAX + 1)
 struct lobes {
     int count;
-    struct tl_fitted_lobe items[LOBES_MAX];
+    struct tl_fitted_lobe items[TL_SEEN_LOBES_MAX];
     int facets; /* so many of them stand for `gloss`, which suns shine on itself; the next one is the coat */
     struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame;
@@ -56,21 +56,6 @@ TL_INLINE vec3s into_environment(const struct block *block, vec3s d)
 {
     float c = block->turn_cosine, s = block->turn_sine;
     return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
-}
-
-/* Visibility of group g at a sample. */
-TL_INLINE void read_visibility(const uint16_t *values, size_t stride, const struct tl_taps *taps, int g,
-                               float visibility[TL_LANES])
-{
-    const uint16_t *rows[TL_TAPS];
-    float weights[TL_TAPS];
-    for (int t = 0; t < TL_TAPS; t++) {
-        rows[t] = values + taps->point[t] * stride + (size_t)g * TL_LANES;
-        weights[t] = taps->weight[t] * (1 / TL_VISIBILITY_ONE);
-    }
-    for (int lane = 0; lane < TL_LANES; lane++)
-        visibility[lane] = weights[0] * (float)rows[0][lane] + weights[1] * (float)rows[1][lane] +
-                           weights[2] * (float)rows[2][lane] + weights[3] * (float)rows[3][lane];
 }
 
 TL_INLINE void add_weights(float sums[TL_LANES], const float power[TL_LANES], const float weights[TL_LANES])
@@ -131,7 +116,7 @@ TL_INLINE struct sums sum_groups(struct block *block, size_t index, const struct
         if (glms_vec3_dot(group->axis, frame->smooth) < -group->reach_sine)
             continue; /* all of it has set */
         float visibility[TL_LANES];
-        read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
+        tl_read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
         add_group(&lanes, group, frame, kind, block->exponents.broadened[g], visibility);
     }
     struct sums sums;
@@ -309,10 +294,8 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
         tl_brdf_sum_of(material, sample->specular, sample->diffuse, sample->glossiness, sample->widening);
     float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
-    lobes->facets = 0;
-    for (int i = 0; i < lobes->gloss.count; i++)
-        lobes->facets += tl_lobe_fit_make(&lobes->gloss.items[i], &lobes->frame, lobes->viewer,
-                                          request->params->fan, &lobes->items[lobes->facets]);
+    lobes->facets =
+        tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
     for (int k = 0; k < lobes->facets; k++)
         lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
     lobes->count = lobes->facets;
@@ -358,61 +341,6 @@ static void part_lobes(const struct block *block, const tl_material *material, t
     sample->specular = glms_vec3_scale(sample->specular, lobes->base);
 }
 
-/* Sixteen regions through all of the lobes, their visibility read once. */
-TL_INLINE void add_group_of_lobes(float sums[LOBES_MAX][3][TL_LANES], const struct tl_region_group *group,
-                                  const struct lobes *lobes, vec3s smooth, const float visibility[TL_LANES])
-{
-    float above[TL_LANES];
-    for (int lane = 0; lane < TL_LANES; lane++) {
-        float cosine = group->x[lane] * smooth.x + group->y[lane] * smooth.y + group->z[lane] * smooth.z;
-        above[lane] = disc_share(cosine * group->inverse_sine[lane]) * visibility[lane];
-    }
-    float exponents[TL_LANES] = {0}, broadened = -1; /* all lobes of a fan have the same */
-    for (int k = 0; k < lobes->count; k++) {
-        const vec3s d = lobes->items[k].direction;
-        const float s = tl_minf(lobes->items[k].exponent, TL_REGION_LOBE_MAX);
-        float glossy[TL_LANES];
-        if (s != broadened)
-            for (int lane = 0; lane < TL_LANES; lane++)
-                exponents[lane] = lobe_broadened_exponent(s, group->spread[lane]);
-        broadened = s;
-        for (int lane = 0; lane < TL_LANES; lane++) {
-            float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
-            glossy[lane] =
-                tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponents[lane]) *
-                above[lane];
-        }
-        for (int c = 0; c < 3; c++)
-            add_weights(sums[k][c], group->power[c], glossy);
-    }
-}
-
-/* What is seen of the regions through each lobe. */
-TL_INLINE void see_lobes(const struct block *block, size_t index, const struct lobes *lobes, vec3s smooth,
-                         vec3s seen[LOBES_MAX])
-{
-    const struct tl_compose_request *request = block->request;
-    const struct tl_region_lights *lights = request->lights;
-    float sums[LOBES_MAX][3][TL_LANES];
-    memset(sums, 0, (size_t)lobes->count * sizeof sums[0]);
-    for (int g = 0; g < lights->group_count; g++) {
-        const struct tl_region_group *group = &lights->groups[g];
-        if (glms_vec3_dot(group->axis, smooth) < -group->reach_sine)
-            continue;
-        float visibility[TL_LANES];
-        read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
-        add_group_of_lobes(sums, group, lobes, smooth, visibility);
-    }
-    for (int k = 0; k < lobes->count; k++) {
-        struct tl_exponent_blend blend = tl_exponent_blend(lobes->items[k].exponent);
-        vec3s gain = {{1, 1, 1}};
-        if (lights->gain.made)
-            gain = tl_lobes_fetch(&lights->gain, lobes->items[k].direction, blend);
-        for (int c = 0; c < 3; c++)
-            seen[k].raw[c] = gain.raw[c] * tl_sum_lanes(sums[k][c]);
-    }
-}
-
 /* Suns shine on facets themselves, and on a coat as on any lobe. */
 static vec3s sun_on_lobes(const struct block *block, size_t index, const struct lobes *lobes, vec3s smooth,
                           bool shadowed)
@@ -455,7 +383,7 @@ TL_INLINE void see_fibres(const struct block *block, size_t index, const struct 
         if (glms_vec3_dot(group->axis, n) < -group->reach_sine)
             continue;
         float visibility[TL_LANES], open[TL_LANES], visible[TL_LANES];
-        read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
+        tl_read_visibility(request->values, request->stride, &request->taps[index], g, visibility);
         for (int lane = 0; lane < TL_LANES; lane++) {
             float cosine = group->x[lane] * n.x + group->y[lane] * n.y + group->z[lane] * n.z;
             float mean = group->sine[lane] * disc_height(cosine * group->inverse_sine[lane]);
@@ -507,6 +435,11 @@ static struct tl_bounced bounced_at(const struct block *block, const tl_sample *
     return bounced;
 }
 
+static vec3s exact_in_lobe(const struct block *block, const struct tl_fitted_lobe *lobe)
+{
+    return tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
+}
+
 /* The light of a sample's lobes; under ambient occlusion with the share that the two lobes get. */
 TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const struct lobes *lobes,
                                vec3s smooth, const struct received *two, const struct tl_bounced *bounced)
@@ -514,16 +447,15 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
     int method = block->request->params->method;
     bool by_occlusion = method == TL_METHOD_AO || method == TL_METHOD_AO_COLOUR;
     bool shadowed = method != TL_METHOD_UNSHADOWED && !by_occlusion;
-    vec3s arriving[LOBES_MAX], light = sun_on_lobes(block, index, lobes, smooth, shadowed);
+    vec3s light = sun_on_lobes(block, index, lobes, smooth, shadowed);
     if (shadowed)
-        see_lobes(block, index, lobes, smooth, arriving);
+        light = glms_vec3_add(light, tl_see_lobes(block->request, index, lobes->items, lobes->count, smooth));
     for (int k = 0; k < lobes->count; k++) {
         const struct tl_fitted_lobe *lobe = &lobes->items[k];
+        vec3s arriving = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
         if (!shadowed)
-            arriving[k] =
-                tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
-        vec3s sent = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
-        light = glms_vec3_add(light, glms_vec3_mul(lobe->weight, glms_vec3_add(arriving[k], sent)));
+            arriving = glms_vec3_add(arriving, exact_in_lobe(block, lobe));
+        light = glms_vec3_muladd(lobe->weight, arriving, light);
     }
     if (by_occlusion)
         light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));
@@ -715,15 +647,12 @@ static void look_through(const struct tl_compose_request *request, const vec3s *
 TL_INLINE vec3s ratio_of_lobes(const struct block *block, size_t index, const struct lobes *lobes,
                                vec3s smooth, const struct tl_bounced *bounced)
 {
-    vec3s arriving[LOBES_MAX], seen = {{0, 0, 0}}, all = {{0, 0, 0}};
-    see_lobes(block, index, lobes, smooth, arriving);
+    vec3s seen = tl_see_lobes(block->request, index, lobes->items, lobes->count, smooth), all = {{0, 0, 0}};
     for (int k = 0; k < lobes->count; k++) {
         const struct tl_fitted_lobe *lobe = &lobes->items[k];
-        vec3s exact =
-            tl_lobes_fetch(block->request->lobes, lobe->direction, tl_exponent_blend(lobe->exponent));
         vec3s sent = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
-        seen = glms_vec3_add(seen, glms_vec3_mul(lobe->weight, glms_vec3_add(arriving[k], sent)));
-        all = glms_vec3_add(all, glms_vec3_mul(lobe->weight, exact));
+        seen = glms_vec3_muladd(lobe->weight, sent, seen);
+        all = glms_vec3_muladd(lobe->weight, exact_in_lobe(block, lobe), all);
     }
     return share_of(seen, all);
 }

@@ -35,6 +35,7 @@ static void fill_group(struct tl_region_group *group, const struct tl_region *re
         reach = fmaxf(reach, acosf(cosine) + asinf(group->sine[lane]));
     }
     group->reach_sine = reach < GLM_PI_2f ? sinf(reach) : 2;
+    group->reach_cosine = reach < GLM_PI_2f ? cosf(reach) : -2;
 }
 
 /* The sum that the exact light is divided by; see tl_lobe_map_function. */
@@ -91,6 +92,8 @@ void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_reg
     for (int g = 0; g < lights->group_count; g++) {
         int first = g * TL_LANES, left = regions->count - first;
         fill_group(&lights->groups[g], &regions->items[first], left < TL_LANES ? left : TL_LANES, weight);
+        for (int lane = 0; lane < TL_LANES; lane++)
+            lights->spread_max = fmaxf(lights->spread_max, lights->groups[g].spread[lane]);
     }
     lights->is_exact = weight == TL_WEIGHT_POWER;
 }

@@ -35,13 +35,14 @@ struct tl_region_group {
     float power[3][TL_LANES];
     /* A cone that contains the directions of all of its light. */
     vec3s axis;
-    float reach_sine; /* 2: it is half the sphere or more */
+    float reach_sine, reach_cosine; /* of its half-angle; 2 and -2: it is half the sphere or more */
 };
 
 struct tl_region_lights {
     int group_count;
     struct tl_region_group groups[TL_REGION_GROUPS_MAX];
-    bool is_exact; /* there are gains: the weight is POWER */
+    float spread_max; /* of any region */
+    bool is_exact;    /* there are gains: the weight is POWER */
     /* Corrections for the exponents that were asked for. K_1 about a normal is a cosine and needs no power,
      * so it has a table of its own. */
     struct tl_lobes gain, diffuse_gain;

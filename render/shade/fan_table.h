@@ -4,7 +4,7 @@
  *
  * Exact at its nodes, interpolated between them. Reflectance is affine in F0 by Schlick's term, so two fits
  * give the weights at any F0; other Fresnel terms multiply F0 and are as exact. Glossiness is a third axis.
- * Ward's facets have two widths and no table (ward_lanes_internal.h). tests/render/shade/test_fan_table.c
+ * Ward's facets have two widths and no table (render/brdf/ward_lanes.h). tests/render/shade/test_fan_table.c
  * prints the error. Threads: pure once made.
  */
 #ifndef TOILE_RENDER_SHADE_FAN_TABLE_H

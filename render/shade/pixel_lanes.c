@@ -1,8 +1,8 @@
 #include "config/memory.h"
 #include "render/brdf/fuzz.h"
+#include "render/brdf/ward_lanes.h"
 #include "render/env/lobes_fetch.h"
 #include "render/shade/pixels_internal.h"
-#include "render/shade/ward_lanes_internal.h"
 
 #include <assert.h>
 #include <math.h>

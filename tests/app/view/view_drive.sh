@@ -106,7 +106,7 @@ round() {
     press ctrl+z "undone: scene.fabric"
     press ctrl+shift+z "redone: scene.fabric"
     press e "view: environment light.exr"
-    drag 1 1180 270 1230 270 # a slider of the panel
+    drag 1 1180 294 1230 294 # a slider of the panel
     press space "plays at"
     sleep 0.5
     press space "paused at"

@@ -187,10 +187,40 @@ static void test_fan(void **state)
     assert_true(off / views < 0.35);
 }
 
+/* Facets and threads fitted at once, as lanes, and one by one. */
+static void test_fit_of_sum(void **state)
+{
+    (void)state;
+    for (int threads = 0; threads <= TL_THREADS_MAX; threads++)
+        for (size_t p = 0; p < 4; p++)
+            for (size_t a = 0; a < TL_COUNT(azimuths); a++) {
+                const tl_material satin = cloth_of(threads);
+                const struct tl_brdf_sum sum = sum_of(&satin);
+                const vec3s v = from_angles(polars[p], azimuths[a]);
+                struct tl_fitted_lobe at_once[TL_LOBE_FIT_SUM_MAX], lobes[TL_LOBE_FIT_MAX];
+                int first = 0, count = tl_lobe_fit_sum(&sum, &frame, v, 5, at_once);
+                for (int i = 0; i < sum.count; i++) {
+                    const int own = tl_lobe_fit_make(&sum.items[i], &frame, v, 5, lobes);
+                    for (int k = 0; k < own; k++) {
+                        if (!(glms_vec3_max(lobes[k].weight) > 0))
+                            continue; /* nothing is reflected there */
+                        assert_true(first < count);
+                        const struct tl_fitted_lobe *lobe = &at_once[first++];
+                        assert_near(lobe->exponent / lobes[k].exponent, 1, 1e-4);
+                        for (int c = 0; c < 3; c++) {
+                            assert_near(lobe->direction.raw[c], lobes[k].direction.raw[c], 1e-4);
+                            assert_near(lobe->weight.raw[c], lobes[k].weight.raw[c], 1e-3);
+                        }
+                    }
+                }
+                assert_int_equal(first, count);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_furnace), cmocka_unit_test(test_reciprocity),
                                        cmocka_unit_test(test_colours), cmocka_unit_test(test_widening),
-                                       cmocka_unit_test(test_fan)};
+                                       cmocka_unit_test(test_fan),     cmocka_unit_test(test_fit_of_sum)};
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
 }

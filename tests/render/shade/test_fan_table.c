@@ -2,8 +2,8 @@
  * for, over viewers, reflectances and glossiness: their
  * albedo, which is the sum of their weights, their exponent, and the light that they fetch from a smooth
  * environment whose convolution with a lobe is known. */
+#include "render/brdf/ward_lanes.h"
 #include "render/shade/fan_table.h"
-#include "render/shade/ward_lanes_internal.h"
 
 #include "tests/testing.h"
 

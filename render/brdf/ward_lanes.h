@@ -1,9 +1,8 @@
-/* The lobes that stand for Ward's facets (render/brdf/lobe_fit.h) towards the viewers of TL_LANES pixels,
- * whose widths differ. What the fit evaluates as a gloss divided by a pdf has a closed form here, and
- * Schlick's term is kept apart as its two summands, so that colours come last. For pixel_lanes.c. Pure;
- * threads: any. */
-#ifndef TOILE_RENDER_SHADE_WARD_LANES_INTERNAL_H
-#define TOILE_RENDER_SHADE_WARD_LANES_INTERNAL_H
+/* The lobes that stand for Ward's facets (lobe_fit.h), TL_LANES at a time: of several pixels, or of the
+ * facets and the threads of one. What the fit evaluates as a gloss divided by a pdf has a closed form here,
+ * and Schlick's term is kept apart as its two summands, so that colours come last. Pure; threads: any. */
+#ifndef TOILE_RENDER_BRDF_WARD_LANES_H
+#define TOILE_RENDER_BRDF_WARD_LANES_H
 
 #include "render/brdf/fresnel.h"
 #include "render/brdf/lobe_fit.h"
