@@ -89,6 +89,14 @@ TERM float detail_open(float mean_length)
     return 0.5f + 0.5f * clamp(mean_length, 0.0f, 1.0f);
 }
 
+// How far a shading normal is turned towards a viewer at this cosine to it, as a multiple of the direction to the viewer that
+// is added to the normal. Near an outline interpolated normals point away from a viewer who sees the surface: no
+// gloss would be sent there, and satin, whose light is gloss, had a black rim.
+TERM float detail_facing(float cosine)
+{
+    return max(0.02f - cosine, 0.0f);
+}
+
 // The slope of a horizon from the sine of its elevation. Bytes do not resolve slopes above 16.
 TERM float detail_slope(float sine)
 {

@@ -123,6 +123,7 @@ void main()
     }
     vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);
+    n = facing_normal(n, v);
     // Of the mean normal: facets that turn away reflect more, but what lies below the surface's horizon.
     vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
 #ifdef FRAMES

@@ -145,7 +145,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 #elif defined(TANGENT_SPACE)
     vec3 up = vec3(0.0, 0.0, 1.0);
     vec3 l = made_unit(to_lamp, up), v = made_unit(to_eye, up), h = made_unit(halfway, up);
-    vec3 n = side * (bumpy ? made_unit(bumps.normal, up) : up);
+    vec3 n = facing_normal(side * (bumpy ? made_unit(bumps.normal, up) : up), v);
     facing = side * l.z;
     return cosines_near(frame_of(n, vec3(1.0, 0.0, 0.0), side * (tangent.w < 0.0 ? -1.0 : 1.0)), l, v, h);
 #elif defined(VECTORS) || defined(MATRIX)
@@ -160,6 +160,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 #else
     vec3 n = side * direction_or(bumped_normal(smooth_normal), smooth_normal);
     vec3 l = towards_lamp(point, n), v = direction_or(eye - point, n);
+    n = facing_normal(n, v);
     facing = side * dot(smooth_normal, l);
     return cosines_of(frame_of(n, tangent.xyz, side), l, v, direction_or(l + v, l));
 #endif
@@ -232,8 +233,9 @@ vec3 fibre_axis(float side, vec3 smooth_normal)
 {
 #ifndef GOURAUD
     if (lamp_fuzz_follow > 0.0) {
-        vec3 shown = direction_or(bumped_normal(smooth_normal), smooth_normal);
-        return side * direction_or(mix(smooth_normal, shown, lamp_fuzz_follow), smooth_normal);
+        vec3 shown = side * direction_or(bumped_normal(smooth_normal), smooth_normal);
+        shown = facing_normal(shown, direction_or(eye - point, shown));
+        return direction_or(mix(side * smooth_normal, shown, lamp_fuzz_follow), side * smooth_normal);
     }
 #endif
     return side * smooth_normal;

@@ -311,6 +311,9 @@ static void set_lobes(const struct sample_place *place, const struct tl_referenc
             tl_bump_statistics_roughness(place->detail, 1 - g, &bumps, into_tangent(place, smooth, viewer));
         open = detail_open(bumps.length);
     }
+    const float lift = detail_facing(glms_vec3_dot(n, viewer));
+    if (lift > 0)
+        n = direction_or(glms_vec3_muladds(viewer, lift, n), n);
     float n_dot_v = glms_vec3_dot(n, viewer);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
     result->viewer = viewer;

@@ -309,6 +309,17 @@ TL_INLINE void apply_bumps(const struct tl_detail_params *detail, struct tl_look
         lanes->diffuse[i] *= open[i];
 }
 
+TL_INLINE void face_viewers(struct tl_look_lanes *lanes)
+{
+    for (int i = 0; i < TL_LANES; i++) {
+        vec3s n = tl_lane_vector(lanes->shown, i), viewer = tl_lane_vector(lanes->viewer, i);
+        float lift = detail_facing(glms_vec3_dot(n, viewer));
+        vec3s facing = tl_unit_or(glms_vec3_add(n, glms_vec3_scale(viewer, lift)), n);
+        for (int c = 0; c < 3; c++)
+            lanes->shown[c][i] = lift > 0 ? facing.raw[c] : n.raw[c];
+    }
+}
+
 TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl_look_lanes *lanes)
 {
     const struct tl_shade_part *part = lanes->part;
@@ -329,6 +340,7 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
     }
     if (!part->has_maps) {
         show_backs(lanes);
+        face_viewers(lanes);
         return;
     }
     struct texel_lanes weave_at;
@@ -338,4 +350,5 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
             detail_widening(1 - material->glossiness, 1 - lanes->glossiness[i], 0);
     if (part->has_bumps)
         apply_bumps(detail, lanes, &weave_at);
+    face_viewers(lanes);
 }

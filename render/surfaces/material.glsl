@@ -72,6 +72,12 @@ vec3 bent_normal(vec3 mapped, vec3 normal, vec4 tangent, vec3 smooth_normal)
     return direction_or(mapped.x * tangent.xyz + mapped.y * bitangent + mapped.z * normal, smooth_normal);
 }
 
+vec3 facing_normal(vec3 n, vec3 v)
+{
+    float lift = detail_facing(dot(n, v));
+    return lift > 0.0 ? direction_or(n + lift * v, n) : n;
+}
+
 vec3 shading_normal(vec3 normal, vec4 tangent, vec2 uv, vec3 smooth_normal)
 {
     return has_bumps(tangent) ? bent_normal(bumps_at(uv).normal, normal, tangent, smooth_normal) : smooth_normal;

@@ -120,7 +120,10 @@ static void normals_are_the_frames_own(void **state)
                 continue;
             for (int c = 0; c < 3; c++) {
                 assert_near(byte_at(&image, x, y)[c] / 127.5 - 1, under.normal.raw[c], 1.01 / 127.5);
-                assert_near(under.smooth.raw[c], under.normal.raw[c], 0); /* no bumps here */
+                /* No bumps here, but for the outline, where it is turned towards the viewer. */
+                vec3s view = glms_vec3_normalize(glms_vec3_sub(scene.frame.camera.eye, under.position));
+                if (glms_vec3_dot(under.smooth, view) > 0.021f)
+                    assert_near(under.smooth.raw[c], under.normal.raw[c], 0);
             }
             if (strcmp(under.surface, "avatar") != 0)
                 continue;
@@ -128,7 +131,7 @@ static void normals_are_the_frames_own(void **state)
             vec3s n = glms_vec3_normalize(glms_vec3_sub(under.position, centre));
             /* The smooth normal of a ball of 96 x 48 facets, at a point of a facet; half floats round places.
              */
-            assert_near(glms_vec3_distance(n, under.normal), 0, 2e-3);
+            assert_near(glms_vec3_distance(n, under.smooth), 0, 2e-3);
         }
     assert_true(on_ball > 300);
     tl_image_release(&image);
