@@ -27,6 +27,12 @@ static void use_depth(struct test_scene *scene)
     light->sun = true;
 }
 
+static void use_ratio(struct test_scene *scene)
+{
+    use_depth(scene);
+    scene->settings.light.composition = TL_COMPOSE_RATIO;
+}
+
 static void use_lights(struct test_scene *scene)
 {
     scene->settings.light.method = TL_METHOD_LIGHTS;
@@ -146,6 +152,7 @@ static const struct {
 } cases[] = {
     {"variance maps", NULL, 0.7f, ROUNDINGS},
     {"depth maps, slices, suns", use_depth, 0.7f, ROUNDINGS},
+    {"depth maps, ratio, suns", use_ratio, 0.7f, ROUNDINGS},
     {"regions as lights", use_lights, 0.7f, ROUNDINGS},
     {"coloured occlusion", use_colour, 0.7f, ROUNDINGS},
     {"unshadowed", use_none, 0.7f, ROUNDINGS},

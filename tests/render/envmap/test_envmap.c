@@ -415,6 +415,55 @@ static void levels_stand_for_samples(void **state)
     assert_true(share_left(device->renderer, TL_LAYOUT_CUBE, TL_MAPS_REFRACTION) < 0.8);
 }
 
+/* The largest error of a ball of nearly the index of air, which looks along the view: into the singular rim
+ * of a sphere map. Relative to the brightest. */
+static double pole_error(tl_renderer *renderer, int layout, int size)
+{
+    const double index = 1.05;
+    struct test_scene scene;
+    scene_open(&scene, lights);
+    scene.shapes[0].material.gloss.index = (float)index;
+    test_scene_refresh(&scene);
+    scene.settings.maps.mode = TL_MAPS_REFRACTION;
+    scene.settings.maps.layout = layout;
+    scene.settings.maps.size = size;
+    tl_image image = test_scene_draw(&scene, renderer);
+    struct tl_view view = tl_view_make(&scene.frame.camera, SIDE, SIDE);
+    double squares = 0, worst = 0;
+    int counted = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct point point;
+        bool total;
+        if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
+            continue;
+        vec3s expected = lights(refracted(&point, index, false, &total));
+        for (int c = 0; c < 3; c++) {
+            double off = (double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c]);
+            worst = fmax(worst, fabs(off));
+            squares += off * off / 3;
+        }
+        counted++;
+    }
+    print_message("%s, %d texels, index %.2f: off by %.2f %% of the brightest RMS, %.2f %% at most\n",
+                  tl_layout_names[layout], size, index, 100 * sqrt(squares / counted) / BRIGHTEST,
+                  100 * worst / BRIGHTEST);
+    tl_image_release(&image);
+    test_scene_close(&scene);
+    return worst / BRIGHTEST;
+}
+
+/* Bilinear texels of 1/40 rad, and the environment's own as much: 1 % of a lobe of exponent 6. A point half a
+ * texel within the rim of a sphere map lies 0.25 rad from its pole, and texels there are mixed from all
+ * around it: 5 %, as docs/environments.md says. */
+static void refraction_looks_at_the_pole(void **state)
+{
+    struct test_device *device = *state;
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
+        double worst = pole_error(device->renderer, layout, 128);
+        assert_true(worst < (layout == TL_LAYOUT_SPHERE ? 0.06 : 0.01));
+    }
+}
+
 /* The light is smooth and the pixels are small, so that mip levels change it by the blur of a texel or two: a
  * lobe of exponent 6 over 0.03 rad, 0.5 %. A full-screen triangle may be clipped to two, and a pixel at their
  * common edge has neighbours that are computed for derivatives only. These read zeros from buffers, so that
@@ -520,6 +569,7 @@ int main(void)
         cmocka_unit_test(levels_stand_for_samples),
         cmocka_unit_test(sphere_maps_follow_the_view),
         cmocka_unit_test(levels_of_refraction_are_smooth),
+        cmocka_unit_test(refraction_looks_at_the_pole),
         cmocka_unit_test(unused_maps_cost_nothing),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
