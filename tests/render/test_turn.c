@@ -161,27 +161,31 @@ static void use_capture(struct test_scene *scene)
 #define ROUNDINGS 0.004
 #define SWAPPED   1e-4 /* a quarter swaps coordinates, which rounds nothing */
 #define SENT_ON   0.03
+/* What came out and is enough: 0.8 % where the sun grazes a wall with variance maps or wide regions, and 0.9
+ * % of bounces, where the least of all flips, of the light at what rays hit, makes 1.9 %. */
+#define GRAZED  0.015
+#define BOUNCED 0.013
 static const struct {
     const char *name;
     edit *use;
     float turn; /* rad; a quarter where the ground's probes or a cube lie along the axes of the world */
     double bound;
 } cases[] = {
-    {"variance maps", NULL, 0.7f, ROUNDINGS},
+    {"variance maps", NULL, 0.7f, GRAZED},
     {"depth maps, slices, suns", use_depth, 0.7f, ROUNDINGS},
     {"depth maps, ratio, suns", use_ratio, 0.7f, ROUNDINGS},
-    {"regions as lights", use_lights, 0.7f, ROUNDINGS},
-    {"coloured occlusion", use_colour, 0.7f, ROUNDINGS},
+    {"regions as lights", use_lights, 0.7f, GRAZED},
+    {"coloured occlusion", use_colour, 0.7f, GRAZED},
     {"unshadowed", use_none, 0.7f, ROUNDINGS},
     {"rays at samples", use_samples, (float)M_PI / 2, SWAPPED},
     {"rays at samples, few again", use_few, (float)M_PI / 2, SENT_ON},
     {"rays at samples, repaired", use_repair, (float)M_PI / 2, SWAPPED},
-    {"rays at samples, bounces", use_bounces, (float)M_PI / 2, SENT_ON},
+    {"rays at samples, bounces", use_bounces, (float)M_PI / 2, BOUNCED},
     {"rays at samples, satin", use_satin, (float)M_PI / 2, SWAPPED},
     {"rays at samples, mirror", use_mirror, (float)M_PI / 2, SENT_ON},
     {"rays at vertices", use_vertices, (float)M_PI / 2, SWAPPED},
     {"rays at vertices, satin", use_satin_at_vertices, (float)M_PI / 2, SWAPPED},
-    {"rays at vertices, voile", use_voile_at_vertices, (float)M_PI / 2, SWAPPED},
+    {"rays at vertices, voile", use_voile_at_vertices, (float)M_PI / 2, ROUNDINGS},
     {"reference", use_reference, 0.7f, 0.01},
     {"maps: cube", use_maps, 0.7f, ROUNDINGS},
     {"maps: sphere", use_sphere_map, 0.7f, ROUNDINGS},
@@ -216,6 +220,10 @@ static void scene_open(struct test_scene *scene)
                     40, 48, 32);
     test_scene_add(scene, test_sphere((vec3s){{0, 0.5f, 0}}, 0.4f, 16));
     test_scene_add(scene, test_sheet(1.1f, 0.5f, 0.06f, 2, 16));
+    /* A wall that the sun grazes, with the sheet's penumbra on it: turned the other way, the sun is behind
+     * it. */
+    test_scene_add(scene,
+                   test_square((vec3s){{-0.75f, 0.6f, 0}}, (vec3s){{0, 0, -1}}, (vec3s){{1, 0, 0}}, 0.6f, 8));
     scene->settings.image.ground = true;
     scene->settings.light.pem_size = 64; /* of smaller texels no sun is found */
 }
