@@ -81,16 +81,14 @@ static bool save_exr(const struct baking *baking, const char *name, const char *
 
 static bool save_normals(const struct baking *baking, tl_error *error)
 {
-    static const char *const offset_names[] = {"du", "dv"}, *const moment_names[] = {"x", "y", "xx", "yy"};
+    static const char *const moment_names[] = {"x", "y", "xx", "yy"};
     tl_image slopes = tl_bake_slopes(&baking->field), normals = tl_bake_normals(&slopes, 1);
-    tl_image bytes = tl_bake_encoded(&normals), offsets = tl_bake_offsets(&slopes, 1);
-    tl_image moments = tl_bake_moments(&normals),
+    tl_image bytes = tl_bake_encoded(&normals), moments = tl_bake_moments(&normals),
              gloss = tl_bake_gloss(&moments, DEFAULT_GLOSS, GLOSS_WINDOW);
     bool saved = save_png(baking, "normal", &bytes, error);
-    saved = saved && save_exr(baking, "offset", offset_names, &offsets, error);
     saved = saved && save_exr(baking, "moments", moment_names, &moments, error);
     saved = saved && save_png(baking, "gloss", &gloss, error);
-    tl_image *made[] = {&slopes, &normals, &bytes, &offsets, &moments, &gloss};
+    tl_image *made[] = {&slopes, &normals, &bytes, &moments, &gloss};
     for (size_t i = 0; i < TL_COUNT(made); i++)
         tl_image_release(made[i]);
     return saved;
@@ -145,7 +143,7 @@ static bool save_fabric(const struct baking *baking, tl_error *error)
     if (saved) {
         fprintf(writer.stream,
                 "# Baked by toile fabric; --fabric takes this file.\n"
-                "# For other programs: normal.png, offset.exr, moments.exr, gloss.png, "
+                "# For other programs: normal.png, moments.exr, gloss.png, "
                 "horizon_*.png, cones.png.\n"
                 "weave:\n"
                 "  picture: height.exr # metres; a repeat of %g x %g mm\n"

@@ -1,4 +1,4 @@
-/* Bakes maps from a height map: heights in metres, normals, offsets, moments, gloss, horizons, cones; and a
+/* Bakes maps from a height map: heights in metres, normals, moments, gloss, horizons, cones; and a
  * fabric that uses them.
  *
  * Errors: TL_USAGE for arguments, TL_INPUT, TL_OUTPUT. Threads: the main thread. */

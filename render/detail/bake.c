@@ -86,14 +86,6 @@ tl_image tl_bake_slopes(const struct tl_height_field *field)
     return slopes;
 }
 
-tl_image tl_bake_offsets(const tl_image *slopes, float k)
-{
-    tl_image offsets = tl_image_create(slopes->width, slopes->height, 2, TL_IMAGE_F32);
-    for (size_t i = 0; i < 2 * texel_count(slopes); i++)
-        tl_image_floats(&offsets)[i] = -k * tl_image_floats(slopes)[i];
-    return offsets;
-}
-
 tl_image tl_bake_normals(const tl_image *slopes, float k)
 {
     tl_image normals = tl_image_create(slopes->width, slopes->height, 3, TL_IMAGE_F32);
@@ -113,72 +105,6 @@ tl_image tl_bake_encoded(const tl_image *normals)
     for (size_t i = 0; i < 3 * texel_count(normals); i++)
         tl_image_bytes(&bytes)[i] = (uint8_t)lrintf(255 * (0.5f + 0.5f * tl_image_floats(normals)[i]));
     return bytes;
-}
-
-/* ---- Object space ---- */
-
-static vec3s nearest_normal(const tl_image *normals, vec2s uv)
-{
-    float u = uv.x - floorf(uv.x), v = uv.y - floorf(uv.y);
-    int column = (int)(u * (float)normals->width), row = (int)(v * (float)normals->height);
-    column = column < normals->width ? column : normals->width - 1;
-    row = row < normals->height ? row : normals->height - 1;
-    const float *texel =
-        tl_image_floats(normals) + 3 * ((size_t)row * (size_t)normals->width + (size_t)column);
-    return (vec3s){{texel[0], texel[1], texel[2]}};
-}
-
-static vec3s turned(const tl_mesh *mesh, const uint32_t *corners, const float weights[3], vec3s mapped)
-{
-    vec3s normal = {{0, 0, 0}}, tangent = {{0, 0, 0}};
-    for (size_t i = 0; i < 3; i++) {
-        vec4s along = mesh->tangents[corners[i]];
-        normal = glms_vec3_add(normal, glms_vec3_scale(mesh->normals[corners[i]], weights[i]));
-        tangent = glms_vec3_add(tangent, glms_vec3_scale((vec3s){{along.x, along.y, along.z}}, weights[i]));
-    }
-    return tl_patch_normal(normal, tangent, mesh->tangents[corners[0]].w, mapped);
-}
-
-/* Twice the signed area of (a, b, c). */
-static float area_of(vec2s a, vec2s b, vec2s c)
-{
-    return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-}
-
-/* Bakes the texels of one row whose centres lie in the triangle. */
-static void bake_row(const tl_mesh *mesh, const uint32_t *corners, const tl_image *normals, tl_image *out,
-                     int row)
-{
-    vec2s a = mesh->uvs[corners[0]], b = mesh->uvs[corners[1]], c = mesh->uvs[corners[2]];
-    float whole = area_of(a, b, c);
-    for (int column = 0; column < out->width && whole != 0; column++) {
-        vec2s at = {{((float)column + 0.5f) / (float)out->width, ((float)row + 0.5f) / (float)out->height}};
-        const float weights[3] = {area_of(b, c, at) / whole, area_of(c, a, at) / whole,
-                                  area_of(a, b, at) / whole};
-        if (!(weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0))
-            continue;
-        vec3s normal = turned(mesh, corners, weights, nearest_normal(normals, at));
-        memcpy(tl_image_floats(out) + 3 * ((size_t)row * (size_t)out->width + (size_t)column), normal.raw,
-               sizeof normal.raw);
-    }
-}
-
-/* Each row is written by one thread, so that the result does not depend on their number. */
-tl_image tl_bake_object_normals(const tl_mesh *mesh, const tl_image *normals, int width, int height)
-{
-    tl_image out = tl_image_create(width, height, 3, TL_IMAGE_F32);
-    assert(mesh->tangents && mesh->normals && mesh->uvs);
-#pragma omp parallel for schedule(dynamic)
-    for (int row = 0; row < height; row++) {
-        float v = ((float)row + 0.5f) / (float)height;
-        for (size_t i = 0; i < mesh->index_count; i += 3) {
-            const uint32_t *corners = mesh->indices + i;
-            float a = mesh->uvs[corners[0]].y, b = mesh->uvs[corners[1]].y, c = mesh->uvs[corners[2]].y;
-            if (v >= fminf(fminf(a, b), c) && v <= fmaxf(fmaxf(a, b), c))
-                bake_row(mesh, corners, normals, &out, row);
-        }
-    }
-    return out;
 }
 
 /* ---- Horizons ---- */

@@ -1,4 +1,4 @@
-/* Maps derived from a height field [004]: normals, offsets, horizons, the spread of normals, and the gloss
+/* Maps derived from a height field [004]: normals, horizons, the spread of normals, and the gloss
  * widened by it. Each function returns a new image, which the caller releases, of the size of its source
  * unless stated otherwise. Pure; deterministic at any number of threads. */
 #ifndef TOILE_RENDER_DETAIL_BAKE_H
@@ -18,18 +18,10 @@ tl_image tl_bake_smaller(const tl_image *heights, int width, int height);
  * do not repeat. F32 x2. */
 tl_image tl_bake_slopes(const struct tl_height_field *field);
 
-/* The offset bump map D = (-k dh/dx, -k dh/dy), which is added to normals. F32 x2. */
-tl_image tl_bake_offsets(const tl_image *slopes, float k);
-
 /* The normal map N' = normalise(-k dh/dx, -k dh/dy, 1), F32 x3. */
 tl_image tl_bake_normals(const tl_image *slopes, float k);
 /* The same as image files store it: U8 x3, 0.5 + 0.5 n. */
 tl_image tl_bake_encoded(const tl_image *normals);
-
-/* Object-space normals, F32 x3: tangent-space normals (read at the mesh's UV, periodic), transformed by the
- * frames of the mesh, which must have tangents. `width` x `height` texels cover the UV square; texels without
- * a triangle are zero. */
-tl_image tl_bake_object_normals(const tl_mesh *mesh, const tl_image *normals, int width, int height);
 
 /* Horizon maps [Max 1988]: the sine of the elevation of the horizon seen from each texel, by azimuth. Angle k
  * of n is the direction (cos, sin)(2 pi k / n) in tangent space; angles 4 i to 4 i + 3 are the channels of

@@ -20,21 +20,30 @@ vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v)
     return area != 0 ? direction_or(sum, normal) : normal;
 }
 
-vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped)
+vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped, vec3s fallback)
 {
     vec3s bitangent = glms_vec3_scale(glms_vec3_cross(normal, tangent), handedness);
     vec3s sum = glms_vec3_add(glms_vec3_scale(tangent, mapped.x), glms_vec3_scale(bitangent, mapped.y));
-    return direction_or(glms_vec3_add(sum, glms_vec3_scale(normal, mapped.z)), normal);
+    return direction_or(glms_vec3_add(sum, glms_vec3_scale(normal, mapped.z)), fallback);
 }
 
-void tl_slope_factors(const vec3s positions[3], const vec2s uvs[3], float nominal, float out[2])
+bool tl_uv_derivatives(const vec3s positions[3], const vec2s uvs[3], vec3s *p_u, vec3s *p_v)
 {
     vec3s p = glms_vec3_sub(positions[1], positions[0]), q = glms_vec3_sub(positions[2], positions[0]);
     vec2s a = glms_vec2_sub(uvs[1], uvs[0]), b = glms_vec2_sub(uvs[2], uvs[0]);
     float determinant = a.x * b.y - a.y * b.x;
-    bool is_known = fabsf(determinant) > 1e-20f;
-    vec3s p_u = glms_vec3_sub(glms_vec3_scale(p, b.y), glms_vec3_scale(q, a.y));
-    vec3s p_v = glms_vec3_sub(glms_vec3_scale(q, a.x), glms_vec3_scale(p, b.x));
-    out[0] = is_known ? detail_slope_factor(glms_vec3_norm(p_u) / fabsf(determinant), nominal) : 1;
-    out[1] = is_known ? detail_slope_factor(glms_vec3_norm(p_v) / fabsf(determinant), nominal) : 1;
+    *p_u = *p_v = glms_vec3_zero();
+    if (!(fabsf(determinant) > 1e-20f))
+        return false;
+    *p_u = glms_vec3_divs(glms_vec3_sub(glms_vec3_scale(p, b.y), glms_vec3_scale(q, a.y)), determinant);
+    *p_v = glms_vec3_divs(glms_vec3_sub(glms_vec3_scale(q, a.x), glms_vec3_scale(p, b.x)), determinant);
+    return true;
+}
+
+void tl_slope_factors(const vec3s positions[3], const vec2s uvs[3], float nominal, float out[2])
+{
+    vec3s p_u, p_v;
+    bool is_known = tl_uv_derivatives(positions, uvs, &p_u, &p_v);
+    out[0] = is_known ? detail_slope_factor(glms_vec3_norm(p_u), nominal) : 1;
+    out[1] = is_known ? detail_slope_factor(glms_vec3_norm(p_v), nominal) : 1;
 }

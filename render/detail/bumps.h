@@ -13,8 +13,13 @@
 vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v);
 
 /* The square patch approximation: x tangent + y bitangent + z normal, normalised, for a tangent-space normal
- * (-h_x, -h_y, 1), or a multiple of it, with slopes in metres per metre. `handedness` as in MikkTSpace. */
-vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped);
+ * (-h_x, -h_y, 1), or a multiple of it, with slopes in metres per metre. `handedness` as in MikkTSpace.
+ * Returns `fallback` where the sum has no direction. */
+vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped, vec3s fallback);
+
+/* How a point and its UV change together within a triangle: the derivatives of the point by u and by v,
+ * metres per UV unit. False, and zeros, where the UVs span no area. */
+bool tl_uv_derivatives(const vec3s positions[3], const vec2s uvs[3], vec3s *p_u, vec3s *p_v);
 
 /* The factors on a weave's slopes along u and v where the triangle is stretched (detail_slope_factor), as in
  * detail.glsl. `nominal`: metres of the UV unit to which the bumps are made. 1 where the UVs span no area. */

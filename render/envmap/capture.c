@@ -43,8 +43,26 @@ static void set_hidden(const struct tl_capture_request *request, bool hidden)
         tl_surfaces_hide(request->surfaces, i, hidden && box_holds(ranges->surfaces[i], request->point));
 }
 
+/* Lamps are shaded exactly, whatever the image's own tables and vectors are. */
+static bool add_lamps(struct tl_capture *capture, tl_gpu *gpu, const struct tl_capture_request *request,
+                      const struct tl_view *view, tl_error *error)
+{
+    const struct tl_local_request local = {.gbuffer = &capture->gbuffer,
+                                           .light = &capture->light.target,
+                                           .view = view,
+                                           .surfaces = request->surfaces,
+                                           .surface_count = request->ranges->surface_count,
+                                           .ground = request->ground,
+                                           .casters = request->casters,
+                                           .lamps = request->lamps,
+                                           .lamp_count = request->lamp_count,
+                                           .params = tl_shading_options.defaults,
+                                           .weight = 1};
+    return tl_local_draw(&capture->lamps, gpu, &local, error);
+}
+
 static bool light_view(struct tl_capture *capture, tl_gpu *gpu, const struct tl_capture_request *request,
-                       tl_error *error)
+                       const struct tl_view *view, tl_error *error)
 {
     const tl_target *gbuffer = &capture->gbuffer.target;
     const struct tl_envmap_request look_up = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
@@ -54,7 +72,7 @@ static bool light_view(struct tl_capture *capture, tl_gpu *gpu, const struct tl_
     tl_light_buffer_begin(&capture->light, gpu, gbuffer, true);
     bool fine = tl_envmap_draw(&capture->around, gpu, &look_up, error);
     tl_gpu_reset_state(gpu);
-    return fine;
+    return fine && add_lamps(capture, gpu, request, view, error);
 }
 
 /* Averages the samples of a face over the environment. Light is premultiplied by coverage, which is stored
@@ -97,7 +115,8 @@ static bool draw_face(struct tl_capture *capture, tl_gpu *gpu, const struct tl_c
                                             .drawn = request->ranges->surfaces,
                                             .surface_count = request->ranges->surface_count,
                                             .ground = request->ground};
-    if (!tl_gbuffer_draw(&capture->gbuffer, gpu, &draw, error) || !light_view(capture, gpu, request, error))
+    if (!tl_gbuffer_draw(&capture->gbuffer, gpu, &draw, error) ||
+        !light_view(capture, gpu, request, &view, error))
         return false;
     glGetTextureImage(capture->light.target.colours[0].id, 0, GL_RGBA, GL_FLOAT, bytes, staging[0]);
     glGetTextureImage(capture->gbuffer.target.colours[TL_GBUFFER_POINT].id, 0, GL_RGBA, GL_FLOAT, bytes,
@@ -142,17 +161,20 @@ void tl_capture_release(struct tl_capture *capture)
     tl_gbuffer_release(&capture->gbuffer);
     tl_light_buffer_release(&capture->light);
     tl_envmap_release(&capture->around);
+    tl_local_release(&capture->lamps);
     tl_cube_release(&capture->cube);
     tl_lobes_release(&capture->lobes);
 }
 
 bool tl_capture_reload(struct tl_capture *capture, tl_error *error)
 {
+    tl_local_reload(&capture->lamps);
     return tl_gbuffer_reload(&capture->gbuffer, error) && tl_envmap_reload(&capture->around, error);
 }
 
 size_t tl_capture_bytes(const struct tl_capture *capture)
 {
     return tl_gbuffer_bytes(&capture->gbuffer) + tl_target_bytes(&capture->light.target) +
-           tl_envmap_bytes(&capture->around) + tl_lobes_bytes(&capture->lobes);
+           tl_envmap_bytes(&capture->around) + tl_local_bytes(&capture->lamps) +
+           tl_lobes_bytes(&capture->lobes);
 }

@@ -1,6 +1,7 @@
 /* A cube map of the scene itself: six views from a point, over the environment. Surfaces whose bounding box
  * contains the point are left out, as an object inside its own map always is. The views are simplified: the
- * G-buffer, lit without shadows by the environment alone, four samples per texel.
+ * G-buffer, lit by the environment and the lamps without shadows, and by what surfaces emit; four samples per
+ * texel.
  *
  * World axes (the environment's own cube does not turn with its yaw). Needs the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_ENVMAP_CAPTURE_H
@@ -8,11 +9,13 @@
 
 #include "render/envmap/envmap.h"
 #include "render/light/light_buffer.h"
+#include "render/local/local.h"
 
 struct tl_capture {
     struct tl_gbuffer gbuffer;
     struct tl_light_buffer light;
     struct tl_envmap around; /* the environment, which lights the captured surfaces */
+    struct tl_local lamps;   /* adds the light of the lamps, without shadows */
     tl_cube cube;
     struct tl_lobes lobes; /* lobes of the cube */
 };
@@ -29,6 +32,9 @@ struct tl_capture_request {
     tl_surfaces *surfaces;
     const struct tl_triangle_ranges *ranges; /* of the drawn surfaces; the ground comes last */
     const struct tl_ground *ground;          /* NULL: none */
+    struct tl_casters casters;
+    const struct tl_lamp *lamps;
+    size_t lamp_count;
     float near_m, far_m;
 };
 

@@ -46,21 +46,20 @@ int part_of(uint triangle)
     return low;
 }
 
-// The mip level of the footprint of a pixel. At the border of two surfaces one of the two differences is meaningless,
-// so the smaller one is used.
-float level_of(vec3 d)
+// The mip level of the footprint of a pixel, from the differences of a direction to those of the pixel's neighbours.
+// At the border of two surfaces one of the two differences is meaningless, so the smaller one is used.
+float level_of(vec3 across, vec3 down)
 {
-    vec3 across = dFdx(d), down = dFdy(d);
     float square = min(dot(across, across), dot(down, down));
     return 0.5 * log2(max(square / (texel_reach * texel_reach), 1.0));
 }
 
-vec3 environment(vec3 d)
+vec3 mirrored(vec3 mirror)
 {
 #ifdef MINIFY
-    return look_up(d, slots[ENVIRONMENT], level_of(d));
+    return look_up(mirror, slots[ENVIRONMENT], level_of(dFdx(mirror), dFdy(mirror)));
 #else
-    return look_up(d, slots[ENVIRONMENT], 0.0);
+    return look_up(mirror, slots[ENVIRONMENT], 0.0);
 #endif
 }
 
@@ -86,6 +85,21 @@ vec3 refracted(vec3 v, vec3 n, vec3 mirror, float ratio)
     return square < 0.0 ? mirror : normalize((ratio * cosine - sqrt(square)) * n - ratio * v);
 }
 
+// The light along the refracted view vector. A neighbour beyond the edge of a triangle is computed for derivatives only
+// and reads zeros from buffers, such as the one that holds `ratio`. So the differences are taken of the vectors, which
+// come from textures, and the neighbours' are refracted here, with the ratio of this pixel.
+vec3 refraction(vec3 v, vec3 n, vec3 mirror, float ratio)
+{
+    vec3 d = refracted(v, n, mirror, ratio);
+#ifdef MINIFY
+    vec3 across = refracted(v + dFdx(v), n + dFdx(n), mirror + dFdx(mirror), ratio) - d;
+    vec3 down = refracted(v + dFdy(v), n + dFdy(n), mirror + dFdy(mirror), ratio) - d;
+    return look_up(d, slots[ENVIRONMENT], level_of(across, down));
+#else
+    return look_up(d, slots[ENVIRONMENT], 0.0);
+#endif
+}
+
 vec3 reflectance(int part, float cosine)
 {
     ivec2 size = textureSize(fresnel, 0);
@@ -97,7 +111,7 @@ vec3 reflectance(int part, float cosine)
 vec3 over_light(int mode, Sample place)
 {
     if (mode == MIRROR || mode == REFRACTION)
-        return environment(place.mirror);
+        return mirrored(place.mirror);
     return mode == DIFFUSE ? vec3(0.0) : lobe_light(place.mirror, place.glossiness);
 }
 
@@ -105,7 +119,7 @@ vec3 over_light(int mode, Sample place)
 vec3 under_light(int mode, Sample place, vec3 v, float ratio)
 {
     if (mode == REFRACTION)
-        return environment(refracted(v, place.normal, place.mirror, ratio));
+        return refraction(v, place.normal, place.mirror, ratio);
     if (mode == TRANSMISSION)
         return place.kd * lobe_light(-v, place.glossiness);
     return mode == GLOSSY ? vec3(0.0) : place.kd * irradiance(place.normal);

@@ -92,8 +92,8 @@ static uint64_t layout_signature(const tl_frame *frame, const struct tl_maps_par
 /* The signature of the scene that a capture shows. */
 static uint64_t scene_signature(const uint64_t signatures[TL_INPUT_COUNT])
 {
-    static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW, TL_INPUT_SHAPES,
-                                             TL_INPUT_MOTION, TL_INPUT_GROUND};
+    static const enum tl_resource shown[] = {TL_INPUT_ENVIRONMENT, TL_INPUT_YAW,    TL_INPUT_SHAPES,
+                                             TL_INPUT_MOTION,      TL_INPUT_GROUND, TL_INPUT_LAMPS};
     uint64_t hash = signatures[TL_INPUT_CAPTURE];
     for (size_t i = 0; i < TL_COUNT(shown); i++)
         hash = MIX(hash, signatures[shown[i]]);

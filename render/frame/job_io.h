@@ -365,6 +365,7 @@
     IO(SEES, casters)                                                                                        \
     IO(SEES, ground)                                                                                         \
     IO(SEES, ground_input)                                                                                   \
+    IO(SEES, lamps)                                                                                          \
     IO(SEES, lighting)                                                                                       \
     IO(USES_HANDLE, surfaces)                                                                                \
     IO(WRITES, capture)                                                                                      \

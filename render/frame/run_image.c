@@ -47,6 +47,9 @@ bool tl_run_capture(const struct tl_capture_job *job, tl_error *error)
         .surfaces = job->surfaces,
         .ranges = &shapes->ranges,
         .ground = job->ground_input->is_drawn ? job->ground : NULL,
+        .casters = *casters,
+        .lamps = job->lamps->items,
+        .lamp_count = job->lamps->count,
         .near_m = 1e-3f * casters->radius,
         .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
     return tl_capture_draw(job->capture, *job->gpu, &request, error);

@@ -34,6 +34,7 @@ struct sample_place {
     float weave_scale[2]; /* repeats per UV unit */
     float uv_metres;
     float slopes[2]; /* factors on the weave's slopes along u and v (tl_slope_factors) */
+    vec3s p_u, p_v;  /* tl_uv_derivatives of the triangle */
     const struct tl_detail_params *detail;
     struct tl_footprint footprint;
     bool sewn;
@@ -142,14 +143,20 @@ static bool has_bumps(const struct sample_place *place)
     return (has_map(place, TL_MAP_NORMAL) || place->woven || place->sewn) && glms_vec3_norm2(tangent) > 0;
 }
 
+/* Blinn's form needs no tangents, but heights, which slopes give with the nominal size of a UV unit. */
+static bool has_blinn_normals(const struct sample_place *place)
+{
+    return place->detail->mode == TL_DETAIL_BLINN && place->uv_metres > 0;
+}
+
 static vec3s bent_normal(const struct sample_place *place, vec3s mapped, vec3s smooth)
 {
     vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
-    vec3s bitangent = glms_vec3_scale(glms_vec3_cross(place->normal, tangent), place->tangent.w);
-    vec3s sum = glms_vec3_scale(tangent, mapped.x);
-    sum = glms_vec3_add(sum, glms_vec3_scale(bitangent, mapped.y));
-    sum = glms_vec3_add(sum, glms_vec3_scale(place->normal, mapped.z));
-    return direction_or(sum, smooth);
+    if (!has_blinn_normals(place))
+        return tl_patch_normal(place->normal, tangent, place->tangent.w, mapped, smooth);
+    float metres = place->uv_metres / fmaxf(mapped.z, 1e-3f);
+    return tl_blinn_normal(smooth, place->p_u, place->p_v, -mapped.x * metres,
+                           mapped.y * metres); /* v runs down */
 }
 
 /* Transforms a direction into the tangent space of the front. */
@@ -470,7 +477,11 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
         place.tangent = glms_vec4_add(place.tangent, glms_vec4_scale(corners.tangents[i], weights[i]));
         corners.normals[i] = direction_or(glms_vec3_scale(corners.normals[i], place.side), place.facet);
     }
-    tl_slope_factors(corners.positions, corners.uvs, place.uv_metres, place.slopes);
+    place.slopes[0] = place.slopes[1] = 1;
+    if (has_blinn_normals(&place))
+        tl_uv_derivatives(corners.positions, corners.uvs, &place.p_u, &place.p_v); /* zeros: `smooth` */
+    else if (place.detail->mode != TL_DETAIL_BLINN)
+        tl_slope_factors(corners.positions, corners.uvs, place.uv_metres, place.slopes);
     place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
     vec3s outside = direction_or(place.normal, glms_vec3_scale(place.facet, place.side));
     vec3s view = into_tangent(&place, outside, glms_vec3_negate(ray->direction));

@@ -199,10 +199,11 @@ static const struct tl_experiment_appearance lamps[] = {
      .assignments = {"lamp.kind=point", "lamp.distance_m=0.5", "lamp.irradiance=[0.6, 0.6, 0.6]"}},
 };
 
+/* n = 1 / (1 - glossiness): powers of two, because repeated squaring has no others. */
 static const struct tl_experiment_appearance exponents[] = {
-    {.title = "n = 10", .assignments = {"material.glossiness=0.9"}},
-    {.title = "n = 50", .assignments = {"material.glossiness=0.98"}},
-    {.title = "n = 200", .assignments = {"material.glossiness=0.995"}},
+    {.title = "n = 8", .assignments = {"material.glossiness=0.875"}},
+    {.title = "n = 64", .assignments = {"material.glossiness=0.984375"}},
+    {.title = "n = 256", .assignments = {"material.glossiness=0.99609375"}},
 };
 
 static const struct tl_experiment_appearance models[] = {

@@ -28,7 +28,7 @@ message=$("$TOILE" fabric height.png -o height.png/maps --quiet 2>&1)
 [ $? -eq 2 ] || fail "output below a file: $message"
 
 told=$("$TOILE" fabric height.png -o maps --repeat-mm 4 --height-mm 1 2>&1) || fail "baking: $told"
-for map in height.exr normal.png offset.exr moments.exr gloss.png horizon_0_45_90_135.png horizon_180_225_270_315.png cones.png; do
+for map in height.exr normal.png moments.exr gloss.png horizon_0_45_90_135.png horizon_180_225_270_315.png cones.png; do
     [ -s "maps/$map" ] || fail "$map is missing"
     printf '%s' "$told" | grep -q "$map: 2 x 2 texels" || fail "$map: its size is not told"
 done

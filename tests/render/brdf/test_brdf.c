@@ -1,5 +1,6 @@
 #include "render/brdf/brdf.h"
 #include "render/brdf/fresnel.h"
+#include "render/reference/random.h"
 
 #include "config/memory.h"
 
@@ -170,6 +171,52 @@ static void ggx_masks_what_its_facets_hide(void **state)
 static double energy(const struct tl_brdf *brdf, double view_deg)
 {
     return over_hemisphere(gloss_of, brdf, polar(view_deg, 30));
+}
+
+/* Whether a ray from p towards d hits the wall that rises from the origin along (cos e, sin e) in x and z, up
+ * to the height of 1. The groove runs along y without end. */
+static bool is_blocked(const double p[2], vec3s d, double elevation)
+{
+    double wall[2] = {cos(elevation), sin(elevation)}, x = (double)d.x, z = (double)d.z;
+    double across = x * wall[1] - z * wall[0]; /* of d along the wall's normal */
+    if (fabs(across) < 1e-12)
+        return false;
+    double along_ray = -(p[0] * wall[1] - p[1] * wall[0]) / across; /* p + t d lies on the wall's line */
+    double height = p[1] + along_ray * z;
+    return along_ray > 1e-9 && height > 0 && height < 1;
+}
+
+/* Rays in a groove itself: two walls of one slope, of which one has the half vector for its normal. G is the
+ * share of that wall from which neither the light nor the viewer is hidden by the other one. */
+static void v_grooves_hide_what_their_walls_hide(void **state)
+{
+    (void)state;
+    enum { PLACES = 2000 };
+    struct tl_random random = tl_random_begin(20, 0);
+    int partly = 0, open = 0;
+    double worst = 0;
+    for (int i = 0; i < 2000; i++) {
+        double tilt = (5 + 75 * tl_random_unit(&random)) * PI / 180;
+        vec3s h = polar(tilt * 180 / PI, 0);
+        vec3s l = polar(89 * tl_random_unit(&random), 360 * tl_random_unit(&random));
+        float cos_t = glms_vec3_dot(l, h);
+        vec3s v = glms_vec3_sub(glms_vec3_scale(h, 2 * cos_t), l);
+        if (cos_t <= 0.02f || v.z <= 0.02f)
+            continue;
+        int seen = 0;
+        for (int k = 0; k < PLACES; k++) {
+            double height = (k + 0.5) / PLACES; /* of a wall that rises by 1 */
+            const double place[2] = {-height / tan(tilt), height};
+            seen += !is_blocked(place, l, tilt) && !is_blocked(place, v, tilt);
+        }
+        double expected = (double)seen / PLACES, g = (double)tl_brdf_v_grooves(l.z, v.z, cos_t, h.z);
+        worst = fmax(worst, fabs(g - expected));
+        partly += expected < 0.99;
+        open += expected > 0.99;
+    }
+    print_message("V-grooves: %d partly hidden and %d open, G off by %.1e of rays\n", partly, open, worst);
+    assert_true(partly > 200 && open > 200);
+    assert_true(worst < 1.0 / PLACES + 1e-4);
 }
 
 static void energy_is_not_created(void **state)
@@ -583,6 +630,7 @@ int main(void)
         cmocka_unit_test(exchanges_light_and_viewer),
         cmocka_unit_test(phong_and_blinn_are_not_reciprocal),
         cmocka_unit_test(ggx_masks_what_its_facets_hide),
+        cmocka_unit_test(v_grooves_hide_what_their_walls_hide),
         cmocka_unit_test(energy_is_not_created),
         cmocka_unit_test(bounded_ward_creates_no_energy),
         cmocka_unit_test(narrow_lobes_keep_all_energy),

@@ -66,45 +66,29 @@ static float slanted(float u, float v)
     return 0.3e-3f * u - 0.2e-3f * v;
 }
 
-/* A slanted plane on a square patch: tangent-space normals, offsets, Blinn's form and object space are one
- * normal. */
+/* A slanted plane on a square patch: tangent-space normals and Blinn's form are one normal. */
 static void test_plane(void **state)
 {
     (void)state;
     tl_image heights = heights_of(16, 8, slanted);
     struct tl_height_field field = tl_height_field_make(&heights, 1e-3f, 1e-3f, true, true);
     tl_image slopes = tl_bake_slopes(&field), normals = tl_bake_normals(&slopes, 1);
-    tl_image offsets = tl_bake_offsets(&slopes, 1), bytes = tl_bake_encoded(&normals);
-    vec3s at[] = {{{0, 0, 0}}, {{1e-3f, 0, 0}}, {{1e-3f, 0, 1e-3f}}, {{0, 0, 1e-3f}}}, up = {{0, 1, 0}};
-    vec3s all_up[] = {up, up, up, up};
-    vec4s along = {{1, 0, 0, 1}}, tangents[] = {along, along, along, along};
-    vec2s uvs[] = {{{0, 0}}, {{1, 0}}, {{1, 1}}, {{0, 1}}}; /* v down: towards +Z */
-    uint32_t indices[] = {0, 2, 1, 0, 3, 2};
-    const tl_mesh mesh = {.vertex_count = 4,
-                          .positions = at,
-                          .normals = all_up,
-                          .uvs = uvs,
-                          .tangents = tangents,
-                          .index_count = 6,
-                          .indices = indices};
-    tl_image object = tl_bake_object_normals(&mesh, &normals, 16, 8);
+    tl_image bytes = tl_bake_encoded(&normals);
+    const vec3s up = {{0, 1, 0}};
     vec3s expected =
         glms_vec3_normalize((vec3s){{-0.3f, 1, 0.2f}}); /* the plane rises along +X and falls along +Z */
     const vec3s p_u = {{1e-3f, 0, 0}}, p_v = {{0, 0, 1e-3f}};
     for (size_t i = 0; i < (size_t)16 * 8; i++) {
-        const float *n = tl_image_floats(&normals) + 3 * i, *d = tl_image_floats(&offsets) + 2 * i;
-        vec3s patch = tl_patch_normal(up, (vec3s){{1, 0, 0}}, 1, (vec3s){{n[0], n[1], n[2]}});
-        vec3s offset = tl_patch_normal(up, (vec3s){{1, 0, 0}}, 1, (vec3s){{d[0], d[1], 1}});
+        const float *n = tl_image_floats(&normals) + 3 * i;
+        vec3s patch = tl_patch_normal(up, (vec3s){{1, 0, 0}}, 1, (vec3s){{n[0], n[1], n[2]}}, up);
         vec3s blinn = tl_blinn_normal(up, p_u, p_v, 0.3e-3f, -0.2e-3f);
         for (int c = 0; c < 3; c++) {
             assert_near(patch.raw[c], expected.raw[c], 1e-5);
-            assert_near(offset.raw[c], expected.raw[c], 1e-5);
             assert_near(blinn.raw[c], expected.raw[c], 1e-6);
-            assert_near(tl_image_floats(&object)[3 * i + (size_t)c], expected.raw[c], 1e-5);
             assert_near(2 * (float)tl_image_bytes(&bytes)[3 * i + (size_t)c] / 255 - 1, n[c], 1.01 / 255);
         }
     }
-    tl_image *made[] = {&heights, &slopes, &normals, &offsets, &bytes, &object};
+    tl_image *made[] = {&heights, &slopes, &normals, &bytes};
     for (size_t i = 0; i < TL_COUNT(made); i++)
         tl_image_release(made[i]);
 }
@@ -124,7 +108,8 @@ static void test_cylinder(void **state)
         closed = glms_vec3_normalize(closed);
         vec3s made = tl_blinn_normal(normal, p_u, p_v, h_u, h_v);
         vec3s mirrored = tl_blinn_normal(normal, p_u, glms_vec3_negate(p_v), h_u, -h_v);
-        vec3s patch = tl_patch_normal(normal, glms_vec3_normalize(p_u), 1, (vec3s){{-h_u / r, -h_v / r, 1}});
+        vec3s patch =
+            tl_patch_normal(normal, glms_vec3_normalize(p_u), 1, (vec3s){{-h_u / r, -h_v / r, 1}}, normal);
         /* The square patch of side r is right along u; along v it takes h_v / r for h_v / l. */
         vec3s stretched = tl_blinn_normal(normal, p_u, p_v, h_u, h_v * l / r);
         for (int c = 0; c < 3; c++) {
@@ -299,7 +284,7 @@ static void test_degenerate(void **state)
     assert_near(tl_image_floats(&moments)[3], 1 / 3.0, 1e-6); /* 128 is a little over 0 in every channel */
     const vec3s up = {{0, 0, 1}}, none = {{0, 0, 0}};
     assert_near(tl_blinn_normal(up, none, none, 1, 1).z, 1, 0);
-    assert_near(tl_patch_normal(up, none, 1, none).z, 1, 0);
+    assert_near(tl_patch_normal(up, none, 1, none, up).z, 1, 0);
     tl_image_release(&moments);
     tl_image_release(&normals);
     tl_image_release(&heights);

@@ -245,9 +245,88 @@ static void test_extremes(void **state)
     stage_free(stage);
 }
 
+#define STRETCH 1.6f
+
+/* A square of 1 x 1 m whose UV unit is stretched to 1.6 m along u, with one normal on all of it. */
+static void stretched_open(struct test_scene *scene, const tl_image *normal, bool lamplit)
+{
+    struct test_shape square =
+        test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.5f, 4);
+    for (size_t i = 0; i < square.mesh.vertex_count; i++)
+        square.mesh.positions[i].x *= STRETCH;
+    square.mesh.parts[0].uv_metres = 1;
+    square.material.diffuse = (vec3s){{0.8f, 0.8f, 0.8f}};
+    square.material.specular = (vec3s){{0, 0, 0}};
+    square.material.normal_map.image = normal;
+    test_scene_open_lamplit(scene, square, SIZE, SIZE);
+    if (!lamplit) {
+        uint64_t revision = scene->frame.environment_revision;
+        tl_environment_release(&scene->environment);
+        scene->environment = test_environment(64, 32, test_daylight);
+        scene->frame.environment_revision = revision + 1;
+        scene->frame.lamp_count = 0;
+    }
+    test_scene_refresh(scene);
+}
+
+/* One normal in floats, encoded as in a picture. */
+static tl_image normal_picture(float slope_x, float slope_y)
+{
+    vec3s n = glms_vec3_normalize((vec3s){{-slope_x, -slope_y, 1}});
+    tl_image image = tl_image_create(4, 4, 3, TL_IMAGE_F32);
+    image.linear = true;
+    for (int i = 0; i < 3 * 16; i++)
+        tl_image_floats(&image)[i] = 0.5f + 0.5f * n.raw[i % 3];
+    return image;
+}
+
+/* Heights h(u, v) on the stretched square are a plane that rises by h_u / 1.6 a metre along x: Blinn's form
+ * of the slopes in the map is the plain normal map of that plane. For both shaders that draw it (samples,
+ * lamps) and the reference's branch, front and back. Only roundings of halves differ: 0.1 % of the peak. */
+static void test_blinn(void **state)
+{
+    struct test_device *device = *state;
+    const float slope_x = 0.5f, slope_y = -0.3f;
+    tl_image bumped = normal_picture(slope_x, slope_y), plain = normal_picture(slope_x / STRETCH, slope_y);
+    for (int i = 0; i < 4; i++) {
+        bool lamplit = i & 1, behind = i & 2;
+        struct test_scene scene, expected;
+        stretched_open(&scene, &bumped, lamplit);
+        stretched_open(&expected, &plain, lamplit);
+        if (behind) {
+            scene.frame.camera.eye.z = expected.frame.camera.eye.z *= -1;
+            scene.lamps[0].direction.z = expected.lamps[0].direction.z *= -1;
+        }
+        scene.settings.detail.mode = TL_DETAIL_BLINN;
+        tl_image image = test_scene_draw(&expected, device->renderer);
+        struct test_difference off = test_scene_error(&scene, device->renderer, &image);
+        scene.settings.detail.mode = TL_DETAIL_NORMAL;
+        struct test_difference flat = test_scene_error(&scene, device->renderer, &image);
+        scene.settings.detail.mode = TL_DETAIL_BLINN;
+        tl_image traced = test_scene_evaluate(&scene);
+        struct test_difference reference =
+            lamplit ? test_compare(&traced, &image) : (struct test_difference){0};
+        print_message("Blinn's normal on a stretched square, %s, %s: off by %.3f %% of the peak, the "
+                      "reference %.3f %%, the "
+                      "square patch %.1f %%\n",
+                      lamplit ? "lamp" : "environment", behind ? "behind" : "front", 100 * off.largest,
+                      100 * reference.largest, 100 * flat.largest);
+        assert_true(off.pixels > 200);
+        assert_true(off.largest < 0.001 && reference.largest < 0.001);
+        assert_true(flat.largest > 0.005); /* one side of the environment is nearly even */
+        tl_image_release(&traced);
+        tl_image_release(&image);
+        test_scene_close(&scene);
+        test_scene_close(&expected);
+    }
+    tl_image_release(&bumped);
+    tl_image_release(&plain);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_shift), cmocka_unit_test(test_reference),
-                                       cmocka_unit_test(test_unused), cmocka_unit_test(test_extremes)};
+                                       cmocka_unit_test(test_blinn), cmocka_unit_test(test_unused),
+                                       cmocka_unit_test(test_extremes)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

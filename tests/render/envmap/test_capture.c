@@ -213,6 +213,55 @@ static void a_mirror_shows_the_scene(void **state)
     test_scene_close(&scene);
 }
 
+/* Two lamps on the big ball, which is convex, so that nothing is shadowed but by its own horizon: kd / pi
+ * times the irradiance and the cosine, in the texels that see all of the ball. The second capture differs
+ * from the first by the lamps alone. Off by the interpolated normals in halves and the texel's own extent: 1
+ * % of the brightest. */
+static void lamps_light_the_capture(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    tl_error error;
+    tl_image without, with;
+    scene_open(&scene);
+    draw(device->renderer, &scene);
+    assert_ok(tl_renderer_read_capture(device->renderer, &without, &error), error);
+    scene.lamps[0] = test_lamp_towards((vec3s){{-0.8f, 0.5f, 0.6f}}, 3);
+    scene.lamps[1] = test_lamp_at((vec3s){{1.5f, 1.5f, 0.5f}}, 6);
+    scene.frame.lamp_count = 2;
+    draw(device->renderer, &scene);
+    assert_ok(tl_renderer_read_capture(device->renderer, &with, &error), error);
+    double worst = 0, brightest = 0;
+    int counted = 0;
+    for (int i = 0; i < 6 * SIZE * SIZE; i++) {
+        vec3s ray = tl_cube_texel_direction(SIZE, i), normal;
+        if (!meet(ray, &normal) || glms_vec3_dot(normal, ray) > -0.3f)
+            continue;
+        vec3s place = glms_vec3_add(centre, glms_vec3_scale(normal, RADIUS));
+        counted++;
+        for (int c = 0; c < 3; c++) {
+            double expected = 0;
+            for (int l = 0; l < 2; l++) {
+                const struct tl_lamp *lamp = &scene.lamps[l];
+                vec3s to = l == 0 ? lamp->direction : glms_vec3_sub(lamp->position, place);
+                double cosine = (double)glms_vec3_dot(normal, glms_vec3_normalize(to));
+                double fall = l == 0 ? 1 : 1 / (double)glms_vec3_norm2(to);
+                expected += (double)(kd.raw[c] * lamp->irradiance.raw[c]) / M_PI * fall * fmax(cosine, 0);
+            }
+            double added = (double)(tl_image_floats(&with)[3 * i + c] - tl_image_floats(&without)[3 * i + c]);
+            worst = fmax(worst, fabs(added - expected));
+            brightest = fmax(brightest, expected);
+        }
+    }
+    print_message("%d texels, the light of lamps off by %.2f %% of its brightest\n", counted,
+                  100 * worst / brightest);
+    assert_true(counted > 200);
+    assert_true(worst < 0.01 * brightest);
+    tl_image_release(&without);
+    tl_image_release(&with);
+    test_scene_close(&scene);
+}
+
 static enum tl_job_action capture_action(const tl_renderer *renderer)
 {
     const tl_plan *plan = tl_renderer_last_plan(renderer);
@@ -274,9 +323,9 @@ static void nothing_captured_is_told(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_is_captured),       cmocka_unit_test(the_reference_sees_the_same),
-        cmocka_unit_test(a_mirror_shows_the_scene), cmocka_unit_test(every_few_frames),
-        cmocka_unit_test(nothing_captured_is_told),
+        cmocka_unit_test(a_ball_is_captured),      cmocka_unit_test(the_reference_sees_the_same),
+        cmocka_unit_test(lamps_light_the_capture), cmocka_unit_test(a_mirror_shows_the_scene),
+        cmocka_unit_test(every_few_frames),        cmocka_unit_test(nothing_captured_is_told),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -381,30 +381,110 @@ static double difference(const tl_image *a, const tl_image *truth)
     return sqrt(squares / counted);
 }
 
-/* A small ball shows checks smaller than its pixels: mip levels against 256 samples a pixel. */
+/* A small ball shows checks smaller than its pixels: mip levels against 256 samples a pixel, as a share of
+ * the error without levels. */
+static double share_left(tl_renderer *renderer, int layout, int mode)
+{
+    struct test_scene scene;
+    scene_open(&scene, checks);
+    scene.settings.maps.layout = layout;
+    scene.settings.maps.mode = mode;
+    tl_image sharp = test_scene_draw(&scene, renderer);
+    scene.settings.maps.minify = true;
+    tl_image levels = test_scene_draw(&scene, renderer);
+    scene.settings.maps.minify = false;
+    scene.settings.image.supersample = 16;
+    tl_image truth = test_scene_draw(&scene, renderer);
+    double without = difference(&sharp, &truth), with = difference(&levels, &truth);
+    print_message("%s: RMS error of a small ball, %s, %.3f, by levels %.3f\n", tl_layout_names[layout],
+                  modes[mode], without, with);
+    tl_image_release(&sharp);
+    tl_image_release(&levels);
+    tl_image_release(&truth);
+    test_scene_close(&scene);
+    return with / without;
+}
+
+/* A ball refracts less than it mirrors, and squeezes towards its rim along one direction only, where levels
+ * follow the smaller difference: less is gained, and only the cube has texels fine enough to show it. */
 static void levels_stand_for_samples(void **state)
 {
     struct test_device *device = *state;
-    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
-        struct test_scene scene;
-        scene_open(&scene, checks);
-        scene.settings.maps.layout = layout;
-        scene.settings.maps.mode = TL_MAPS_MIRROR;
-        tl_image sharp = test_scene_draw(&scene, device->renderer);
-        scene.settings.maps.minify = true;
-        tl_image levels = test_scene_draw(&scene, device->renderer);
-        scene.settings.maps.minify = false;
-        scene.settings.image.supersample = 16;
-        tl_image truth = test_scene_draw(&scene, device->renderer);
-        double without = difference(&sharp, &truth), with = difference(&levels, &truth);
-        print_message("%s: RMS error of a small mirror %.3f, by levels %.3f\n", tl_layout_names[layout],
-                      without, with);
-        assert_true(with < 0.6 * without);
-        tl_image_release(&sharp);
-        tl_image_release(&levels);
-        tl_image_release(&truth);
-        test_scene_close(&scene);
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++)
+        assert_true(share_left(device->renderer, layout, TL_MAPS_MIRROR) < 0.6);
+    assert_true(share_left(device->renderer, TL_LAYOUT_CUBE, TL_MAPS_REFRACTION) < 0.8);
+}
+
+/* The largest error of a ball of nearly the index of air, which looks along the view: into the singular rim
+ * of a sphere map. Relative to the brightest. */
+static double pole_error(tl_renderer *renderer, int layout, int size)
+{
+    const double index = 1.05;
+    struct test_scene scene;
+    scene_open(&scene, lights);
+    scene.shapes[0].material.gloss.index = (float)index;
+    test_scene_refresh(&scene);
+    scene.settings.maps.mode = TL_MAPS_REFRACTION;
+    scene.settings.maps.layout = layout;
+    scene.settings.maps.size = size;
+    tl_image image = test_scene_draw(&scene, renderer);
+    struct tl_view view = tl_view_make(&scene.frame.camera, SIDE, SIDE);
+    double squares = 0, worst = 0;
+    int counted = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct point point;
+        bool total;
+        if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
+            continue;
+        vec3s expected = lights(refracted(&point, index, false, &total));
+        for (int c = 0; c < 3; c++) {
+            double off = (double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c]);
+            worst = fmax(worst, fabs(off));
+            squares += off * off / 3;
+        }
+        counted++;
     }
+    print_message("%s, %d texels, index %.2f: off by %.2f %% of the brightest RMS, %.2f %% at most\n",
+                  tl_layout_names[layout], size, index, 100 * sqrt(squares / counted) / BRIGHTEST,
+                  100 * worst / BRIGHTEST);
+    tl_image_release(&image);
+    test_scene_close(&scene);
+    return worst / BRIGHTEST;
+}
+
+/* Bilinear texels of 1/40 rad, and the environment's own as much: 1 % of a lobe of exponent 6. A point half a
+ * texel within the rim of a sphere map lies 0.25 rad from its pole, and texels there are mixed from all
+ * around it: 5 %, as docs/environments.md says. */
+static void refraction_looks_at_the_pole(void **state)
+{
+    struct test_device *device = *state;
+    for (int layout = 0; layout < TL_LAYOUT_COUNT; layout++) {
+        double worst = pole_error(device->renderer, layout, 128);
+        assert_true(worst < (layout == TL_LAYOUT_SPHERE ? 0.06 : 0.01));
+    }
+}
+
+/* The light is smooth and the pixels are small, so that mip levels change it by the blur of a texel or two: a
+ * lobe of exponent 6 over 0.03 rad, 0.5 %. A full-screen triangle may be clipped to two, and a pixel at their
+ * common edge has neighbours that are computed for derivatives only. These read zeros from buffers, so that
+ * the derivative of a value that depends on one shows the edge as a dotted line. */
+static void levels_of_refraction_are_smooth(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    scene_open(&scene, lights);
+    scene.frame.camera.fov_y = 0.2f; /* the ball fills the image */
+    scene.settings.image.width = scene.settings.image.height = 96;
+    scene.settings.maps.mode = TL_MAPS_REFRACTION;
+    tl_image sharp = test_scene_draw(&scene, device->renderer);
+    scene.settings.maps.minify = true;
+    struct test_difference difference = test_scene_error(&scene, device->renderer, &sharp);
+    print_message("refraction, levels against none: %zu pixels, off by %.2f %% of the brightest\n",
+                  difference.pixels, 100 * difference.largest);
+    assert_true(difference.pixels > 8000);
+    assert_true(difference.largest < 0.01);
+    tl_image_release(&sharp);
+    test_scene_close(&scene);
 }
 
 static enum tl_job_action action_of(const tl_plan *plan, const char *name)
@@ -480,10 +560,16 @@ static void unused_maps_cost_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_are_integrals),      cmocka_unit_test(backs_refract_outwards),
-        cmocka_unit_test(layouts_are_integrals),    cmocka_unit_test(white_furnace),
-        cmocka_unit_test(layers_are_integrals),     cmocka_unit_test(surfaces_are_lit_as_elsewhere),
-        cmocka_unit_test(levels_stand_for_samples), cmocka_unit_test(sphere_maps_follow_the_view),
+        cmocka_unit_test(modes_are_integrals),
+        cmocka_unit_test(backs_refract_outwards),
+        cmocka_unit_test(layouts_are_integrals),
+        cmocka_unit_test(white_furnace),
+        cmocka_unit_test(layers_are_integrals),
+        cmocka_unit_test(surfaces_are_lit_as_elsewhere),
+        cmocka_unit_test(levels_stand_for_samples),
+        cmocka_unit_test(sphere_maps_follow_the_view),
+        cmocka_unit_test(levels_of_refraction_are_smooth),
+        cmocka_unit_test(refraction_looks_at_the_pole),
         cmocka_unit_test(unused_maps_cost_nothing),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);

@@ -2,6 +2,8 @@
  * pays, and extremes. */
 #include "tests/render/scenes.h"
 
+#include "render/local/lamp.h"
+
 #include "tests/testing.h"
 
 #include <string.h>
@@ -56,6 +58,32 @@ static void equals_the_cpu(void **state)
             assert_true(off.largest < 2e-5);
         }
     test_scene_close(&scene);
+}
+
+/* A lamp shines from +Z at no yaw, from +X at a quarter, from above at a pitch of a quarter; a point lamp
+ * stands there. */
+static void lamps_shine_from_where_options_say(void **state)
+{
+    (void)state;
+    static const struct {
+        float yaw_deg, pitch_deg;
+        vec3s from;
+    } cases[] = {{0, 0, {{0, 0, 1}}},
+                 {90, 0, {{1, 0, 0}}},
+                 {-90, 0, {{-1, 0, 0}}},
+                 {30, 90, {{0, 1, 0}}},
+                 {0, -90, {{0, -1, 0}}}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const struct tl_lamp_params params = {.kind = TL_LAMP_POINT,
+                                              .yaw_deg = cases[i].yaw_deg,
+                                              .pitch_deg = cases[i].pitch_deg,
+                                              .distance_m = 2};
+        struct tl_lamp lamp = tl_lamp_make(&params, (vec3s){{1, 2, 3}});
+        for (int c = 0; c < 3; c++) {
+            assert_near(lamp.direction.raw[c], cases[i].from.raw[c], 1e-6);
+            assert_near(lamp.position.raw[c], (float)(c + 1) + 2 * cases[i].from.raw[c], 1e-5);
+        }
+    }
 }
 
 /* The back of a sheet is a surface of its own, whose threads run as they do on the front. */
@@ -332,6 +360,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(equals_the_cpu),
+        cmocka_unit_test(lamps_shine_from_where_options_say),
         cmocka_unit_test(backs_equal_the_cpu),
         cmocka_unit_test(shadows_equal_the_reference),
         cmocka_unit_test(layers_equal_the_reference),

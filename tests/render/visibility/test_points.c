@@ -316,6 +316,38 @@ static void every_region_has_its_turn(void **state)
     stage_close(&stage);
 }
 
+/* The light, as seen by the corners, whose values are old: everything turns black, and twice as many regions
+ * are traced as there are, before any is late. By need, which is importance times age, a region is traced as
+ * often as its share of the light is: all of more than half the mean had their turn. By importance alone the
+ * same twelve would be traced in each frame, and the rest be old. */
+static void importance_waits_its_turn(void **state)
+{
+    (void)state;
+    enum { REGIONS = 96, REFRESH = 12 };
+    struct stage stage;
+    stage_open(&stage, REGIONS);
+    stage.params.refresh = REFRESH;
+    step(&stage, true);
+    struct test_shape box = test_sphere((vec3s){{0, 0, 0}}, 50, 8);
+    test_shape_refresh(&box);
+    tl_error error = {0};
+    const tl_surface dark[3] = {stage.shapes[0], stage.shapes[1], box.surface};
+    assert_ok(tl_trace_update(stage.trace, dark, 3, &error), error);
+    double old = 0, all = 0;
+    for (size_t s = 0; s < stage.samples.count; s++)
+        for (int region = 0; region < REGIONS; region++)
+            all += (double)(stage.regions.items[region].importance * value_at(&stage, s, 0, region));
+    for (int i = 0; i < 2 * REGIONS / REFRESH; i++)
+        step(&stage, true);
+    for (size_t s = 0; s < stage.samples.count; s++)
+        for (int region = 0; region < REGIONS; region++)
+            old += (double)(stage.regions.items[region].importance * value_at(&stage, s, 0, region));
+    print_message("%.1f %% of the light is old after two rounds\n", 100 * old / all);
+    assert_true(old < 0.2 * all);
+    test_shape_release(&box);
+    stage_close(&stage);
+}
+
 /* Something moves once, and then nothing: a frame at rest traces no more than twice the rays of one in
  * motion, none when all have had their rounds, and comes as near to the truth as whole rounds do, but for
  * directions that follow one another less evenly. Sixteen err by less than 1 / (2 sqrt 16) in a third of the
@@ -683,6 +715,7 @@ int main(void)
         cmocka_unit_test(values_converge_to_brute_force),
         cmocka_unit_test(taps_are_the_samples_corners),
         cmocka_unit_test(every_region_has_its_turn),
+        cmocka_unit_test(importance_waits_its_turn),
         cmocka_unit_test(rest_is_spread_over_frames),
         cmocka_unit_test(late_points_get_their_rounds),
         cmocka_unit_test(motion_replaces),
