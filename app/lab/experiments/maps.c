@@ -99,6 +99,7 @@ static const struct tl_experiment experiments[] = {
      .exact_text = "the environment itself, read where each ray points",
      .solid = "sphere",
      .base = {"light.method=maps", "maps.mode=mirror", "maps.layout=paraboloid", "maps.size=256"},
+     .by_flip = true,
      .ids = {"B4"},
      TECHNIQUES(techniques)},
     {.output = TL_OUTPUT_PICTURES,

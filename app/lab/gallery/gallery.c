@@ -73,10 +73,19 @@ static bool measure_error(const struct tl_experiment *experiment, const struct t
     struct tl_comparison result;
     if (!tl_image_compare(&tested->light, &exact->light, experiment->by_flip ? -1 : 0, 0, &result, error))
         return false;
-    /* The noise of a ray-traced picture is independent of the technique's error, so that variances add. */
-    double square = result.rel_rmse * result.rel_rmse - exact->noise * exact->noise;
-    *error_of = experiment->by_flip ? result.flip_mean : sqrt(fmax(square, 0));
+    /* The noise of a ray-traced picture is independent of the technique's error, so that variances add. Where
+     * it is the larger part, the difference of the two would be noise: the error then keeps it. */
+    double square = result.rel_rmse * result.rel_rmse, noise = exact->noise * exact->noise;
+    if (2 * noise < square)
+        square -= noise;
+    *error_of = experiment->by_flip ? result.flip_mean : sqrt(square);
     return true;
+}
+
+static char *exact_head(const struct tl_experiment *experiment)
+{
+    return experiment->exact == TL_EXACT_NONE ? tl_copy_string("for comparison")
+                                              : tl_format("exact: %s", experiment->exact_text);
 }
 
 static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
@@ -93,8 +102,7 @@ static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry
         entry->figures.time_ms[i] = tested[i].time_ms;
     }
     if (done) {
-        char *exact = experiment->exact == TL_EXACT_NONE ? tl_copy_string("for comparison")
-                                                         : tl_format("exact: %s", experiment->exact_text);
+        char *exact = exact_head(experiment);
         entry->figures.difference_end = tl_panels_end(rows, TL_PICTURE_OBJECTS);
         tl_image picture = tl_panels_make(rows, TL_PICTURE_OBJECTS, tl_shots_side(experiment), exact,
                                           entry->setting, entry->figures.difference_end);
@@ -127,7 +135,9 @@ static bool draw_strip(struct gallery_drawing *drawing, struct tl_gallery_entry 
     if (done) {
         entry->figures.exact_change = measure_change(exact);
         entry->figures.change = measure_change(tested);
-        tl_image strip = tl_panels_strip(exact, tested, TL_STRIP_FRAMES, TL_STRIP_SIDE);
+        char *head = exact_head(entry->picture.experiment);
+        tl_image strip = tl_panels_strip(exact, tested, TL_STRIP_FRAMES, TL_STRIP_SIDE, head, entry->setting);
+        free(head);
         done = save_picture(drawing, entry->strip, &strip, error);
         tl_image_release(&strip);
     }
@@ -138,6 +148,12 @@ static bool draw_strip(struct gallery_drawing *drawing, struct tl_gallery_entry 
     return done;
 }
 
+static bool fail_if_interrupted(tl_error *error)
+{
+    return !tl_interrupted() || tl_fail(error, TL_INTERRUPTED, "stopped: the same command continues");
+}
+
+/* A reference that Ctrl-C ended has fewer rays than it should: its picture is not recorded as drawn. */
 static bool draw_entry(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
 {
     uint64_t hash;
@@ -146,7 +162,7 @@ static bool draw_entry(struct gallery_drawing *drawing, struct tl_gallery_entry 
     entry->kept = tl_gallery_store_find(drawing->store, hash, entry);
     return entry->kept ||
            (tl_gallery_store_forget(drawing->store, entry, error) && draw_panels(drawing, entry, error) &&
-            (!entry->strip || draw_strip(drawing, entry, error)) &&
+            (!entry->strip || draw_strip(drawing, entry, error)) && fail_if_interrupted(error) &&
             tl_gallery_store_put(drawing->store, hash, entry, error));
 }
 
@@ -208,10 +224,6 @@ static bool draw_section(struct gallery_drawing *drawing, const struct tl_experi
         if (!done)
             release_entry(&out->entries[--out->count]);
         tl_progress_update(&drawing->progress, (int)out->count, (int)drawing->total);
-        if (tl_interrupted())
-            done = tl_fail(error, TL_INTERRUPTED,
-                           "stopped after %zu of %zu pictures: the same command continues", out->count,
-                           drawing->total);
     }
     return done;
 }

@@ -27,6 +27,7 @@ void tl_gallery_shot_release(struct tl_gallery_shot *shot)
 {
     tl_image_release(&shot->light);
     tl_image_release(&shot->shown);
+    *shot = (struct tl_gallery_shot){0};
 }
 
 /* ---- Differences ---- */
@@ -226,13 +227,13 @@ void tl_panels_strip_size(int count, int side, int *width, int *height)
 }
 
 tl_image tl_panels_strip(const struct tl_gallery_shot *exact, const struct tl_gallery_shot *tested, int count,
-                         int side)
+                         int side, const char *exact_head, const char *tested_head)
 {
     int width, height;
     tl_panels_strip_size(count, side, &width, &height);
     tl_image canvas = tl_canvas_create(width, height, PAPER);
     const struct tl_gallery_shot *const rows[2] = {exact, tested};
-    const char *const heads[2] = {"exact, frame by frame", "the technique"};
+    const char *const heads[2] = {exact_head, tested_head};
     for (int r = 0; r < 2; r++) {
         draw_head(&canvas, 0, r * (side + BAND), width, heads[r]);
         for (int i = 0; i < count; i++)

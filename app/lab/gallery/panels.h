@@ -12,6 +12,7 @@ struct tl_gallery_shot {
     double time_ms; /* CPU; NaN: not measured */
     double noise;   /* standard error of a ray-traced image, in the units of rel_rmse; else 0 */
 };
+/* Frees and zeroes. */
 void tl_gallery_shot_release(struct tl_gallery_shot *shot);
 
 struct tl_panel_row {
@@ -28,9 +29,9 @@ void tl_panels_size(int count, int side, int *width, int *height);
  * all but a thousandth of the covered pixels stay below; 0 when the images are equal. */
 double tl_panels_end(const struct tl_panel_row *rows, int count);
 
-/* Two rows of frames, those of the exact picture above those of the technique. */
+/* Two rows of frames, those of the exact picture above those of the technique, and their heads. */
 tl_image tl_panels_strip(const struct tl_gallery_shot *exact, const struct tl_gallery_shot *tested, int count,
-                         int side);
+                         int side, const char *exact_head, const char *tested_head);
 void tl_panels_strip_size(int count, int side, int *width, int *height);
 
 #endif
