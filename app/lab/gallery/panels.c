@@ -105,12 +105,14 @@ static tl_image difference_of(const struct tl_panel_row *row, double end)
     return image;
 }
 
-/* The upper left corner of the square of `side` pixels that holds the largest sum of differences; among
- * equals the one nearest to the first row. Squares overlap by three quarters. */
+/* The upper left corner of the square of `side` pixels that holds the largest sum of differences; the middle
+ * where there are none. Squares overlap by three quarters. */
 static void find_worst(const struct tl_panel_row *row, int side, int *x, int *y)
 {
     int width = row->exact->light.width, height = row->exact->light.height, step = side / 4;
-    double largest = -1;
+    double largest = 0;
+    *x = (width - side) / 2;
+    *y = (height - side) / 2;
     for (int top = 0; top + side <= height; top += step)
         for (int left = 0; left + side <= width; left += step) {
             double sum = 0;
@@ -182,7 +184,7 @@ static void draw_scale(tl_image *canvas, int x, int y, int width, double end)
 
 static void draw_row(tl_image *canvas, const struct tl_panel_row *row, int side, int y, double end)
 {
-    int part = side / ZOOM_PART, left = 0, top = 0;
+    int part = side / ZOOM_PART, left, top;
     find_worst(row, part, &left, &top);
     tl_image differs = difference_of(row, end);
     const tl_image *panels[] = {&row->exact->shown, &row->tested->shown, &differs};
@@ -212,7 +214,7 @@ tl_image tl_panels_make(const struct tl_panel_row *rows, int count, int side, co
     draw_head(&canvas, 0, 0, side, exact);
     draw_head(&canvas, side, 0, side, tested);
     draw_head(&canvas, 2 * side, 0, side, "their difference");
-    draw_head(&canvas, 3 * side, 0, width - 3 * side, "in the frame, 4 x");
+    draw_head(&canvas, 3 * side, 0, width - 3 * side, "4 x larger");
     for (int i = 0; i < count; i++)
         draw_row(&canvas, &rows[i], side, BAND + i * (side + BAND), end);
     return canvas;

@@ -51,8 +51,13 @@ bool tl_shots_settings(const struct tl_experiment_picture *picture, enum tl_pict
     return true;
 }
 
+/* A session lets a draped cloth move on when its options change: a picture of another solver or another start
+ * needs a sheet that falls from the start. */
 static bool set_up(struct tl_viewpoint *viewpoint, const struct tl_settings *settings, tl_error *error)
 {
+    const struct tl_option_filter drape = {.any_of = TL_AFFECTS_DRAPE};
+    if (viewpoint->session && tl_settings_differ(tl_session_settings(viewpoint->session), settings, drape))
+        return tl_session_restart(viewpoint->session, settings, error);
     if (viewpoint->session)
         return tl_session_apply(viewpoint->session, settings, error);
     viewpoint->session = tl_session_create(settings, error);
