@@ -163,6 +163,7 @@ static const struct tl_experiment experiments[] = {
      .base = {"image.ground=true"},
      .reference = {.assignments = {TRACED, FEW_SAMPLES}},
      .reference_alone = true,
+     .side = 384,
      .ids = {"D9"},
      TECHNIQUES(techniques)},
 };
