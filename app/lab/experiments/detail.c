@@ -2,9 +2,11 @@
  * C1 to C8. */
 #include "app/lab/experiments/rows_internal.h"
 
-#define BUMPY   WOVEN("8", "2")
-#define COARSE  WOVEN("20", "5")
-#define MARCHED "the ray-traced reference, which marches through the heights in four steps a texel"
+#define BUMPY  WOVEN("8", "2")
+#define COARSE WOVEN("20", "5")
+#define MARCHED                                                                                              \
+    "the ray-traced reference, which marches through the heights in four steps a texel. It also casts the "  \
+    "lamp's shadows from fold to fold, which the sheet's errors then contain: compare rows on the torus"
 
 static const struct tl_technique techniques[] = {
     /* Methods that move the point of the look-up. */
@@ -164,6 +166,7 @@ static const struct tl_experiment experiments[] = {
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16"},
      .reference = {.assignments = {"light.method=reference", "detail.mode=relief"}},
+     .side = 256,
      .ids = {"C4"},
      TECHNIQUES(techniques)},
     {.output = TL_OUTPUT_PICTURES,
@@ -197,6 +200,7 @@ static const struct tl_experiment experiments[] = {
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief"},
      .reference = {.assignments = {"light.method=reference"}},
+     .side = 256,
      .ids = {"C6"},
      TECHNIQUES(techniques)},
     {.output = TL_OUTPUT_PICTURES,
