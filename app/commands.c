@@ -54,7 +54,7 @@ static const struct tl_command commands[] = {
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
     {"gallery", "gallery [SECTION] -o FOLDER [--quick]",
      "Renders every technique and setting next to its exact evaluation, with its error and its time: "
-     "pictures, FOLDER/gallery.html and gallery.csv.",
+     "pictures, FOLDER/gallery.html and gallery.csv. After an interruption the same command continues.",
      TL_FLAGS_OUTPUT | TL_FLAGS_QUICK, tl_command_gallery},
     {"sheet", "sheet [SCENE] -o OUT.png|FOLDER [OPTIONS]",
      "Draws a contact sheet: garments x fabrics or colourways down, environments x views across, as one "

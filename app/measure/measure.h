@@ -11,7 +11,7 @@
 #include "render/metrics/compare.h"
 
 /* Settings over those of a scene: a preset's (but its image table), then single options. */
-#define TL_SETUP_ASSIGNMENTS 8
+#define TL_SETUP_ASSIGNMENTS 12
 struct tl_setup {
     const char *preset;                            /* NULL: the scene's own */
     const char *assignments[TL_SETUP_ASSIGNMENTS]; /* "table.key=value"; NULL ends them */

@@ -143,3 +143,19 @@ void tl_report_pictures_end(FILE *out)
 {
     fputs("</div>\n", out);
 }
+
+void tl_report_wide_picture(FILE *out, const struct tl_report_file *file, const char *name,
+                            const char *caption)
+{
+    fputs("<figure class=\"wide\"><a href=\"", out);
+    tl_html_print(out, file->name);
+    fprintf(out, "\"><img loading=\"lazy\" width=\"%d\" height=\"%d\" alt=\"", file->width, file->height);
+    tl_html_print(out, name);
+    fputs("\" src=\"", out);
+    tl_html_print(out, file->name);
+    fputs("\"/></a><figcaption><b>", out);
+    tl_html_print(out, name);
+    fputs("</b>", out);
+    tl_html_print(out, caption);
+    fputs("</figcaption></figure>\n", out);
+}

@@ -41,4 +41,13 @@ void tl_report_picture(FILE *out, const void *png, size_t size, const char *name
 void tl_report_picture_file(FILE *out, const char *file, const char *name, const char *caption);
 void tl_report_pictures_end(FILE *out);
 
+/* Prints a picture as wide as the page, outside of tl_report_pictures_begin and end: a file in the page's
+ * folder, loaded when the reader scrolls to it. A click opens it in full size. */
+struct tl_report_file {
+    const char *name;
+    int width, height; /* pixels: the page keeps its place free */
+};
+void tl_report_wide_picture(FILE *out, const struct tl_report_file *file, const char *name,
+                            const char *caption);
+
 #endif

@@ -28,6 +28,7 @@ enum tl_output {
 #define TL_EXPERIMENT_ASSIGNMENTS 16
 #define TL_EXPERIMENT_APPEARANCES 5
 #define TL_EXPERIMENT_IDS         2
+#define TL_EXPERIMENT_CLAIMS      3
 
 /* One way of doing something: a row of a family's list. */
 struct tl_technique {
@@ -54,11 +55,35 @@ struct tl_experiment_appearance {
     bool uniform_sky;                                   /* environment: radiance 1 in every direction */
 };
 
+/* pictures: what the exact picture of a section is. */
+enum tl_exact {
+    TL_EXACT_DRAWN,    /* drawn with the settings of the experiment's reference */
+    TL_EXACT_INTEGRAL, /* the environment summed over all directions for every sample, without a map
+                          (app/lab/gallery/integral.h): of light.method maps */
+    TL_EXACT_NONE      /* there is none: the reference is another way of doing the same */
+};
+
+/* pictures: what moves from frame to frame in the strip below a picture. */
+enum tl_picture_motion {
+    TL_MOTION_NONE,
+    TL_MOTION_CAMERA, /* turns by motion_step degrees a frame */
+    TL_MOTION_LAMP,   /* the same */
+    TL_MOTION_CLOTH   /* the sheet falls; motion_step frames from one picture to the next */
+};
+
+/* pictures: a paper expects that one technique is nearer to the exact picture than another. The page compares
+ * the measured errors and reports whether they agree. */
+struct tl_experiment_claim {
+    const char *nearer, *farther; /* names of techniques in pictures */
+    const char *source;           /* "figure 9 of [001]" */
+};
+
 struct tl_experiment {
-    const char *name, *title, *text; /* "a3"; heading; what is seen, and what the papers say of it */
-    const char *scene;               /* built-in */
-    const char *solid;               /* pictures: garment of the first object, "sphere" or "torus" */
-    const char *solid_only[6];       /* ... over all other settings of that object */
+    const char *name, *title;  /* "a3"; heading */
+    const char *text;          /* what is seen; results are measured and never part of it */
+    const char *scene;         /* built-in */
+    const char *solid;         /* pictures: garment of the first object, "sphere" or "torus" */
+    const char *solid_only[6]; /* ... over all other settings of that object */
     const char *base[TL_EXPERIMENT_ASSIGNMENTS];        /* over the scene's settings */
     struct tl_setup reference;                          /* the exact evaluation */
     const struct tl_experiment_appearance *appearances; /* NULL: one, as `base` has it */
@@ -70,8 +95,14 @@ struct tl_experiment {
     int warm_up, measured; /* page: frames before the first measured one, and those measured */
     bool rests;            /* page: the last frame is drawn until it rests, too */
     bool by_wall;          /* page: plots show wall time; else CPU time of all threads */
-    bool by_flip; /* pictures: errors are mean FLIP, for images of edges; page: FLIP of the garment, as
-                     shown; else relative RMSE */
+    bool by_flip;        /* pictures: errors are mean FLIP, for images of edges; page: FLIP of the garment, as
+                            shown; else relative RMSE */
+    enum tl_exact exact; /* pictures: what the reference's picture is ... */
+    const char *exact_text;        /* ... in words: "the formula"; of TL_EXACT_NONE the reason */
+    int side, supersample;         /* pictures: pixels of one, samples a pixel side; 0: 512, 2 */
+    enum tl_picture_motion motion; /* pictures */
+    float motion_step;
+    struct tl_experiment_claim claims[TL_EXPERIMENT_CLAIMS]; /* pictures: {0} ends them */
     bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
 };
 

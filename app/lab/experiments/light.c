@@ -152,13 +152,18 @@ static const struct tl_experiment experiments[] = {
      .name = "d9",
      .scene = "gallery",
      .title = "D9  The comparison of figure 6",
-     .text = "The methods of light under the same environment. Reference: the ray-traced image. Ambient "
+     .text = "The methods of light under the same environment. Ambient "
              "occlusion darkens folds, but does not depend on the direction of light; point lights in "
              "place of prefiltered regions are visible as separate highlights.",
+     .exact_text = "ray traced",
+     .claims = {{"the 2014 algorithm, two lobes", "lights instead of PEMs", "Figure 6 of [002]"},
+                {"the 2014 algorithm, two lobes", "ambient occlusion", "Figure 6 of [002]"},
+                {"ambient occlusion", "no occlusion", "Figure 6 of [002]"}},
      .solid = "torus",
      .base = {"image.ground=true"},
-     .reference = {.assignments = {"light.method=reference", "light.lobe=dual"}},
+     .reference = {.assignments = {TRACED, FEW_SAMPLES}},
      .reference_alone = true,
+     .side = 384,
      .ids = {"D9"},
      TECHNIQUES(techniques)},
 };

@@ -74,10 +74,12 @@ static const struct tl_experiment experiments[] = {
              "in shot "
              "silk warps and wefts have bands of different colours. Under an environment a few lobes stand "
              "for each of "
-             "these, shadowed by rays kept at vertices. Reference: ray traced.",
+             "these, shadowed by rays kept at vertices.",
+     .exact_text = "ray traced",
      .solid = "torus",
      .base = {"scene.environment=studio", "light.method=pem", SATIN},
-     .reference = {.assignments = {TRACED}},
+     .reference = {.assignments = {TRACED, FEW_SAMPLES}},
+     .side = 384,
      .ids = {"A13"},
      TECHNIQUES(cloths)},
     {.output = TL_OUTPUT_PICTURES,
@@ -88,8 +90,8 @@ static const struct tl_experiment experiments[] = {
          "Heights over the distance to a border and the length along it, in closed form: the ditch of a "
          "seam, "
          "its allowances and pucker, a hem with its folded rim, stitches in thread. What is smaller than a "
-         "pixel widens the gloss. The reference evaluates the same formula at a point; what is left is the "
-         "light's error, as the row without anything sewn has it, and detail between a pixel's samples.",
+         "pixel widens the gloss. The row without anything sewn has the light's error alone.",
+     .exact_text = "ray traced; it evaluates the same heights at each point",
      .solid = "dress",
      .solid_only = {"scene.avatar=form", "cloth.edge_m=0.02", "camera.target=[0.08, 1.02, 0.12]",
                     "camera.distance_m=0.55", "camera.pitch_deg=5"},
@@ -97,7 +99,8 @@ static const struct tl_experiment experiments[] = {
               "material.specular=[0.04, 0.04, 0.04]", "material.glossiness=0.5", "construction.show=always",
               "construction.thread=[0.8, 0.45, 0.1]", "construction.hem_mm=28", "construction.stitch_mm=5.6",
               "construction.thread_mm=0.8", "construction.pucker_mm=0.5", "construction.thickness_mm=0.5"},
-     .reference = {.assignments = {TRACED}},
+     .reference = {.assignments = {TRACED, FEW_SAMPLES}},
+     .side = 384,
      .ids = {"A14"},
      TECHNIQUES(seams)},
     {.output = TL_OUTPUT_GOLDEN,

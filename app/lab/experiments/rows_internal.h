@@ -12,7 +12,7 @@ struct tl_experiment_list {
     size_t count;
 };
 extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experiments, tl_detail_experiments,
-    tl_light_experiments, tl_material_experiments, tl_budget_experiments;
+    tl_light_experiments, tl_glossy_experiments, tl_material_experiments, tl_budget_experiments;
 
 /* A technique's settings: assignments over the experiment's, or over a preset's. */
 #define SET(...)          .setup = {.assignments = {__VA_ARGS__}}
@@ -29,6 +29,8 @@ extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experimen
 
 /* The ray-traced reference, for two lobes. */
 #define TRACED "light.method=reference", "light.lobe=dual"
+/* Of pictures with four samples a pixel: as many rays a pixel in all as one sample with 256 strata. */
+#define FEW_SAMPLES "reference.strata=64", "reference.lobe_samples=2", "reference.replicates=2"
 
 /* Begins the text of every page. */
 #define FRONT                                                                                                \

@@ -2,11 +2,12 @@
  * [Heidrich and Seidel 1999]. Ids A1 to A12. */
 #include "app/lab/experiments/rows_internal.h"
 
-#define TABLE      "shading.reflectance=table"
-#define FIXED8     "shading.table_precision=fixed8"
-#define ONE_A_PASS "shading.max_textures_per_pass=1"
-#define BUMPY      WOVEN("8", "2")
-#define SPECULAR   "material.specular=[0.15, 0.15, 0.15]"
+#define TABLE       "shading.reflectance=table"
+#define FIXED8      "shading.table_precision=fixed8"
+#define ONE_A_PASS  "shading.max_textures_per_pass=1"
+#define BUMPY       WOVEN("8", "2")
+#define ACROSS_WARP "material.width_weft=0.4", "material.width_warp=0.1"
+#define SPECULAR    "material.specular=[0.15, 0.15, 0.15]"
 
 static const struct tl_technique techniques[] = {
     /* How often light is evaluated. */
@@ -30,9 +31,7 @@ static const struct tl_technique techniques[] = {
      .id = "A8",
      SET("shading.frequency=fast_phong")},
     {.page = "Phong shading",
-     .picture = "Phong",
      .group = "frequency",
-     .id = "A8",
      SET("shading.frequency=phong"),
      .quick = true,
      .shown = true,
@@ -79,7 +78,7 @@ static const struct tl_technique techniques[] = {
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=cube16")},
-    {.table = "phong, exact", .picture = "exact", .id = "A9", SET("shading.normalisation=exact")},
+    {.table = "phong, exact", SET("shading.normalisation=exact")},
 
     /* Powers. */
     {.page = "power by squaring, 8 bit",
@@ -99,11 +98,11 @@ static const struct tl_technique techniques[] = {
      .id = "A11",
      SET("shading.space=tangent")},
     {.table = "phong, tangent space, newton", SET("shading.space=tangent", "shading.normalisation=newton")},
-    {.table = "phong, self-shadow by step", .picture = "step", .id = "A12", SET("shading.self_shadow=step")},
+    {.table = "phong, self-shadow by step", SET("shading.self_shadow=step")},
     {.picture = "ramp", .id = "A12", SET("shading.self_shadow=ramp")},
 
     /* Tables of reflectance. */
-    {.picture = "direct", .golden = "brdf_torrance_sparrow", .id = "A1"},
+    {.golden = "brdf_torrance_sparrow", .id = "A1"},
     {.table = "blinn_phong table", .picture = "tables 256, float", .id = "A1", SET(TABLE)},
     {.picture = "tables 256, 16 bit", .id = "A1", SET(TABLE, "shading.table_precision=fixed16")},
     {.picture = "tables 256, 8 bit", .golden = "brdf_tables", .id = "A1", SET(TABLE, FIXED8)},
@@ -167,24 +166,19 @@ static const struct tl_technique techniques[] = {
     {.table = "ward", SET("material.model=ward")},
     {.table = "ward tables", SET("material.model=ward", TABLE)},
     {.table = "ward, 4 passes", SET("material.model=ward", TABLE, ONE_A_PASS)},
-    {.picture = "equal widths", .id = "A4", SET("material.width_weft=0.2", "material.width_warp=0.2")},
-    {.picture = "shine across the warp",
-     .golden = "brdf_ward",
-     .id = "A4",
-     SET("material.width_weft=0.4", "material.width_warp=0.1")},
-    {.picture = "turned by 45 degrees",
-     .id = "A4",
-     SET("material.width_weft=0.4", "material.width_warp=0.1", "material.rotation_deg=45")},
-    {.picture = "turned by 90 degrees",
-     .id = "A4",
-     SET("material.width_weft=0.4", "material.width_warp=0.1", "material.rotation_deg=90")},
-    {.picture = "from tables, 8 bit",
-     .id = "A4",
-     SET("material.width_weft=0.4", "material.width_warp=0.1", TABLE, FIXED8)},
-    {.table = "banks", .picture = "threads along the weft", .id = "A5", SET("material.model=banks")},
-    {.picture = "threads along the warp", .id = "A5", SET("material.rotation_deg=90")},
-    {.table = "banks tables", .picture = "from a table", .id = "A5", SET("material.model=banks", TABLE)},
-    {.picture = "from a table, 8 bit", .id = "A5", SET(TABLE, FIXED8)},
+    {.golden = "brdf_ward", .id = "A4", SET(ACROSS_WARP)},
+    {.picture = "equal widths", .id = "A4", SET("material.width_weft=0.2", "material.width_warp=0.2", TABLE)},
+    {.picture = "shine across the warp", .id = "A4", SET(ACROSS_WARP, TABLE)},
+    {.picture = "turned by 45 degrees", .id = "A4", SET(ACROSS_WARP, "material.rotation_deg=45", TABLE)},
+    {.picture = "turned by 90 degrees", .id = "A4", SET(ACROSS_WARP, "material.rotation_deg=90", TABLE)},
+    {.picture = "shine across the warp, 8 bit", .id = "A4", SET(ACROSS_WARP, TABLE, FIXED8)},
+    {.table = "banks", SET("material.model=banks")},
+    {.picture = "threads along the warp", .id = "A5", SET("material.rotation_deg=90", TABLE)},
+    {.table = "banks tables",
+     .picture = "threads along the weft",
+     .id = "A5",
+     SET("material.model=banks", TABLE)},
+    {.picture = "threads along the weft, 8 bit", .id = "A5", SET(TABLE, FIXED8)},
 };
 
 static const struct tl_experiment_appearance edges[] = {
@@ -241,7 +235,8 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "A1  Torrance-Sparrow from two tables",
      .text = "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
-             "[Heidrich and Seidel 1999, section 3.1]. Reference: the formula itself.",
+             "[Heidrich and Seidel 1999, section 3.1].",
+     .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.fresnel=dielectric",
               "material.width_weft=0.3", "material.specular=[1, 1, 1]"},
@@ -256,6 +251,9 @@ static const struct tl_experiment experiments[] = {
              "to 1, which darkens these views. Dividing the table by its maximum, and multiplying by it "
              "again in the shader, avoids that, but leaves fewer bits for all other views. The lamp is "
              "behind the object, where the difference is visible.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
+     .claims = {{"8 bit, divided and multiplied back", "8 bit, cut at 1", "[000] 3.1"},
+                {"16 bit, divided", "8 bit, divided and multiplied back", "[000] 3.1"}},
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.width_weft=0.2",
               "material.specular=[1, 1, 1]", "lamp.yaw_deg=190", "lamp.pitch_deg=25",
@@ -267,7 +265,8 @@ static const struct tl_experiment experiments[] = {
      .name = "a3",
      .scene = "gallery",
      .title = "A3  Phong, Blinn-Phong and cosine lobe",
-     .text = "Each model is read from one table. Reference: the formula.",
+     .text = "Each model is read from one table.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
@@ -279,7 +278,8 @@ static const struct tl_experiment experiments[] = {
      .title = "A4  Ward's elliptical Gaussian",
      .text = "The facets have different slopes along weft and warp; the highlight is elongated along the "
              "direction of "
-             "the larger slopes. Reference: the formula.",
+             "the larger slopes. All are read from tables.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "sphere",
      .base = {LAMPLIT, "material.model=ward", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
@@ -289,7 +289,9 @@ static const struct tl_experiment experiments[] = {
      .name = "a5",
      .scene = "gallery",
      .title = "A5  Banks's threads",
-     .text = "A thread has a circle of normals; the normal in the plane of thread and lamp is used.",
+     .text = "A thread has a circle of normals; the normal in the plane of thread and lamp is used. "
+             "All are read from a table.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "sphere",
      .base = {LAMPLIT, "material.model=banks", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
@@ -300,8 +302,9 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "A6  Coordinates of the tables",
      .text = "The coordinates of a table are computed by one texture matrix, for a lamp and a viewer at "
-             "infinity; or at vertices, with a local viewer; or at pixels. Reference: the formula, "
-             "evaluated at pixels.",
+             "infinity; or at vertices, with a local viewer; or at pixels.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
+     .claims = {{"pixel", "vertex", "[000] 3.1"}, {"vertex", "matrix", "[000] 3.1"}},
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", "material.model=blinn_phong", SPECULAR},
      .reference = {.assignments = {"shading.coordinates=pixel", "shading.reflectance=direct"}},
@@ -314,19 +317,23 @@ static const struct tl_experiment experiments[] = {
      .title = "A7  Passes",
      .text = "Hardware with one texture a pass multiplies the factors by blending; values beyond the "
              "range or the precision of the target are lost.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
+     .claims = {{"two passes, float target", "two passes, 8-bit target", "[000] 3.1"}},
      .solid = "torus",
      .base = {LAMPLIT, "shading.reflectance=table", "material.model=torrance_sparrow",
               "material.width_weft=0.3", "material.specular=[1, 1, 1]"},
-     .reference = {.assignments = {"shading.max_textures_per_pass=4", "shading.pass_target=float"}},
+     .reference = {.assignments = {"shading.max_textures_per_pass=4", "shading.pass_target=float",
+                                   "shading.reflectance=direct"}},
      .ids = {"A7"},
      TECHNIQUES(techniques)},
     {.output = TL_OUTPUT_PICTURES,
      .name = "a8",
      .scene = "gallery",
      .title = "A8  How often light is evaluated",
-     .text = "Light that is evaluated at vertices alone loses the highlight first. Interpolated vectors "
-             "that are not normalised again darken the highlight between vertices. Reference: Phong "
-             "shading on the same mesh.",
+     .text = "Gouraud evaluates light at vertices and interpolates it; fast Phong interpolates vectors and "
+             "does not normalise them again.",
+     .exact_text = "vectors normalised at every sample of the same mesh (Phong shading)",
+     .claims = {{"fast Phong", "Gouraud", "[001] section 4"}},
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR},
      .reference = {.assignments = {"shading.frequency=phong"}},
@@ -337,9 +344,14 @@ static const struct tl_experiment experiments[] = {
      .name = "a9",
      .scene = "gallery",
      .title = "A9  Normalisation of interpolated vectors",
-     .text = "As in figure 9 of [001]: one step of Newton's method is better than the 8-bit cube map "
-             "while the normals at two neighbouring vertices are less than 38 degrees apart; the 16-bit "
-             "cube map is nearly exact. Edges are 1.5 cm long; in folds the angles are larger.",
+     .text =
+         "Interpolated vectors are made unit by a cube map of 8 or 16 bits, by one step of Newton's "
+         "method, or not at all, as in figure 9 of [001]. Edges are 8 mm long. The plot below has the same "
+         "errors over the angle between two neighbouring vertices.",
+     .exact_text = "normalised in float",
+     .claims = {{"one Newton step", "8-bit cube map", "Figure 9 of [001]"},
+                {"16-bit cube map", "one Newton step", "Figure 9 of [001]"},
+                {"8-bit cube map", "none", "Figure 9 of [001]"}},
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR, "cloth.edge_m=0.008"},
      .reference = {.assignments = {"shading.normalisation=exact"}},
@@ -349,8 +361,10 @@ static const struct tl_experiment experiments[] = {
      .name = "a10",
      .scene = "gallery",
      .title = "A10  Powers at low precision",
-     .text = "As in figure 10 of [001]: repeated squaring in fixed point shows bands; a table with "
-             "linear interpolation has its largest error where the power is steep.",
+     .text = "Repeated squaring in fixed point, which knows powers of two alone, and a table with linear "
+             "interpolation, as in figure 10 of [001].",
+     .exact_text = "the power in float",
+     .claims = {{"table", "squaring, 8+1 bit", "Figure 10 of [001]"}},
      .solid = "sphere",
      .base = {LAMPLIT, "material.specular=[0.2, 0.2, 0.2]"},
      .reference = {.assignments = {"shading.power=pow"}},
@@ -364,6 +378,7 @@ static const struct tl_experiment experiments[] = {
      .text = "Vectors are transformed into tangent space at vertices and interpolated, or light is "
              "evaluated in world space at every pixel: the results differ by how much the tangent frame "
              "turns within a triangle.",
+     .exact_text = "world space at every sample",
      .solid = "torus",
      .base = {LAMPLIT, BUMPY, SPECULAR},
      .reference = {.assignments = {"shading.space=world"}},
@@ -374,8 +389,13 @@ static const struct tl_experiment experiments[] = {
      .name = "a12",
      .scene = "gallery",
      .title = "A12  A bumped surface's own shadow",
-     .text = "Light ends at the horizon of the smooth surface, by a step or by a steep ramp. Reference: "
-             "the step; the difference is the width of the ramp. The lamp is at the side.",
+     .text = "Light ends at the horizon of the smooth surface, by a step or by a steep ramp. The lamp is at "
+             "the side; in the strip it moves.",
+     .exact = TL_EXACT_NONE,
+     .exact_text = "both end the light by a convention; the ramp is shown beside the step, and the strip "
+                   "compares how much they change from frame to frame",
+     .motion = TL_MOTION_LAMP,
+     .motion_step = 1,
      .solid = "torus",
      .base = {LAMPLIT, BUMPY, "lamp.yaw_deg=-70", "lamp.pitch_deg=10"},
      .reference = {.assignments = {"shading.self_shadow=step"}},

@@ -14,18 +14,13 @@ static void write_html(const void *gallery, FILE *out)
     tl_gallery_write_html(gallery, out);
 }
 
-static bool write_all(const char *folder, const struct tl_gallery *gallery, tl_error *error)
+static bool write_pages(const char *folder, const struct tl_gallery *gallery, tl_error *error)
 {
-    for (size_t i = 0; i < gallery->count; i++) {
-        const struct tl_gallery_entry *entry = &gallery->entries[i];
-        if (!tl_folder_put(folder, entry->image, entry->png, entry->png_size, error))
-            return false;
-    }
     return tl_folder_print(folder, "gallery.csv", gallery, write_csv, error) &&
            tl_folder_print(folder, "gallery.html", gallery, write_html, error);
 }
 
-/* After Ctrl-C, what was drawn until then is written. */
+/* After Ctrl-C the page holds what was drawn until then; the same command continues. */
 bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error)
 {
     if (!arguments->output)
@@ -38,8 +33,8 @@ bool tl_command_gallery(const struct tl_arguments *arguments, tl_error *error)
         return false;
     struct tl_gallery gallery;
     tl_error failure = {0};
-    bool done = tl_gallery_draw(arguments->quick, only, &gallery, error);
-    if (gallery.count && !write_all(arguments->output, &gallery, &failure)) {
+    bool done = tl_gallery_draw(arguments->output, arguments->quick, only, &gallery, error);
+    if (gallery.count && !write_pages(arguments->output, &gallery, &failure)) {
         *error = failure;
         done = false;
     }

@@ -1,11 +1,11 @@
 #include "app/lab/gallery/gallery.h"
 
 #include "app/lab/experiments/experiments.h"
-#include "app/measure/cost.h"
-#include "app/report/canvas.h"
-#include "app/scene/session.h"
+#include "app/lab/gallery/shots.h"
+#include "app/lab/gallery/store.h"
+#include "app/report/folder.h"
 #include "assets/image/image_file.h"
-#include "config/colour/srgb.h"
+#include "config/hash.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -16,184 +16,157 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TIMED_FRAMES 3
-#define DIFFERENCE   8.0f  /* brightness of the difference image */
-#define NUDGE_RAD    1e-4f /* of the camera between frames, so that nothing is reused */
-#define PAPER        0xffffffu
-#define INK          0x202428u
-#define MARGIN       4
-
-/* One drawn image of an object. */
-struct gallery_shot {
-    tl_image light; /* F32 RGBA, as tl_renderer_read gives it */
-    tl_image shown; /* U8 RGB */
-    double time_ms;
-};
-
-/* One of the two objects, with the settings that it was last drawn with. */
-struct viewpoint {
-    struct tl_settings settings;
-    tl_session *session;
-    tl_renderer *renderer; /* one each, because a revision is unique within one session only */
-    struct tl_settings exact_settings;
-    struct gallery_shot exact; /* kept: successive pictures of a section often share it */
-};
+/* Raised when the same settings give other pictures or figures: those of earlier runs are then drawn again.
+ */
+#define EDITION 1
 
 struct gallery_drawing {
-    tl_gpu *gpu;
-    struct viewpoint viewpoints[TL_PICTURE_OBJECTS];
-    int side;
+    const char *folder;
+    struct tl_shots shots;
+    tl_gallery_store *store;
     struct tl_progress progress;
     size_t total; /* pictures */
 };
-
-static void release_shot(struct gallery_shot *shot)
-{
-    tl_image_release(&shot->light);
-    tl_image_release(&shot->shown);
-}
 
 static void release_entry(struct tl_gallery_entry *entry)
 {
     free(entry->setting);
     free(entry->image);
-    free(entry->png);
+    free(entry->strip);
 }
 
-static bool set_up(struct viewpoint *viewpoint, const struct tl_settings *settings, tl_error *error)
-{
-    if (!viewpoint->session)
-        viewpoint->session = tl_session_create(settings, error);
-    else if (!tl_session_apply(viewpoint->session, settings, error))
-        return false;
-    viewpoint->settings = *settings;
-    return viewpoint->session != NULL;
-}
+/* ---- One picture ---- */
 
-static bool draw_frame(struct viewpoint *viewpoint, float nudge, bool still, tl_error *error)
+/* Covers all that its files show: the settings of both objects, exact and not, and what moves. */
+static bool hash_picture(const struct tl_experiment_picture *picture, uint64_t *hash, tl_error *error)
 {
-    const struct tl_render_settings settings = tl_settings_render(&viewpoint->settings);
-    tl_frame frame = tl_session_frame(viewpoint->session);
-    vec3s away = glms_vec3_sub(frame.camera.eye, frame.camera.target);
-    frame.camera.eye = glms_vec3_add(frame.camera.target, glms_vec3_rotate(away, nudge, frame.camera.up));
-    frame.still = still;
-    return tl_renderer_draw(viewpoint->renderer, &frame, &settings, error);
-}
-
-/* Draws a first frame, which creates the resources that the settings need, then timed ones, then the picture.
- */
-static bool draw_timed(struct viewpoint *viewpoint, bool timed, struct gallery_shot *out, tl_error *error)
-{
-    double taken[TIMED_FRAMES];
-    *out = (struct gallery_shot){.time_ms = NAN};
-    for (int i = 0; timed && i <= TIMED_FRAMES; i++) {
-        struct tl_stopwatch watch = tl_stopwatch_start();
-        if (!draw_frame(viewpoint, (float)(i + 1) * NUDGE_RAD, false, error))
+    const struct tl_experiment *experiment = picture->experiment;
+    const int shape[] = {EDITION, (int)experiment->exact, (int)experiment->motion,
+                         (int)lrintf(1000 * experiment->motion_step), experiment->by_flip};
+    *hash = tl_hash(TL_HASH_START, TOILE_VERSION, strlen(TOILE_VERSION));
+    *hash = tl_hash(*hash, shape, sizeof shape);
+    *hash = tl_hash(*hash, experiment->exact_text, strlen(experiment->exact_text));
+    for (int i = 0; i < 2 * TL_PICTURE_OBJECTS; i++) {
+        struct tl_settings settings;
+        if (!tl_shots_settings(picture, i / 2, tl_shots_side(experiment), i % 2, &settings, error))
             return false;
-        if (i > 0)
-            taken[i - 1] = tl_stopwatch_read(&watch).cpu_ms;
+        uint64_t values = tl_settings_hash(&settings, (struct tl_option_filter){.any_of = UINT64_MAX});
+        *hash = tl_hash(*hash, &values, sizeof values);
     }
-    if (timed)
-        out->time_ms = tl_median(taken, TIMED_FRAMES);
-    if (draw_frame(viewpoint, 0, true, error) && tl_renderer_read(viewpoint->renderer, &out->light, error) &&
-        tl_renderer_show_image(viewpoint->renderer, &out->shown, error))
-        return true;
-    release_shot(out);
-    return false;
+    return true;
 }
 
-/* |a - b|, exposed like the pictures and then brightened by DIFFERENCE. */
-static tl_image difference_of(const struct gallery_shot *tested, const struct gallery_shot *exact,
-                              float exposure_ev)
+static bool save_picture(const struct gallery_drawing *drawing, const char *name, const tl_image *picture,
+                         tl_error *error)
 {
-    tl_image image = tl_image_create(tested->light.width, tested->light.height, 3, TL_IMAGE_U8);
-    const float *a = tl_image_floats(&tested->light), *b = tl_image_floats(&exact->light);
-    size_t pixels = (size_t)image.width * (size_t)image.height;
-    float gain = DIFFERENCE * exp2f(exposure_ev);
-    for (size_t i = 0; i < pixels; i++)
-        for (size_t c = 0; c < 3; c++) {
-            float value = tl_srgb_from_linear(fminf(gain * fabsf(a[4 * i + c] - b[4 * i + c]), 1));
-            tl_image_bytes(&image)[3 * i + c] = (uint8_t)lrintf(255 * value);
-        }
-    return image;
+    void *png = NULL;
+    size_t size = 0;
+    bool saved = tl_image_encode_png(name, picture, &png, &size, error) &&
+                 tl_folder_put(drawing->folder, name, png, size, error);
+    free(png);
+    return saved;
 }
 
-static void paste(tl_image *onto, const tl_image *picture, int x, int y)
+static bool measure_error(const struct tl_experiment *experiment, const struct tl_gallery_shot *tested,
+                          const struct tl_gallery_shot *exact, double *error_of, tl_error *error)
 {
-    for (int row = 0; row < picture->height; row++)
-        memcpy(tl_image_bytes(onto) + 3 * ((size_t)(y + row) * (size_t)onto->width + (size_t)x),
-               tl_image_bytes(picture) + 3 * (size_t)row * (size_t)picture->width,
-               3 * (size_t)picture->width);
-}
-
-static bool frame_picture(struct tl_gallery_entry *entry, const struct gallery_drawing *drawing,
-                          const struct gallery_shot tested[], tl_error *error)
-{
-    int side = drawing->side, top = TL_CANVAS_LETTER + 2 * MARGIN;
-    tl_image canvas = tl_canvas_create(2 * side, top + 2 * side, PAPER);
-    char *label = tl_format("%s  %s", entry->picture.technique->id, entry->setting);
-    tl_canvas_text(&canvas, MARGIN, MARGIN, label, INK);
-    free(label);
-    for (int i = 0; i < TL_PICTURE_OBJECTS; i++) {
-        const struct viewpoint *viewpoint = &drawing->viewpoints[i];
-        tl_image differs =
-            difference_of(&tested[i], &viewpoint->exact, viewpoint->settings.image.exposure_ev);
-        paste(&canvas, &tested[i].shown, i * side, top);
-        paste(&canvas, &differs, i * side, top + side);
-        tl_image_release(&differs);
-    }
-    bool made = tl_image_encode_png(entry->image, &canvas, &entry->png, &entry->png_size, error);
-    tl_image_release(&canvas);
-    return made;
-}
-
-static bool draw_settings(struct viewpoint *viewpoint, const struct tl_settings *settings, bool timed,
-                          struct gallery_shot *out, tl_error *error)
-{
-    return set_up(viewpoint, settings, error) && draw_timed(viewpoint, timed, out, error);
-}
-
-static bool draw_exact(const struct gallery_drawing *drawing, int object, struct viewpoint *viewpoint,
-                       const struct tl_gallery_entry *entry, tl_error *error)
-{
-    struct tl_settings settings;
-    if (!tl_picture_settings(&entry->picture, object, drawing->side, true, &settings, error))
+    struct tl_comparison result;
+    if (!tl_image_compare(&tested->light, &exact->light, experiment->by_flip ? -1 : 0, 0, &result, error))
         return false;
-    if (viewpoint->exact.light.texels && tl_settings_equal(&settings, &viewpoint->exact_settings))
-        return true;
-    release_shot(&viewpoint->exact);
-    viewpoint->exact_settings = settings;
-    return draw_settings(viewpoint, &settings, false, &viewpoint->exact, error);
+    /* The noise of a ray-traced picture is independent of the technique's error, so that variances add. Where
+     * it is the larger part, the difference of the two would be noise: the error then keeps it. */
+    double square = result.rel_rmse * result.rel_rmse, noise = exact->noise * exact->noise;
+    if (2 * noise < square)
+        square -= noise;
+    *error_of = experiment->by_flip ? result.flip_mean : sqrt(square);
+    return true;
 }
 
-static bool draw_tested(const struct gallery_drawing *drawing, int object, struct viewpoint *viewpoint,
-                        const struct tl_gallery_entry *entry, struct gallery_shot *out, tl_error *error)
+static char *exact_head(const struct tl_experiment *experiment)
 {
-    struct tl_settings settings;
-    return tl_picture_settings(&entry->picture, object, drawing->side, false, &settings, error) &&
-           draw_settings(viewpoint, &settings, true, out, error);
+    return experiment->exact == TL_EXACT_NONE ? tl_copy_string("for comparison")
+                                              : tl_format("exact: %s", experiment->exact_text);
 }
 
-static bool draw_entry(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
+static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
 {
-    struct gallery_shot tested[TL_PICTURE_OBJECTS] = {0};
+    const struct tl_experiment *experiment = entry->picture.experiment;
+    struct tl_gallery_shot tested[TL_PICTURE_OBJECTS] = {0};
+    struct tl_panel_row rows[TL_PICTURE_OBJECTS];
     bool done = true;
     for (int i = 0; done && i < TL_PICTURE_OBJECTS; i++) {
-        struct viewpoint *viewpoint = &drawing->viewpoints[i];
-        struct tl_comparison result = {0};
-        done = draw_exact(drawing, i, viewpoint, entry, error) &&
-               draw_tested(drawing, i, viewpoint, entry, &tested[i], error) &&
-               tl_image_compare(&tested[i].light, &viewpoint->exact.light,
-                                entry->picture.experiment->by_flip ? -1 : 0, 0, &result, error);
-        entry->error[i] = entry->picture.experiment->by_flip ? result.flip_mean : result.rel_rmse;
-        entry->time_ms[i] = tested[i].time_ms;
+        rows[i].tested = &tested[i];
+        rows[i].exact = tl_shots_exact(&drawing->shots, &entry->picture, i, error);
+        done = rows[i].exact && tl_shots_draw(&drawing->shots, &entry->picture, i, &tested[i], error) &&
+               measure_error(experiment, &tested[i], rows[i].exact, &entry->figures.error[i], error);
+        entry->figures.time_ms[i] = tested[i].time_ms;
     }
-    if (done)
-        done = frame_picture(entry, drawing, tested, error);
+    if (done) {
+        char *exact = exact_head(experiment);
+        entry->figures.difference_end = tl_panels_end(rows, TL_PICTURE_OBJECTS);
+        tl_image picture = tl_panels_make(rows, TL_PICTURE_OBJECTS, tl_shots_side(experiment), exact,
+                                          entry->setting, entry->figures.difference_end);
+        done = save_picture(drawing, entry->image, &picture, error);
+        tl_image_release(&picture);
+        free(exact);
+    }
     for (int i = 0; i < TL_PICTURE_OBJECTS; i++)
-        release_shot(&tested[i]);
+        tl_gallery_shot_release(&tested[i]);
     return done;
 }
+
+/* Of the pictures as shown: in linear light the small lamp of the studio would outweigh all else. */
+static double measure_change(const struct tl_gallery_shot frames[])
+{
+    size_t bytes = (size_t)3 * TL_STRIP_SIDE * TL_STRIP_SIDE;
+    double sum = 0;
+    for (int i = 1; i < TL_STRIP_FRAMES; i++) {
+        const uint8_t *now = tl_image_bytes(&frames[i].shown), *before = tl_image_bytes(&frames[i - 1].shown);
+        for (size_t k = 0; k < bytes; k++)
+            sum += abs(now[k] - before[k]);
+    }
+    return sum / ((double)bytes * (TL_STRIP_FRAMES - 1));
+}
+
+static bool draw_strip(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
+{
+    struct tl_gallery_shot exact[TL_STRIP_FRAMES], tested[TL_STRIP_FRAMES];
+    bool done = tl_shots_strip(&drawing->shots, &entry->picture, exact, tested, error);
+    if (done) {
+        entry->figures.exact_change = measure_change(exact);
+        entry->figures.change = measure_change(tested);
+        char *head = exact_head(entry->picture.experiment);
+        tl_image strip = tl_panels_strip(exact, tested, TL_STRIP_FRAMES, TL_STRIP_SIDE, head, entry->setting);
+        free(head);
+        done = save_picture(drawing, entry->strip, &strip, error);
+        tl_image_release(&strip);
+    }
+    for (int i = 0; i < TL_STRIP_FRAMES; i++) {
+        tl_gallery_shot_release(&exact[i]);
+        tl_gallery_shot_release(&tested[i]);
+    }
+    return done;
+}
+
+static bool fail_if_interrupted(tl_error *error)
+{
+    return !tl_interrupted() || tl_fail(error, TL_INTERRUPTED, "stopped: the same command continues");
+}
+
+/* A reference that Ctrl-C ended has fewer rays than it should: its picture is not recorded as drawn. */
+static bool draw_entry(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
+{
+    uint64_t hash;
+    if (!hash_picture(&entry->picture, &hash, error))
+        return false;
+    entry->kept = tl_gallery_store_find(drawing->store, hash, entry);
+    return entry->kept ||
+           (tl_gallery_store_forget(drawing->store, entry, error) && draw_panels(drawing, entry, error) &&
+            (!entry->strip || draw_strip(drawing, entry, error)) && fail_if_interrupted(error) &&
+            tl_gallery_store_put(drawing->store, hash, entry, error));
+}
+
+/* ---- Sections ---- */
 
 /* Section `index` of those that are drawn (all, or the one called `only`); NULL past the last one. */
 static const struct tl_experiment *section_at(const char *only, size_t index)
@@ -228,6 +201,16 @@ bool tl_gallery_has(const char *name, tl_error *error)
                    near ? ": did you mean " : " or another row of the technique set", near ? near : "");
 }
 
+static struct tl_gallery_entry make_entry(const struct tl_experiment_picture *picture, size_t number)
+{
+    const struct tl_experiment *section = picture->experiment;
+    return (struct tl_gallery_entry){
+        .picture = *picture,
+        .setting = tl_picture_name(picture, TL_OUTPUT_PICTURES),
+        .image = tl_format("%s-%02zu.png", section->name, number),
+        .strip = section->motion ? tl_format("%s-%02zu-motion.png", section->name, number) : NULL};
+}
+
 static bool draw_section(struct gallery_drawing *drawing, const struct tl_experiment *section, bool quick,
                          struct tl_gallery *out, tl_error *error)
 {
@@ -236,16 +219,11 @@ static bool draw_section(struct gallery_drawing *drawing, const struct tl_experi
     for (size_t number = 1; done && !(quick && number > 1) && tl_picture_next(&picture, TL_OUTPUT_PICTURES);
          number++) {
         struct tl_gallery_entry *entry = &out->entries[out->count++];
-        *entry = (struct tl_gallery_entry){.picture = picture,
-                                           .setting = tl_picture_name(&picture, TL_OUTPUT_PICTURES),
-                                           .image = tl_format("%s-%02zu.png", section->name, number)};
+        *entry = make_entry(&picture, number);
         done = draw_entry(drawing, entry, error);
         if (!done)
             release_entry(&out->entries[--out->count]);
         tl_progress_update(&drawing->progress, (int)out->count, (int)drawing->total);
-        if (tl_interrupted())
-            done = tl_fail(error, TL_INTERRUPTED, "stopped after %zu of %zu pictures", out->count,
-                           drawing->total);
     }
     return done;
 }
@@ -264,23 +242,16 @@ static bool draw_sections(struct gallery_drawing *drawing, bool quick, const cha
     return done;
 }
 
-bool tl_gallery_draw(bool quick, const char *only, struct tl_gallery *out, tl_error *error)
+bool tl_gallery_draw(const char *folder, bool quick, const char *only, struct tl_gallery *out,
+                     tl_error *error)
 {
-    struct gallery_drawing drawing = {.side = 240};
-    *out = (struct tl_gallery){.side = drawing.side};
-    drawing.gpu = tl_gpu_create_headless(error);
-    bool ready = drawing.gpu != NULL;
-    for (int i = 0; ready && i < TL_PICTURE_OBJECTS; i++) {
-        drawing.viewpoints[i].renderer = tl_renderer_create(drawing.gpu, error);
-        ready = drawing.viewpoints[i].renderer != NULL;
-    }
+    struct gallery_drawing drawing = {.folder = folder};
+    *out = (struct tl_gallery){0};
+    drawing.store = tl_gallery_store_open(folder, error);
+    bool ready = drawing.store && tl_shots_open(&drawing.shots, error);
     out->complete = ready && draw_sections(&drawing, quick, only, out, error);
-    for (int i = 0; i < TL_PICTURE_OBJECTS; i++) {
-        tl_session_destroy(&drawing.viewpoints[i].session);
-        tl_renderer_destroy(&drawing.viewpoints[i].renderer);
-        release_shot(&drawing.viewpoints[i].exact);
-    }
-    tl_gpu_destroy(&drawing.gpu);
+    tl_shots_close(&drawing.shots);
+    tl_gallery_store_close(&drawing.store);
     return out->complete;
 }
 

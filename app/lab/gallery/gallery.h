@@ -1,5 +1,5 @@
-/* The gallery: every technique on the same two objects, a solid and a draped sheet, beside its exact
- * evaluation, with its error and its time in the same run.
+/* The gallery: every technique on the same two objects, a solid and a draped sheet, beside its exact picture,
+ * with its error and its time in the same run.
  *
  * A section is an experiment whose output is pictures (app/lab/experiments/). Errors are those of
  * render/metrics/compare.h over covered pixels; times are process CPU time of a whole frame whose camera has
@@ -12,21 +12,29 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* One picture, drawn. */
-struct tl_gallery_entry {
-    struct tl_experiment_picture picture;
-    char *setting;                      /* the picture's name */
+/* The measured figures of one picture. */
+struct tl_gallery_figures {
     double error[TL_PICTURE_OBJECTS];   /* relative RMSE, or mean FLIP */
     double time_ms[TL_PICTURE_OBJECTS]; /* CPU */
-    char *image;                        /* name of its file */
-    void *png;                          /* both objects, and below each its difference from the reference */
-    size_t png_size;
+    /* Of the strip: how much a pixel changes from a frame to the next, in levels of 255, mean over pixels and
+     * frames; of the technique and of the exact picture. 0 where there is no strip. */
+    double change, exact_change;
+    double difference_end; /* linear radiance at the upper end of the difference's scale; 0: all equal */
+};
+
+/* One picture: its file, its strip's, and what was measured. */
+struct tl_gallery_entry {
+    struct tl_experiment_picture picture;
+    char *setting; /* the picture's name */
+    char *image;   /* name of its file */
+    char *strip;   /* name of the file with its frames in motion; NULL: nothing moves */
+    struct tl_gallery_figures figures;
+    bool kept; /* an earlier run drew it with the same settings */
 };
 
 struct tl_gallery {
     struct tl_gallery_entry *entries;
     size_t count;
-    int side;      /* pixels of each object's picture */
     bool complete; /* not interrupted */
 };
 
@@ -34,9 +42,11 @@ struct tl_gallery {
 bool tl_gallery_has(const char *name, tl_error *error);
 
 /* Draws all sections, or the first picture of each (`quick`), or only the section called `only`, which must
- * exist. On Ctrl-C the error is TL_INTERRUPTED and `out` holds what was drawn until then. Release `out` in
- * any case. */
-bool tl_gallery_draw(bool quick, const char *only, struct tl_gallery *out, tl_error *error);
+ * exist, and writes each picture into `folder` as soon as it is drawn. A picture that an earlier run wrote
+ * there with the same settings is kept. On Ctrl-C the error is TL_INTERRUPTED and `out` holds what was drawn
+ * until then. Release `out` in any case. */
+bool tl_gallery_draw(const char *folder, bool quick, const char *only, struct tl_gallery *out,
+                     tl_error *error);
 void tl_gallery_release(struct tl_gallery *gallery);
 
 /* gallery.csv: id,technique,setting,error,error_metric,time_ms,image; the larger error and the longer time of

@@ -1,12 +1,14 @@
 #include "app/lab/gallery/gallery_figures.h"
 
 #include "app/lab/experiments/experiment.h"
+#include "app/report/cells.h"
 #include "app/report/report.h"
 #include "config/memory.h"
 #include "render/brdf/fresnel.h"
 #include "render/brdf/normalise.h"
 #include "render/brdf/power.h"
 #include "render/brdf/table_error.h"
+#include "render/pem/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -240,6 +242,27 @@ void tl_gallery_fresnel_figures(FILE *out)
         "angles alone, the second nearly everywhere.");
 }
 
+/* ---- D8 ---- */
+
+void tl_gallery_memory_figures(FILE *out)
+{
+    static const char *const heads[] = {"texels a side", "level 0 alone, MiB", "with mip levels, MiB",
+                                        "shadow maps of as many texels, RG32F, MiB"};
+    static const int sides[] = {16, 32, 64, 128, 256};
+    const int regions = 24; /* as in the section's pictures */
+    const double mebibyte = 1 << 20;
+    struct tl_cells cells = {0};
+    for (size_t i = 0; i < TL_COUNT(heads); i++)
+        tl_cells_add(&cells, "%s", heads[i]);
+    for (size_t i = 0; i < TL_COUNT(sides); i++) {
+        tl_cells_add(&cells, "%d", sides[i]);
+        tl_cells_add(&cells, "%.3f", (double)tl_memory_cubes(regions, sides[i]) / mebibyte);
+        tl_cells_add(&cells, "%.3f", (double)tl_memory_chains(regions, sides[i]) / mebibyte);
+        tl_cells_add(&cells, "%.3f", (double)tl_memory_shadow_maps(regions, sides[i], 8) / mebibyte);
+    }
+    tl_cells_print(&cells, TL_COUNT(heads), out);
+}
+
 /* ---- Which section has which ---- */
 
 void tl_gallery_write_figures(const char *section, FILE *out)
@@ -249,7 +272,8 @@ void tl_gallery_write_figures(const char *section, FILE *out)
         void (*write)(FILE *out);
     } figures[] = {{"a1", tl_gallery_table_figures},  {"a2", tl_gallery_grazing_figures},
                    {"a3", tl_gallery_folded_figures}, {"a9", tl_gallery_normalise_figures},
-                   {"a10", tl_gallery_power_figures}, {"b6", tl_gallery_fresnel_figures}};
+                   {"a10", tl_gallery_power_figures}, {"b6", tl_gallery_fresnel_figures},
+                   {"d8", tl_gallery_memory_figures}};
     for (size_t i = 0; i < TL_COUNT(figures); i++)
         if (strcmp(figures[i].section, section) == 0)
             figures[i].write(out);

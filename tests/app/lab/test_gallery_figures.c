@@ -23,11 +23,13 @@ static void figures_are_plots(void **state)
         void (*write)(FILE *out);
         size_t plots;
         const char *says;
-    } figures[] = {{tl_gallery_table_figures, 2, "Tables in float"},
-                   {tl_gallery_grazing_figures, 1, "divided by its greatest value"},
-                   {tl_gallery_normalise_figures, 1, "beats the cube map of 8 bits up to 38 degrees"},
-                   {tl_gallery_power_figures, 3, "it has 6 levels"},
-                   {tl_gallery_fresnel_figures, 1, "index 200"}};
+    } figures[] = {
+        {tl_gallery_table_figures, 2, "Tables in float"},
+        {tl_gallery_grazing_figures, 1, "divided by its greatest value"},
+        {tl_gallery_normalise_figures, 1, "beats the cube map of 8 bits up to 38 degrees"},
+        {tl_gallery_power_figures, 3, "it has 6 levels"},
+        {tl_gallery_fresnel_figures, 1, "index 200"},
+        {tl_gallery_memory_figures, 0, "18.000"}}; /* a table: 24 x 6 x 128^2 x 8 bytes are 18 MiB */
     FILE *page = fopen(TOILE_SCRATCH_DIR "/gallery_figures.html", "w");
     assert_non_null(page);
     tl_report_begin(page, "Figures", "of a test");
