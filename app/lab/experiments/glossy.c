@@ -199,7 +199,7 @@ static const struct tl_experiment experiments[] = {
          "The studio's small strong lamp stays in its region, as wide as that is, or leaves it and casts its "
          "own shadow.",
      .exact_text = "ray traced",
-     .claims = {{"the sun by rays of its own", "the sun in its region", "Its design"}},
+     .claims = {{"the sun by rays of its own", "the sun in its region", "The design of this program"}},
      .solid = "torus",
      .base = {"image.ground=true", GREY("0.4", "0"), "light.bounce=off"},
      .reference = {.assignments = {TRACED, FEW_SAMPLES}},
@@ -214,7 +214,7 @@ static const struct tl_experiment experiments[] = {
      .text =
          "A lobe of exponent 200 and more is one ray. In the paper what it hits is black; here it is lit.",
      .exact_text = "ray traced, what mirrors hit lit",
-     .claims = {{"what a mirror hits is lit", "what a mirror hits is black", "Its design"}},
+     .claims = {{"what a mirror hits is lit", "what a mirror hits is black", "The design of this program"}},
      .solid = "torus",
      .base = {"image.ground=true", GREY("0.1", "0.8"), "material.glossiness=0.998", "light.bounce=off"},
      .reference = {.assignments = {TRACED, "light.reflect_scene=true", FEW_SAMPLES,
@@ -232,7 +232,8 @@ static const struct tl_experiment experiments[] = {
          "White cloth on a grey ground: light that surfaces send on to each other, not at all, once, or as "
          "often as it likes.",
      .exact_text = "ray traced with four bounces",
-     .claims = {{"one bounce", "no bounces", "Energy"}, {"all bounces", "one bounce", "Energy"}},
+     .claims = {{"one bounce", "no bounces", "Conservation of energy"},
+                {"all bounces", "one bounce", "Conservation of energy"}},
      .solid = "torus",
      .base = {"image.ground=true", GREY("0.8", "0")},
      .reference = {.assignments = {TRACED, "light.bounce=all", FEW_SAMPLES, "reference.bounce_samples=4"}},
@@ -264,7 +265,8 @@ static const struct tl_experiment experiments[] = {
      .text =
          "Under a budget a frame has fewer samples, or fewer regions; the rows' times are what each gains.",
      .exact_text = "ray traced",
-     .claims = {{"scale 0.7", "scale 0.5", "The planner"}, {"full quality", "24 regions", "The planner"}},
+     .claims = {{"scale 0.7", "scale 0.5", "The planner of this program"},
+                {"full quality", "24 regions", "The planner of this program"}},
      .solid = "torus",
      .base = {"image.ground=true", "light.bounce=off", "weave.pattern=twill", "weave.warp_pitch_mm=8",
               "weave.weft_pitch_mm=8", "weave.crimp_mm=1"},
