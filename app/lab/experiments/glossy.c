@@ -80,8 +80,8 @@ static const struct tl_experiment experiments[] = {
      .text = "The environment is cut into regions of about equal light, and each casts one shadow. Lobes are "
              "exact and shadow maps plain, so that the number of regions is what differs.",
      .exact_text = "ray traced",
-     .claims = {{"48 regions", "12 regions", "Figure 6 of [002]"},
-                {"192 regions", "48 regions", "Figure 6 of [002]"}},
+     .claims = {{"48 regions", "12 regions", "The design of this program"},
+                {"192 regions", "48 regions", "The design of this program"}},
      .solid = "torus",
      .base = {"scene.preset=paper", "light.lobe=dual", "image.ground=true", GREY("0.4", "0.2"), EXACT_LOBES},
      .reference = {.assignments = {TRACED, FEW_SAMPLES}},
@@ -116,8 +116,8 @@ static const struct tl_experiment experiments[] = {
          "visible share from the two. A blur as wide as the region softens the shadow. Matt cloth on a "
          "matt ground, exact lobes.",
      .exact_text = "ray traced",
-     .claims = {{"variance maps of 256 texels", "variance maps of 64 texels", "Section 4 of [002]"},
-                {"variance maps of 256 texels", "256 texels, not blurred", "Section 4 of [002]"}},
+     .claims = {{"variance maps of 256 texels", "variance maps of 64 texels", "The design of this program"},
+                {"variance maps of 256 texels", "256 texels, not blurred", "The design of this program"}},
      .solid = "torus",
      .base = {"scene.preset=paper", "light.lobe=dual", "image.ground=true", GREY("0.5", "0"),
               "light.prefilter=slices"},
@@ -165,8 +165,8 @@ static const struct tl_experiment experiments[] = {
              "table "
              "below has the bytes of all regions.",
      .exact_text = "the same regions and shadows with exact lobes, each by direct convolution (D4)",
-     .claims = {{"PEMs of 64 texels a side", "PEMs of 16 texels a side", "Figure 8 of [002]"},
-                {"PEMs of 256 texels a side", "PEMs of 64 texels a side", "Figure 8 of [002]"}},
+     .claims = {{"PEMs of 64 texels a side", "PEMs of 16 texels a side", "The design of this program"},
+                {"PEMs of 256 texels a side", "PEMs of 64 texels a side", "The design of this program"}},
      .solid = "sphere",
      .base = {"scene.preset=paper", "light.lobe=dual", "light.regions=24", GREY("0.1", "0.8"),
               "material.glossiness=0.99"},

@@ -156,7 +156,7 @@ static const struct tl_experiment experiments[] = {
              "occlusion darkens folds, but does not depend on the direction of light; point lights in "
              "place of prefiltered regions are visible as separate highlights.",
      .exact_text = "ray traced",
-     .claims = {{"the 2014 algorithm, two lobes", "lights instead of PEMs", "Figure 6 of [002]"},
+     .claims = {{"the 2014 algorithm, two lobes", "lights instead of PEMs", "[002]"},
                 {"the 2014 algorithm, two lobes", "ambient occlusion", "Figure 6 of [002]"},
                 {"ambient occlusion", "no occlusion", "Figure 6 of [002]"}},
      .solid = "torus",
