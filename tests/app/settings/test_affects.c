@@ -211,7 +211,8 @@ static void inputs_follow_a_new_row(void **state)
     settings.maps.capture_every = 1;
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         uint64_t expected = (uint64_t)1 << cases[i].input;
-        if (cases[i].input == TL_INPUT_GROUND) /* a capture shows the ground */
+        /* A capture shows the ground, and is lit by lamps. */
+        if (cases[i].input == TL_INPUT_GROUND || cases[i].input == TL_INPUT_LAMPS)
             expected |= (uint64_t)1 << TL_INPUT_CAPTURE;
         assert_int_equal(inputs_that_follow(cases[i].bit, &settings), expected);
     }
