@@ -30,11 +30,11 @@ static const struct {
     {"body", "--garment none --avatar figure"}, /* only the camera moves */
     {"cloth", "--no-cache --set cloth.edge_m=0.05"},
     {"folds", "--no-cache --garment skirt --set cloth.edge_m=0.03"},
-    {"glossy", "--fabric none --set material.specular=[0.5,0.5,0.5] --set material.glossiness=0.95"},
+    {"glossy", "--fabric none --set material.use_file=false --set material.specular=[0.5,0.5,0.5] --set "
+               "material.glossiness=0.95"},
     /* What it shows at grazing angles is most of its light. */
-    {"lacquer",
-     "--fabric none --set material.diffuse=[0.02,0.02,0.02] --set material.specular=[0.05,0.05,0.05] --set "
-     "material.glossiness=0.95"},
+    {"lacquer", "--fabric none --set material.use_file=false --set material.diffuse=[0,0,0] --set "
+                "material.specular=[0.005,0.005,0.005] --set material.glossiness=0.95"},
     {"sewn", "--no-cache --fabric denim --set cloth.edge_m=0.05"}, /* its warp is stiffer than its weft */
     {"fuzz", "--fabric velvet"},
     {"sheer", "--fabric voile --frames 2 --size 192x108"}, /* the reference takes its time */
