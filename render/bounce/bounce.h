@@ -14,7 +14,8 @@
  * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
  * is traced in each update, in directions that are fixed to the surface, so that nothing flickers; at rest
  * further directions are averaged in until all have had their rounds. Rays pass open cloth as they do in the
- * reference, and a surface that transmits sends on what its other side received.
+ * reference, and a surface that transmits sends on what its other side received. A vertex that parts of
+ * different materials share has the material of the last of them.
  *
  * World space, metres; linear radiance, Rec. 709. Errors: none. Lifetime: a plain struct that starts as {0}
  * and owns its arrays. Threads: one call at a time; OpenMP inside; results do not depend on the number of

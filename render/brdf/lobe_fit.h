@@ -33,7 +33,9 @@ struct tl_fitted_lobe {
 int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
                      struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
 
-/* ... to each gloss of a sum, one after the other; the same within rounding, faster. */
+/* The fits of each gloss of a sum, one after the other, without lobes that reflect nothing: those of
+ * tl_lobe_fit_make (test_threads: within 1e-3), in one evaluation where all are Ward's. Returns their number.
+ */
 #define TL_LOBE_FIT_SUM_MAX ((1 + TL_THREADS_MAX) * TL_LOBE_FIT_MAX)
 int tl_lobe_fit_sum(const struct tl_brdf_sum *sum, const struct tl_brdf_frame *frame, vec3s v, int max_count,
                     struct tl_fitted_lobe lobes[TL_LOBE_FIT_SUM_MAX]);

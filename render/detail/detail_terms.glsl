@@ -91,7 +91,8 @@ TERM float detail_open(float mean_length)
 
 // How far a shading normal is turned towards a viewer at this cosine to it, as a multiple of the direction to the viewer that
 // is added to the normal. Near an outline interpolated normals point away from a viewer who sees the surface: no
-// gloss would be sent there, and satin, whose light is gloss, had a black rim.
+// gloss would be sent there, and satin, whose light is gloss, had a black rim. Normals keep what they are up to 1.1 degrees
+// from edge-on.
 TERM float detail_facing(float cosine)
 {
     return max(0.02f - cosine, 0.0f);

@@ -32,8 +32,9 @@ struct tl_lobe_terms {
     float reach_cosine, reach_sine; /* the lobe counts for nothing further from its axis */
 };
 
-/* Of a lobe's peak: what is less is left out. Suns are no regions, and these are within a factor of 1000. */
-#define TL_NEGLIGIBLE_LOG2 -20.0f
+/* Of a lobe's peak: what is less, 1e-12, is left out. Beside a sun, 1e5 times as bright as the rest where
+ * suns stay in their regions, that is what a float's last digit is to the sum. */
+#define TL_NEGLIGIBLE_LOG2 -40.0f
 
 TL_INLINE void tl_find_lobe_terms(const struct tl_region_lights *lights, const struct tl_fitted_lobe *lobes,
                                   int count, struct tl_lobe_terms *terms)

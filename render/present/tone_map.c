@@ -1,8 +1,10 @@
 #include "render/present/tone_map.h"
 
+#include "config/memory.h"
 #include "config/simd.h"
 #include "render/present/tone.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define STEP_BITS      13 /* of the mantissa's 23, that are less than a step */
@@ -176,4 +178,21 @@ void tl_tone_map(const struct tl_tone_map_request *request, uint8_t *bytes)
             const struct tile tile = tile_at(request, column, row);
             show_tile(request, &tile, bytes);
         }
+}
+
+tl_image tl_tone_map_image(const tl_image *light, vec3s exposure)
+{
+    tl_image out = tl_image_create(light->width, light->height, 4, TL_IMAGE_U8);
+    struct tl_encoding *encoding = TL_NEW(struct tl_encoding);
+    tl_encoding_make(encoding);
+    tl_tone_map(&(const struct tl_tone_map_request){.encoding = encoding,
+                                                    .texels = tl_image_floats(light),
+                                                    .width = light->width,
+                                                    .height = light->height,
+                                                    .end_column = light->width,
+                                                    .is_light = true,
+                                                    .exposure = exposure},
+                tl_image_bytes(&out));
+    free(encoding);
+    return out;
 }

@@ -3,6 +3,7 @@
 #ifndef TOILE_RENDER_PRESENT_TONE_MAP_H
 #define TOILE_RENDER_PRESENT_TONE_MAP_H
 
+#include "assets/base/image.h"
 #include "render/present/behind.h"
 
 /* sRGB bytes of linear values, by the bits of the float: TL_ENCODING_STEPS intervals an octave, over the
@@ -25,5 +26,8 @@ struct tl_tone_map_request {
 };
 /* Writes RGBA, alpha 255: [height][width][4]. */
 void tl_tone_map(const struct tl_tone_map_request *request, uint8_t *bytes);
+
+/* A whole image of light, on grey. `light`: F32 x4, linear, premultiplied. Returns U8 x4, to be released. */
+tl_image tl_tone_map_image(const tl_image *light, vec3s exposure);
 
 #endif

@@ -106,24 +106,13 @@ static bool draw_still(struct tl_viewpoint *viewpoint, struct tl_gallery_shot *o
 /* The picture of an image that the renderer did not draw: on grey, as the gallery's scene has it. */
 static tl_image show(const tl_image *light, float exposure_ev)
 {
-    struct tl_encoding *encoding = TL_NEW(struct tl_encoding);
-    size_t pixels = (size_t)light->width * (size_t)light->height;
-    uint8_t *bytes = TL_NEW_ARRAY(uint8_t, 4 * pixels);
-    float factor = exp2f(exposure_ev);
-    tl_encoding_make(encoding);
-    tl_tone_map(&(const struct tl_tone_map_request){.encoding = encoding,
-                                                    .texels = tl_image_floats(light),
-                                                    .width = light->width,
-                                                    .height = light->height,
-                                                    .end_column = light->width,
-                                                    .is_light = true,
-                                                    .exposure = {{factor, factor, factor}}},
-                bytes);
+    const float factor = exp2f(exposure_ev);
+    tl_image mapped = tl_tone_map_image(light, (vec3s){{factor, factor, factor}});
+    const size_t pixels = (size_t)light->width * (size_t)light->height;
     tl_image shown = tl_image_create(light->width, light->height, 3, TL_IMAGE_U8);
     for (size_t i = 0; i < pixels; i++)
-        memcpy(tl_image_bytes(&shown) + 3 * i, bytes + 4 * i, 3);
-    free(bytes);
-    free(encoding);
+        memcpy(tl_image_bytes(&shown) + 3 * i, tl_image_bytes(&mapped) + 4 * i, 3);
+    tl_image_release(&mapped);
     return shown;
 }
 

@@ -151,8 +151,8 @@ struct tl_panel_result {
     const struct tl_option *listed; /* whose list of choices is open; NULL: none */
 };
 
-/* `gpu`: of the window's context. `scale`:
- * of the window's content, 1 on a plain screen. TL_DEVICE when the GL context cannot draw it. */
+/* `gpu`: of the window's context. `scale`: of the window's content, 1 on a plain screen. TL_DEVICE when the
+ * GL context cannot draw it. */
 tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float scale, tl_error *error);
 void tl_panel_destroy(tl_panel **panel);
 

@@ -11,24 +11,6 @@
 
 #include <stdlib.h>
 
-/* To a screen's bytes. `light`: F32 x4, linear, premultiplied. */
-static tl_image shown(const tl_image *light, vec3s exposure)
-{
-    tl_image out = tl_image_create(light->width, light->height, 4, TL_IMAGE_U8);
-    struct tl_encoding *encoding = TL_NEW(struct tl_encoding);
-    tl_encoding_make(encoding);
-    tl_tone_map(&(const struct tl_tone_map_request){.encoding = encoding,
-                                                    .texels = tl_image_floats(light),
-                                                    .width = light->width,
-                                                    .height = light->height,
-                                                    .end_column = light->width,
-                                                    .is_light = true,
-                                                    .exposure = exposure},
-                tl_image_bytes(&out));
-    free(encoding);
-    return out;
-}
-
 /* ---- Fabrics ---- */
 
 /* Few samples: the noise of the mean of 2 x 2 samples a pixel is below what 8 bits show of cloth. */
@@ -64,7 +46,7 @@ static bool draw_sphere(const struct tl_settings *settings, tl_image *out, tl_er
     struct tl_reference_report report;
     const bool drawn = tl_reference_draw(&request, &light, &report, error);
     if (drawn) {
-        *out = shown(&light, glms_vec3_one());
+        *out = tl_tone_map_image(&light, glms_vec3_one());
         tl_image_release(&light);
     }
     tl_session_destroy(&session);
@@ -138,7 +120,7 @@ bool tl_thumbnail_of_environment(const char *name, tl_image *out, tl_error *erro
         return false;
     const vec3s factors = light.environment.shown;
     tl_image small = reduce(&light.environment.image, 2 * TL_THUMBNAIL_HEIGHT, TL_THUMBNAIL_HEIGHT);
-    *out = shown(&small, glms_vec3_max(factors) > 0 ? factors : glms_vec3_one());
+    *out = tl_tone_map_image(&small, glms_vec3_max(factors) > 0 ? factors : glms_vec3_one());
     tl_image_release(&small);
     tl_moving_light_release(&light);
     return true;
