@@ -421,6 +421,31 @@ static void warn_of_unused_options(const struct tl_settings *settings)
                 "and depth");
 }
 
+/* The material's options that hold for a file's own materials too. */
+static bool is_of_file_too(const char *assignment)
+{
+    static const char *const keys[] = {"material.use_file=", "material.back="};
+    for (size_t i = 0; i < TL_COUNT(keys); i++)
+        if (strncmp(assignment, keys[i], strlen(keys[i])) == 0)
+            return true;
+    return false;
+}
+
+/* Warns of the first assignment to a material that the garment's own take the place of. */
+static void warn_of_hidden_material(const struct tl_settings *settings,
+                                    const struct tl_settings_source *source)
+{
+    for (size_t i = 0; settings->material.use_file && i < source->assignment_count; i++) {
+        const char *assignment = source->assignments[i];
+        if (strncmp(assignment, "material.", strlen("material.")) != 0 || is_of_file_too(assignment))
+            continue;
+        tl_warn("%.*s: has no effect on materials that the garment comes with: name a fabric (--fabric "
+                "cotton_plain), or add --set material.use_file=false",
+                (int)strcspn(assignment, "="), assignment);
+        return;
+    }
+}
+
 /* Logs the width that is assumed of pictures whose file states none. */
 static void log_assumed_width(const struct tl_weave_params *weave)
 {
@@ -472,6 +497,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     if (!read_colourways(&settings, error))
         return false;
     warn_of_unused_options(&settings);
+    warn_of_hidden_material(&settings, source);
     log_assumed_width(&settings.weave);
     *out = settings;
     return true;

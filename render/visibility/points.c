@@ -27,6 +27,7 @@ struct tl_points {
     struct tl_regions regions; /* directions only: those that the values belong to */
     uint32_t frame;            /* counts updates, from 1 */
     uint32_t motion;           /* counts moving frames, from 1 */
+    uint32_t rest;             /* the last frame in which nothing moved; 0: none */
 
     struct tl_cache_probes probes;
     uint32_t *seen;   /* [probes]: frame when last visible */
@@ -534,6 +535,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
 {
     assert(request->regions->count > 0 && request->params->rays > 0);
     follow_changes(points, request);
+    points->rest = request->moved ? points->rest : points->frame;
     points->are_for_samples = request->samples != NULL;
     if (request->samples)
         mark_samples(points, request);
@@ -548,6 +550,15 @@ const uint16_t *tl_points_values(const tl_points *points, size_t *stride)
 {
     *stride = points->stride;
     return points->values;
+}
+
+uint32_t tl_points_age(const tl_points *points, uint32_t point, int region)
+{
+    size_t slot = point / TL_CLUSTER;
+    if (slot >= points->slot_count)
+        return 0;
+    uint32_t traced = points->stamps[slot * points->stride + (size_t)region];
+    return points->frame - (traced > points->rest ? traced : points->rest);
 }
 
 const struct tl_taps *tl_points_taps(const tl_points *points)

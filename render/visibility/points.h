@@ -23,6 +23,9 @@ bool tl_points_are_done(const tl_points *points);
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
  * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
+/* Updates since the region was traced from there, or since nothing moved; 0 of points that samples own, which
+ * are traced in every moving frame. */
+uint32_t tl_points_age(const tl_points *points, uint32_t point, int region);
 /* Whether the last update was for samples. Others are for triangles, and may move the points that earlier
  * taps name: then tl_points_taps is NULL. */
 bool tl_points_are_for_samples(const tl_points *points);

@@ -64,6 +64,9 @@ const struct tl_invariant tl_invariants[] = {
      "0.1 to 0.2 are usual by rays, 1.2 at a rim of light of a small lamp; --baseline makes it that of the "
      "scene",
      true, tl_measure_tile},
+    {"image.place", "outlines lie where the reference's do: displacement, pixels", 0.1,
+     "0.003 is usual; half a pixel reads as 0.3, because edges are sharper than their gradients", true,
+     tl_measure_place},
     {"maps.moments",
      "shadow maps hold finite depths with E[z^2] >= E[z]^2: largest violation, relative to E[z^2]", 1e-5,
      "sums of up to 129 weights in single precision, twice", true, tl_measure_moments},
@@ -77,6 +80,11 @@ const struct tl_invariant tl_invariants[] = {
      "cached values are a few frames old and belong to vertices: at most 0.10 in 7300 cases of dress, "
      "review, a T-shirt's motion and a walk, with 24 to 384 regions",
      true, tl_measure_leaks},
+    {"visibility.age",
+     "in motion VIS is renewed in turn: share of the light on the sampled points whose VIS is older than "
+     "four "
+     "rounds of the regions",
+     0.1, "0.0004 is usual: late ones go first", true, tl_measure_age},
     {"light.environment", "cube and suns hold the light of the environment: relative difference", 0.01,
      "cube.h: a texel keeps its energy within 1 %", true, tl_measure_environment},
     {"light.regions", "the regions hold the light of the cube, each texel once: relative difference", 1e-4,

@@ -19,10 +19,10 @@ tl_measure tl_measure_environment, tl_measure_regions, tl_measure_exact, tl_meas
 tl_measure tl_measure_slices, tl_measure_pems;
 
 /* check_visibility.c */
-tl_measure tl_measure_moments, tl_measure_visibility, tl_measure_leaks;
+tl_measure tl_measure_moments, tl_measure_visibility, tl_measure_leaks, tl_measure_age;
 
 /* check_oracle.c */
-tl_measure tl_measure_oracle, tl_measure_mean, tl_measure_patch, tl_measure_tile;
+tl_measure tl_measure_oracle, tl_measure_mean, tl_measure_patch, tl_measure_tile, tl_measure_place;
 
 /* check_furnace.c */
 tl_measure tl_measure_furnace, tl_measure_furnace_shadowed;

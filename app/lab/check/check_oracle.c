@@ -45,3 +45,12 @@ void tl_measure_tile(const struct tl_checked *checked, struct tl_finding *findin
     tl_finding_add(finding, checked->truth->tile_error);
     tl_finding_pixel(finding, checked->truth->tile_x, checked->truth->tile_y);
 }
+
+void tl_measure_place(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!checked->truth)
+        return;
+    vec2s off = checked->truth->displacement;
+    if (tl_finding_add(finding, (double)glms_vec2_norm(off)))
+        tl_finding_place(finding, "%.2f to the right, %.2f down", (double)off.x, (double)off.y);
+}

@@ -6,9 +6,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Points at which VIS is measured, and directions of each region. All points use the same directions, because
- * the cache, too, traces one direction for all points that it visits in a frame. */
-enum { POINTS = 64, RAYS = 32, BUNDLE = 16 };
+/* Points at which VIS is measured, other ones in each frame, and directions of each region. All points use
+ * the same directions, because the cache, too, traces one direction for all points that it visits in a frame.
+ */
+enum { POINTS = 1024, RAYS = 32, BUNDLE = 16 };
 
 /* A region is measured if at least so many points face it, with a cosine of FACES or more. */
 enum { LEAST_POINTS = POINTS / 4 };
@@ -122,6 +123,12 @@ struct witness {
     struct tally tallies[TL_REGIONS_MAX];
 };
 
+/* The sample in place of which a number below POINTS stands in a frame. */
+static size_t choose_sample(size_t count, size_t number, int frame)
+{
+    return (number * count / POINTS + (size_t)frame * 7919) % count;
+}
+
 static double claimed_of(const struct witness *witness, size_t sample, int region)
 {
     const struct tl_taps *taps = &witness->taps[sample];
@@ -189,7 +196,7 @@ static void tally_answers(struct witness *witness, int frame)
         for (int ray = 0; ray < RAYS; ray++)
             witness->directions[region][ray] = region_direction(inside, region, ray);
     for (size_t point = 0; point < POINTS && count > 0; point++) {
-        size_t index = (point * count / POINTS + (size_t)frame * 7919) % count;
+        size_t index = choose_sample(count, point, frame);
         const tl_sample *sample = &inside->samples.items[index];
         vec3s start = tl_sample_start(sample, &inside->shapes.ranges, offset_m);
         for (int region = 0; region < inside->regions.count; region++)
@@ -261,4 +268,42 @@ void tl_measure_leaks(const struct tl_checked *checked, struct tl_finding *findi
     }
     tl_trace_destroy(&witness->trace);
     free(witness);
+}
+
+/* The light on a sample from regions that face it, and how much of it has a VIS older than `allowed` frames.
+ */
+static void add_light_by_age(const struct tl_resources *inside, size_t index, double allowed, double *late,
+                             double *all)
+{
+    const struct tl_taps *taps = &tl_points_taps(inside->points)[index];
+    const tl_sample *sample = &inside->samples.items[index];
+    for (int r = 0; r < inside->regions.count; r++) {
+        const struct tl_region *region = &inside->regions.items[r];
+        float cosine = glms_vec3_dot(tl_turn_direction(region->direction, inside->yaw), sample->smooth);
+        double light = (double)(region->importance * fmaxf(cosine, 0));
+        uint32_t oldest = 0;
+        for (int i = 0; i < TL_TAPS; i++) {
+            uint32_t age = taps->weight[i] > 0 ? tl_points_age(inside->points, taps->point[i], r) : 0;
+            oldest = age > oldest ? age : oldest;
+        }
+        *all += light;
+        *late += (double)oldest > allowed ? light : 0;
+    }
+}
+
+void tl_measure_age(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    const double rounds = 4; /* render/visibility/refresh.c: then a region goes before others */
+    int renewed = checked->settings->light.refresh;
+    if (!has_points(checked) || renewed == 0)
+        return;
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
+    size_t count = inside->samples.primary_count;
+    double late = 0, all = 0, allowed = rounds * ceil((double)inside->regions.count / renewed);
+    for (size_t point = 0; point < POINTS && count > 0; point++)
+        add_light_by_age(inside, choose_sample(count, point, checked->number), allowed, &late, &all);
+    if (!(all > 0))
+        return;
+    tl_finding_add(finding, late / all);
+    tl_finding_place(finding, "of %d points: older than %.0f frames", POINTS, allowed);
 }

@@ -29,6 +29,7 @@ struct comparison {
     int width, height, side; /* pixels; samples along one of them */
     int tiles_x, tiles_y;
     int bounces;                /* of light, in the reference */
+    float *cover;               /* [height][width] the reference's, by quick rays */
     const tl_material *garment; /* materials of the last surface */
     size_t garment_materials;
 };
@@ -265,6 +266,40 @@ static struct tile_sums trace_and_compare(const struct comparison *comparison, i
 
 /* ---- All tiles ---- */
 
+static void keep_cover(const struct comparison *comparison, int tile, const struct tile_light *light)
+{
+    int left = tile % comparison->tiles_x * TILE, top = tile / comparison->tiles_x * TILE;
+    for (int i = 0; i < TILE_PIXELS; i++) {
+        int x = left + i % TILE, y = top + i / TILE;
+        if (x < comparison->width && y < comparison->height)
+            comparison->cover[y * comparison->width + x] = (float)light->cover[i];
+    }
+}
+
+/* How far the image's outlines lie from the reference's, in pixels: the displacement d that explains the
+ * difference of coverages best, image - reference = -d . gradient, by least squares over all pixels (Lucas
+ * and Kanade 1981). 0 where outlines do not run in two directions. */
+static vec2s find_displacement(const struct comparison *comparison)
+{
+    const float *got = tl_image_floats(comparison->image) + 3, *cover = comparison->cover;
+    double xx = 0, xy = 0, yy = 0, x_off = 0, y_off = 0;
+    int width = comparison->width;
+    for (int y = 1; y + 1 < comparison->height; y++)
+        for (int x = 1; x + 1 < width; x++) {
+            int at = y * width + x;
+            double along = 0.5 * (double)(cover[at + 1] - cover[at - 1]);
+            double down = 0.5 * (double)(cover[at + width] - cover[at - width]);
+            double off = (double)(cover[at] - got[4 * at]);
+            xx += along * along, xy += along * down, yy += down * down;
+            x_off += along * off, y_off += down * off;
+        }
+    double determinant = xx * yy - xy * xy;
+    if (!(determinant > 1e-3 * xx * yy))
+        return (vec2s){{0, 0}};
+    return (vec2s){
+        {(float)((yy * x_off - xy * y_off) / determinant), (float)((xx * y_off - xy * x_off) / determinant)}};
+}
+
 static void add_all(const struct tile_sums *tiles, int count, struct tile_sums *whole)
 {
     *whole = (struct tile_sums){.worst = -1};
@@ -392,9 +427,13 @@ static void compare(const struct comparison *comparison, struct tl_truth *out)
     int count = comparison->tiles_x * comparison->tiles_y;
     struct tile_sums *tiles = TL_NEW_ARRAY(struct tile_sums, (size_t)count), whole;
 #pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < count; i++)
-        tiles[i] = trace_and_compare(comparison, i, quick);
+    for (int i = 0; i < count; i++) {
+        struct tile_light light = trace_tile(comparison, i, quick);
+        tiles[i] = compare_tile(comparison, i, &light);
+        keep_cover(comparison, i, &light);
+    }
     add_all(tiles, count, &whole);
+    out->displacement = find_displacement(comparison);
     if (whole.count > 0) {
         double values = 3.0 * whole.count, square = (whole.square - whole.variance) / values;
         double mean = (whole.all.light[0] + whole.all.light[1] + whole.all.light[2]) / values;
@@ -443,7 +482,9 @@ bool tl_truth_compare(const tl_frame *frame, const struct tl_render_settings *se
     find_garment(frame, &comparison);
     if (!tl_reference_scene_make(&request, &comparison.scene, error))
         return false;
+    comparison.cover = TL_NEW_ARRAY(float, (size_t)image->width *(size_t)image->height);
     compare(&comparison, out);
+    free(comparison.cover);
     tl_reference_scene_release(&comparison.scene);
     return true;
 }
@@ -471,6 +512,8 @@ void tl_truth_worst(struct tl_truth *a, const struct tl_truth *b)
         a->patch_x = b->patch_x;
         a->patch_y = b->patch_y;
     }
+    if (glms_vec2_norm(b->displacement) > glms_vec2_norm(a->displacement))
+        a->displacement = b->displacement;
     a->mean_error = is_worse(b->mean_error, a->mean_error) ? b->mean_error : a->mean_error;
     a->garment_error = is_worse(b->garment_error, a->garment_error) ? b->garment_error : a->garment_error;
 }

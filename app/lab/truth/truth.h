@@ -25,6 +25,7 @@ struct tl_truth {
      * that are thinner than a tile do not count here. */
     double patch_error;
     int patch_x, patch_y;
+    vec2s displacement; /* of the image's outlines from the reference's, to the right and down, pixels */
 };
 
 /* Whether images of these settings estimate what the reference computes: other methods than `pem` leave

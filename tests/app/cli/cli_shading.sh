@@ -35,3 +35,9 @@ check "other bytes" test "$(cmp -s dark.exr lit.exr; echo $?)" -eq 1
 check "no lamp, no job" grep -q "lamps *drop .*no lamps here" <($TOILE plan $small)
 check "a lamp, a job" grep -q "lamps *run" <($TOILE plan $small --set fill.kind=point)
 refuse "no such lamp" "kind" render $small -o a.exr --set lamp.kind=candle
+
+hidden="material.glossiness: has no effect on materials that the garment comes with"
+check "a material that the garment's own hides is told" grep -q "$hidden" \
+    <($TOILE plan --fabric none --set material.glossiness=0.9 2>&1)
+check "... and not where it shows" test -z "$($TOILE plan --fabric none --set material.use_file=false \
+    --set material.glossiness=0.9 2>&1 >hidden.txt)"

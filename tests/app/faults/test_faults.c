@@ -18,6 +18,7 @@ static const struct {
     {"matt",
      "--fabric cotton_plain"}, /* satin's colour is that of its threads: it has next to no diffuse light */
     {"long", "--frames 16 --every 15"}, /* what was not done adds up */
+    {"aged", "--frames 30 --every 29 --set light.regions=96 --set light.refresh=24"},
     {"skirt", "--garment skirt --fabric cotton_plain --set camera.pitch_deg=-30"}, /* its inside is seen */
     {"turned", "--set scene.environment_yaw_deg=50"},
     /* By maps satin differs from the reference by more than these faults do. */

@@ -380,6 +380,21 @@ static void patches_are_named(void **state)
     take_down(&stand);
 }
 
+/* Each pixel becomes the mean of itself and its right neighbour. */
+static void outlines_that_are_displaced_are_named(void **state)
+{
+    (void)state;
+    struct stand *stand = by_rays();
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x + 1 < WIDTH; x++) {
+            float *pixel = tl_image_floats(&stand->image) + 4 * (y * WIDTH + x);
+            for (int c = 0; c < 4; c++)
+                pixel[c] = 0.5f * (pixel[c] + pixel[4 + c]);
+        }
+    assert_breaks(&stand->checked, "image.place", "-0.");
+    take_down(&stand);
+}
+
 static void a_plan_over_budget_is_named(void **state)
 {
     (void)state;
@@ -675,6 +690,7 @@ int main(void)
         cmocka_unit_test(faults_of_geometry_are_named),
         cmocka_unit_test(faults_of_pixels_are_named),
         cmocka_unit_test(patches_are_named),
+        cmocka_unit_test(outlines_that_are_displaced_are_named),
         cmocka_unit_test(a_plan_over_budget_is_named),
         cmocka_unit_test(a_baseline_tightens_bounds),
         cmocka_unit_test(a_leaking_shadow_is_named),
