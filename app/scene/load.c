@@ -9,8 +9,10 @@
 #include "assets/pattern/pattern.h"
 #include "assets/pattern/pattern_worn.h"
 #include "assets/refine.h"
+#include "assets/simplify/simplify.h"
 #include "assets/stitches/stitches.h"
 #include "cloth/contact/collider.h"
+#include "cloth/mesh/topology.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -61,6 +63,18 @@ static bool needs_limbs(const char *garment)
     return tl_garment_is_for_figure(garment) || tl_pattern_is_file(garment);
 }
 
+/* Simplifies a heavy body that wears a garment. What is shown alone is shown as its file has it. */
+static void simplify_avatar(const struct tl_settings *settings, tl_model *model)
+{
+    if (settings->scene.body_detail == TL_BODY_FULL || strcmp(settings->scene.garment, "none") == 0)
+        return;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
+    tl_weld_positions(model->mesh.positions, model->mesh.vertex_count, weld);
+    const struct tl_simplified simplified = tl_simplify_model(model, weld);
+    report_line(tl_simplified_describe(model->name, &simplified));
+    free(weld);
+}
+
 /* Makes or reads the avatar that the scene names, which is not "none". */
 static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error)
 {
@@ -76,10 +90,12 @@ static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_e
     report_line(tl_units_describe(out->model.name, &out->model.units, "scene.avatar_units"));
     for (size_t i = 0; i < out->model.defect_count; i++)
         tl_info("%s: %s", out->model.name, out->model.defects[i]);
-    if (place_avatar(settings, out, error))
-        return true;
-    tl_avatar_release(out);
-    return false;
+    if (!place_avatar(settings, out, error)) {
+        tl_avatar_release(out);
+        return false;
+    }
+    simplify_avatar(settings, &out->model);
+    return true;
 }
 
 /* Finds the clip that the scene names; -1: the rest pose. */
