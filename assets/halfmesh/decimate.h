@@ -26,10 +26,11 @@ extern "C" {
 struct tl_decimate_source {
     size_t vertex_count, triangle_count;
     const float (*positions)[3];    /* [vertex_count] finite */
-    const float (*uvs)[2];          /* [vertex_count] in metres on the surface, or 0 */
+    const float (*uvs)[2];          /* [vertex_count] */
     const uint32_t *weld;           /* [vertex_count] the place of each, below vertex_count */
     const uint32_t (*triangles)[3]; /* vertices; those with two corners at one place are left out */
     const uint32_t *parts;          /* [triangle_count] */
+    const float *uv_metres;         /* [part] metres per UV unit; 0: its UVs do not count */
     size_t triangle_target;         /* collapses end here, or where no further one is allowed */
     double distance_max_m, uv_max_m;
     void (*progress)(void *user, double share); /* called every few milliseconds, or NULL */

@@ -75,7 +75,7 @@ struct Node {
 };
 
 /* A face by its number in the mesh, which it keeps while its neighbours vanish. */
-struct Face {
+struct Facet {
     std::array<int, 3> nodes;
     std::array<uint32_t, 3> corners; /* vertices of the source */
     int first_point = NONE;          /* removed vertices that are nearest to it: a list */
@@ -88,11 +88,11 @@ struct Point {
     double squared = 0; /* distance from its face, m^2 */
 };
 
-struct Work {
+struct Decimation {
     const tl_decimate_source *source;
     Mesh mesh;
     std::vector<Node> nodes;
-    std::vector<Face> faces;
+    std::vector<Facet> faces;
     std::vector<Point> points;   /* [source's vertex_count] */
     std::vector<double> due;     /* [node] the cost at which it has its turn; INFINITY: none */
     std::vector<char> lines;     /* [edge] OpenMesh's own flags take as long to read as the rest of a ring */
@@ -101,8 +101,8 @@ struct Work {
     double longest = 0; /* m, for new edges */
 };
 
-/* The neighbourhood of a node, counter-clockwise. Face i lies between spokes i and i + 1, NONE outside of the
- * border. A ring with lines begins at one. */
+/* The neighbourhood of a node, counter-clockwise. Facet i lies between spokes i and i + 1, NONE outside of
+ * the border. A ring with lines begins at one. */
 struct Ring {
     int hub;
     size_t count, lines;
@@ -130,13 +130,13 @@ struct Moved {
 };
 
 /* Halfedges 2 i and 2 i + 1 are those of edge i. */
-bool is_line(const Work &work, Halfedge half)
+bool is_line(const Decimation &work, Halfedge half)
 {
     return work.lines[static_cast<size_t>(half.idx()) / 2] != 0;
 }
 
 /* False for a node that must stay: lines end or cross there, or it has too many faces. */
-bool find_ring(const Work &work, int hub, Ring &ring)
+bool find_ring(const Decimation &work, int hub, Ring &ring)
 {
     const Mesh &mesh = work.mesh;
     OpenMesh::VertexHandle vertex(hub);
@@ -175,7 +175,7 @@ double squared_length(const Vec &v)
 
 /* The cost of the collapse onto a spoke's end, before it is known to be allowed: m^2 times the area, so that
  * what covers little is removed first. */
-double cost_of(const Work &work, const Ring &ring, size_t spoke)
+double cost_of(const Decimation &work, const Ring &ring, size_t spoke)
 {
     const Node &hub = work.nodes[static_cast<size_t>(ring.hub)],
                &target = work.nodes[static_cast<size_t>(ring.ends[spoke])];
@@ -188,7 +188,7 @@ double cost_of(const Work &work, const Ring &ring, size_t spoke)
 }
 
 /* The possible collapses, the cheapest first. */
-size_t find_candidates(const Work &work, const Ring &ring, std::array<Candidate, RING> &out)
+size_t find_candidates(const Decimation &work, const Ring &ring, std::array<Candidate, RING> &out)
 {
     size_t count = 0;
     for (size_t i = 0; i < ring.count; i++)
@@ -222,7 +222,7 @@ double segment_distance(const Vec &point, const Vec &from, const Vec &to)
 }
 
 /* Of a collapse along a line: how far what the new side stands for may be from it. */
-double line_stray(const Work &work, const Ring &ring, size_t spoke)
+double line_stray(const Decimation &work, const Ring &ring, size_t spoke)
 {
     size_t other = spoke == 0 ? ring.other_line : 0;
     auto edge = [&](size_t i) { return static_cast<size_t>(work.mesh.edge_handle(ring.spokes[i]).idx()); };
@@ -232,7 +232,7 @@ double line_stray(const Work &work, const Ring &ring, size_t spoke)
 }
 
 /* Whether what is left has a surface: a tetrahedron would collapse onto itself. */
-bool is_open_enough(Work &work, const Ring &ring, size_t spoke)
+bool is_open_enough(Decimation &work, const Ring &ring, size_t spoke)
 {
     Mesh &mesh = work.mesh;
     return mesh.is_collapse_ok(ring.spokes[spoke]) &&
@@ -241,7 +241,7 @@ bool is_open_enough(Work &work, const Ring &ring, size_t spoke)
 }
 
 /* Checks the topology, the triangles' shapes and the line of a collapse. */
-bool is_sound(Work &work, const Ring &ring, size_t spoke)
+bool is_sound(Decimation &work, const Ring &ring, size_t spoke)
 {
     size_t after = ring.after(spoke), before = ring.before(spoke);
     if (ring.lines == 2 && ((ring.is_line(after) && ring.faces[spoke] != NONE) ||
@@ -310,26 +310,26 @@ struct Folded {
     std::array<std::array<uint32_t, 3>, RING> corners; /* vertices of the source */
 };
 
-size_t slot_of(const Face &face, int node)
+size_t slot_of(const Facet &face, int node)
 {
     return face.nodes[0] == node ? 0 : face.nodes[1] == node ? 1 : 2;
 }
 
 /* The vertex of the source that a collapse puts in place of the hub's in a sector. */
-uint32_t target_corner(const Work &work, const Ring &ring, size_t spoke, size_t sector)
+uint32_t target_corner(const Decimation &work, const Ring &ring, size_t spoke, size_t sector)
 {
     size_t beside = ring.faces[spoke] != NONE && ring.sector(spoke) == sector ? spoke : ring.before(spoke);
-    const Face &face = work.faces[static_cast<size_t>(ring.faces[beside])];
+    const Facet &face = work.faces[static_cast<size_t>(ring.faces[beside])];
     return face.corners[slot_of(face, ring.ends[spoke])];
 }
 
-void fold(const Work &work, const Ring &ring, size_t spoke, Folded &folded)
+void fold(const Decimation &work, const Ring &ring, size_t spoke, Folded &folded)
 {
     folded.count = 0;
     for (size_t i = 0; i < ring.count; i++) {
         if (!remains(ring, spoke, i))
             continue;
-        const Face &face = work.faces[static_cast<size_t>(ring.faces[i])];
+        const Facet &face = work.faces[static_cast<size_t>(ring.faces[i])];
         size_t n = folded.count++, slot = slot_of(face, ring.hub);
         folded.faces[n] = i;
         folded.corners[n] = face.corners;
@@ -340,14 +340,14 @@ void fold(const Work &work, const Ring &ring, size_t spoke, Folded &folded)
     }
 }
 
-Vec position_of(const Work &work, uint32_t vertex)
+Vec position_of(const Decimation &work, uint32_t vertex)
 {
     const float *p = work.source->positions[vertex];
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
 /* Finds a point's nearest face of its sector. False if it is too far away, or has another UV there. */
-bool place(const Work &work, const Ring &ring, const Folded &folded, size_t sector, uint32_t point,
+bool place(const Decimation &work, const Ring &ring, const Folded &folded, size_t sector, uint32_t point,
            std::vector<Moved> &moved)
 {
     const tl_decimate_source &source = *work.source;
@@ -374,21 +374,24 @@ bool place(const Work &work, const Ring &ring, const Folded &folded, size_t sect
             uv += weights[k] * static_cast<double>(source.uvs[folded.corners[best][k]][c]);
         off += uv * uv;
     }
-    if (!(off <= source.uv_max_m * source.uv_max_m))
+    const int face = ring.faces[folded.faces[best]];
+    double metres =
+        static_cast<double>(source.uv_metres[source.parts[work.faces[static_cast<size_t>(face)].source]]);
+    if (!(metres * std::sqrt(off) <= source.uv_max_m))
         return false;
-    moved.push_back({point, ring.faces[folded.faces[best]], squared});
+    moved.push_back({point, face, squared});
     return true;
 }
 
 /* Places the hub's vertices and all points of its faces. False if one of them would be too far away. */
-bool place_all(const Work &work, const Ring &ring, const Folded &folded, std::vector<Moved> &moved)
+bool place_all(const Decimation &work, const Ring &ring, const Folded &folded, std::vector<Moved> &moved)
 {
     moved.clear();
     bool placed[2] = {false, false};
     for (size_t i = 0; i < ring.count; i++) {
         if (ring.faces[i] == NONE)
             continue;
-        const Face &face = work.faces[static_cast<size_t>(ring.faces[i])];
+        const Facet &face = work.faces[static_cast<size_t>(ring.faces[i])];
         size_t sector = ring.sector(i);
         if (!placed[sector] &&
             !place(work, ring, folded, sector, face.corners[slot_of(face, ring.hub)], moved))
@@ -401,7 +404,7 @@ bool place_all(const Work &work, const Ring &ring, const Folded &folded, std::ve
     return true;
 }
 
-void collapse(Work &work, const Ring &ring, size_t spoke, const Folded &folded,
+void collapse(Decimation &work, const Ring &ring, size_t spoke, const Folded &folded,
               const std::vector<Moved> &moved)
 {
     if (ring.lines == 2) {
@@ -415,12 +418,12 @@ void collapse(Work &work, const Ring &ring, size_t spoke, const Folded &folded,
             work.triangles -= !remains(ring, spoke, i);
         }
     for (size_t n = 0; n < folded.count; n++) {
-        Face &face = work.faces[static_cast<size_t>(ring.faces[folded.faces[n]])];
+        Facet &face = work.faces[static_cast<size_t>(ring.faces[folded.faces[n]])];
         face.nodes[slot_of(face, ring.hub)] = ring.ends[spoke];
         face.corners = folded.corners[n];
     }
     for (const Moved &to : moved) {
-        Face &face = work.faces[static_cast<size_t>(to.face)];
+        Facet &face = work.faces[static_cast<size_t>(to.face)];
         work.points[to.point] = {face.first_point, to.squared};
         face.first_point = static_cast<int>(to.point);
     }
@@ -434,7 +437,7 @@ void collapse(Work &work, const Ring &ring, size_t spoke, const Folded &folded,
 
 /* ---- The mesh ---- */
 
-int add_node(Work &work, Vec position)
+int add_node(Decimation &work, Vec position)
 {
     work.nodes.push_back({});
     work.nodes.back().position = position;
@@ -444,11 +447,11 @@ int add_node(Work &work, Vec position)
 /* Adds a face. If it is refused, it gets three nodes of its own; they and those that they stand for stay, so
  * that the surface is closed where it was. `uses` counts the faces of each node: OpenMesh goes round a vertex
  * for each face that it gets, which takes the square of their number. */
-void add_face(Work &work, size_t triangle, const std::vector<int> &node_of, std::vector<uint32_t> &uses)
+void add_face(Decimation &work, size_t triangle, const std::vector<int> &node_of, std::vector<uint32_t> &uses)
 {
     const uint32_t most_faces = 128;
     const tl_decimate_source &source = *work.source;
-    Face face;
+    Facet face;
     OpenMesh::VertexHandle handles[3];
     bool crowded = false;
     for (size_t k = 0; k < 3; k++) {
@@ -475,7 +478,7 @@ void add_face(Work &work, size_t triangle, const std::vector<int> &node_of, std:
 
 /* Marks the border, and the sides at which the two faces have different vertices, or belong to different
  * parts. */
-void mark_lines(Work &work)
+void mark_lines(Decimation &work)
 {
     Mesh &mesh = work.mesh;
     work.lines.assign(mesh.n_edges(), 1);
@@ -485,8 +488,8 @@ void mark_lines(Work &work)
         if (mesh.is_boundary(edge))
             continue;
         Halfedge half = mesh.halfedge_handle(edge, 0);
-        const Face &one = work.faces[static_cast<size_t>(mesh.face_handle(half).idx())],
-                   &other = work.faces[static_cast<size_t>(mesh.opposite_face_handle(half).idx())];
+        const Facet &one = work.faces[static_cast<size_t>(mesh.face_handle(half).idx())],
+                    &other = work.faces[static_cast<size_t>(mesh.opposite_face_handle(half).idx())];
         bool is_line = work.source->parts[one.source] != work.source->parts[other.source];
         for (int node : {mesh.from_vertex_handle(half).idx(), mesh.to_vertex_handle(half).idx()})
             is_line |= one.corners[slot_of(one, node)] != other.corners[slot_of(other, node)];
@@ -495,10 +498,10 @@ void mark_lines(Work &work)
 }
 
 /* Gives each node the planes of its faces; returns the area of all. */
-double weigh(Work &work)
+double weigh(Decimation &work)
 {
     double sum = 0;
-    for (const Face &face : work.faces) {
+    for (const Facet &face : work.faces) {
         Node *nodes[3];
         for (size_t k = 0; k < 3; k++)
             nodes[k] = &work.nodes[static_cast<size_t>(face.nodes[k])];
@@ -550,7 +553,7 @@ std::vector<uint32_t> order_places(const std::vector<Vec> &places)
 }
 
 /* Makes a node of each place; returns the node of each. */
-std::vector<int> add_nodes(Work &work)
+std::vector<int> add_nodes(Decimation &work)
 {
     const tl_decimate_source &source = *work.source;
     size_t count = 0;
@@ -583,7 +586,7 @@ std::vector<uint32_t> order_triangles(const tl_decimate_source &source, const st
     return order;
 }
 
-void build(Work &work, const tl_decimate_source &source)
+void build(Decimation &work, const tl_decimate_source &source)
 {
     omerr().disable(); /* refused faces have their corners locked */
     work.source = &source;
@@ -607,7 +610,7 @@ void build(Work &work, const tl_decimate_source &source)
 
 /* Gives a node its turn when costs have come to the lowest that it can have. The true one is found then:
  * costs of neighbours that changed in the meantime have grown. */
-void enqueue(Work &work, int node)
+void enqueue(Decimation &work, int node)
 {
     Ring ring;
     std::array<Candidate, RING> candidates;
@@ -618,7 +621,7 @@ void enqueue(Work &work, int node)
 
 /* Takes a node's turn: collapses it, or puts it off until a dearer collapse is due, or until a neighbour
  * changes. */
-void take_turn(Work &work, int node, double affordable, std::vector<Moved> &moved)
+void take_turn(Decimation &work, int node, double affordable, std::vector<Moved> &moved)
 {
     Ring ring;
     Folded folded;
@@ -647,7 +650,7 @@ void take_turn(Work &work, int node, double affordable, std::vector<Moved> &move
 /* Sweeps over all nodes, each time with a slightly higher cost that is affordable. A heap would keep to the
  * exact order, and take twice as long: what it takes from it next is on the other side of the body, and in no
  * cache. */
-void decimate(Work &work)
+void decimate(Decimation &work)
 {
     const double step = 1.25;
     const tl_decimate_source &source = *work.source;
@@ -678,7 +681,7 @@ template <typename T> T *new_array(size_t count)
     return array;
 }
 
-void write_result(const Work &work, tl_decimated *out)
+void write_result(const Decimation &work, tl_decimated *out)
 {
     out->triangles = new_array<uint32_t[3]>(work.triangles);
     out->sources = new_array<uint32_t>(work.triangles);
@@ -689,7 +692,7 @@ void write_result(const Work &work, tl_decimated *out)
     for (uint32_t source = 0; source < face_of.size(); source++) {
         if (face_of[source] == UINT32_MAX)
             continue;
-        const Face &face = work.faces[face_of[source]];
+        const Facet &face = work.faces[face_of[source]];
         size_t t = out->triangle_count++;
         std::copy(face.corners.begin(), face.corners.end(), out->triangles[t]);
         out->sources[t] = source;
@@ -706,7 +709,7 @@ bool tl_decimate(const struct tl_decimate_source *source, struct tl_decimated *o
 {
     *out = tl_decimated{};
     try {
-        Work work;
+        Decimation work;
         build(work, *source);
         decimate(work);
         write_result(work, out);

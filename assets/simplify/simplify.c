@@ -15,34 +15,81 @@ static void report_progress(void *user, double share)
     tl_progress_update(user, share, 1);
 }
 
-/* The number of each triangle's part; UVs in metres of the part that uses them. */
-static void describe_parts(const tl_mesh *mesh, uint32_t *parts, vec2s *uvs)
+/* Fills the number of each triangle's part, and the scale of each part's UVs. */
+static void describe_parts(const tl_mesh *mesh, uint32_t *parts, float *uv_metres)
 {
     for (size_t p = 0; p < mesh->part_count; p++) {
         const struct tl_mesh_part *part = &mesh->parts[p];
-        for (size_t i = part->first_index; i < (size_t)part->first_index + part->index_count; i++) {
-            uint32_t vertex = mesh->indices[i];
-            parts[i / 3] = (uint32_t)p;
-            uvs[vertex] = glms_vec2_scale(mesh->uvs[vertex], part->uv_metres);
-        }
+        uv_metres[p] = part->uv_metres;
+        for (size_t t = 0; t < part->index_count / 3; t++)
+            parts[part->first_index / 3 + t] = (uint32_t)p;
     }
 }
 
-static bool decimate(const tl_mesh *mesh, const uint32_t *weld, struct tl_decimated *out)
+struct vertex_use {
+    uint32_t place;
+    vec2s uv;
+    uint32_t vertex;
+};
+
+static int compare_uses(const void *a, const void *b)
 {
+    const struct vertex_use *p = a, *q = b;
+    if (p->place != q->place)
+        return p->place > q->place ? 1 : -1;
+    int order = memcmp(&p->uv, &q->uv, sizeof p->uv);
+    return order ? order : (p->vertex > q->vertex) - (p->vertex < q->vertex);
+}
+
+static bool is_bound_alike(const tl_rig *rig, uint32_t a, uint32_t b)
+{
+    return !rig || (memcmp(&rig->influences[a], &rig->influences[b], sizeof *rig->influences) == 0 &&
+                    memcmp(&rig->local[a], &rig->local[b], sizeof *rig->local) == 0);
+}
+
+/* Corners [index_count] of all triangles, one vertex for those that differ in their normals only. A body's
+ * normals are recomputed for each frame from its places, so that such a split is no seam, and a scan with a
+ * normal for each face would be nothing but seams. */
+static uint32_t *join_split_normals(const tl_model *model, const uint32_t *weld)
+{
+    const tl_mesh *mesh = &model->mesh;
+    struct vertex_use *uses = tl_alloc(mesh->vertex_count, sizeof *uses);
+    uint32_t *firsts = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
+    uint32_t *corners = TL_NEW_ARRAY(uint32_t, mesh->index_count);
+    for (uint32_t i = 0; i < mesh->vertex_count; i++)
+        uses[i] = (struct vertex_use){weld[i], mesh->uvs[i], i};
+    qsort(uses, mesh->vertex_count, sizeof *uses, compare_uses);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const struct vertex_use *use = &uses[i], *last = i > 0 ? &uses[i - 1] : use;
+        bool joins = i > 0 && last->place == use->place && memcmp(&last->uv, &use->uv, sizeof use->uv) == 0 &&
+                     is_bound_alike(model->rig, firsts[last->vertex], use->vertex);
+        firsts[use->vertex] = joins ? firsts[last->vertex] : use->vertex;
+    }
+    for (size_t i = 0; i < mesh->index_count; i++)
+        corners[i] = firsts[mesh->indices[i]];
+    free(uses);
+    free(firsts);
+    return corners;
+}
+
+static bool decimate(const tl_model *model, const uint32_t *weld, struct tl_decimated *out)
+{
+    const tl_mesh *mesh = &model->mesh;
     size_t triangles = mesh->index_count / 3;
+    uint32_t *corners = join_split_normals(model, weld);
     uint32_t *parts = TL_NEW_ARRAY(uint32_t, triangles);
-    vec2s *uvs = TL_NEW_ARRAY(vec2s, mesh->vertex_count);
+    float *uv_metres = TL_NEW_ARRAY(float, mesh->part_count);
     struct tl_progress progress = tl_progress_begin("simplifying the body");
-    describe_parts(mesh, parts, uvs);
+    describe_parts(mesh, parts, uv_metres);
     const struct tl_decimate_source source = {
         .vertex_count = mesh->vertex_count,
         .triangle_count = triangles,
         .positions = (const float(*)[3])mesh->positions,
-        .uvs = (const float(*)[2])uvs,
+        .uvs = (const float(*)[2])mesh->uvs,
         .weld = weld,
-        .triangles = (const uint32_t(*)[3])mesh->indices,
+        .triangles = (const uint32_t(*)[3])corners,
         .parts = parts,
+        .uv_metres = uv_metres,
         .triangle_target = TL_SIMPLIFY_TARGET,
         .distance_max_m = TL_SIMPLIFY_DISTANCE_M,
         .uv_max_m = TL_SIMPLIFY_UV_M,
@@ -51,8 +98,9 @@ static bool decimate(const tl_mesh *mesh, const uint32_t *weld, struct tl_decima
     };
     bool made = tl_decimate(&source, out);
     tl_progress_end(&progress);
+    free(corners);
     free(parts);
-    free(uvs);
+    free(uv_metres);
     return made;
 }
 
@@ -161,7 +209,7 @@ struct tl_simplified tl_simplify_model(tl_model *model, const uint32_t *weld)
     size_t before = model->mesh.index_count / 3;
     struct tl_simplified report = {before, before, 0};
     struct tl_decimated decimated;
-    if (before <= TL_SIMPLIFY_ABOVE || !decimate(&model->mesh, weld, &decimated))
+    if (before <= TL_SIMPLIFY_ABOVE || !decimate(model, weld, &decimated))
         return report;
     if (decimated.triangle_count < before - before / 4) {
         report = (struct tl_simplified){before, decimated.triangle_count, decimated.distance_m};

@@ -2,8 +2,10 @@
  * as long to draw, because light is computed at each vertex.
  *
  * Vertices are removed, none is moved (assets/halfmesh/decimate.h): those that stay keep their normals, UVs,
- * skin weights and morph offsets. Seams, parts and borders stay within the same distance. Distances are those
- * of the rest pose. Metres. */
+ * skin weights and morph offsets. Seams of UVs, sides between parts and borders stay within the same
+ * distance. Vertices of one place that differ in their normals only become one: a body's normals are
+ * recomputed from its places. Distances are those of the rest pose; where a skin bends or stretches the body
+ * they grow with it. Metres. */
 #ifndef TOILE_ASSETS_SIMPLIFY_SIMPLIFY_H
 #define TOILE_ASSETS_SIMPLIFY_SIMPLIFY_H
 
