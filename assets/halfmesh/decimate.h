@@ -33,7 +33,8 @@ struct tl_decimate_source {
     const float *uv_metres;         /* [part] metres per UV unit; 0: its UVs do not count */
     size_t triangle_target;         /* collapses end here, or where no further one is allowed */
     double distance_max_m, uv_max_m;
-    void (*progress)(void *user, double share); /* called every few milliseconds, or NULL */
+    /* Called several times a second, or NULL; false ends the collapses. */
+    bool (*progress)(void *user, double share);
     void *user;
 };
 

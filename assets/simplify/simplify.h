@@ -27,12 +27,12 @@ struct tl_simplified {
 };
 
 /* Simplifies a model of more than TL_SIMPLIFY_ABOVE triangles, and leaves it as it is when a quarter of its
- * triangles cannot be spared: loose triangles, or vertices that are all split. `weld` [mesh.vertex_count]
- * numbers places, below vertex_count, equal for vertices at one place. Points keep their numbers in the file.
- * Shows progress: 760,000 triangles take two seconds.
+ * triangles cannot be spared: loose triangles, or UVs that are all split. `weld` [mesh.vertex_count] numbers
+ * places, below vertex_count, equal for vertices at one place. Points keep their numbers in the file. Shows
+ * progress: 760,000 triangles take three seconds of one core. An interrupt ends it early.
  *
- * Errors: none; out of memory ends the program. Lifetime: the model stays the caller's; its arrays are
- * replaced. Threads: one per model. */
+ * Errors: none; where the memory is not allowed the model stays as it is, with a line in the log. Lifetime:
+ * the model stays the caller's; its arrays are replaced. Threads: one per model. */
 struct tl_simplified tl_simplify_model(tl_model *model, const uint32_t *weld);
 
 /* "body.ply: 760000 triangles drawn as 64000, within 0.21 mm"; NULL when it is as it was. New string. */
