@@ -34,8 +34,8 @@ static void report_line(char *line)
     free(line);
 }
 
-/* The option's up axis, or the one that the geometry shows. A recorded motion, or a rig, moves vertices in
- * the file's own axes: such models are not turned unless they are told to. */
+/* The option's up axis, or the one that the geometry shows, which is logged. A recorded motion, or a rig,
+ * moves vertices in the file's own axes: such models are not turned unless they are told to. */
 static bool is_z_up(const tl_model *model, int up, bool moves, const char *option)
 {
     if (up != TL_UP_AUTO || moves)
@@ -64,13 +64,15 @@ static bool needs_limbs(const char *garment)
 }
 
 /* Simplifies a heavy body that wears a garment. What is shown alone is shown as its file has it. */
-static void simplify_avatar(const struct tl_settings *settings, tl_model *model)
+static void simplify_avatar(const struct tl_settings *settings, tl_avatar *avatar)
 {
+    tl_model *model = &avatar->model;
     if (settings->scene.body_detail == TL_BODY_FULL || strcmp(settings->scene.garment, "none") == 0)
         return;
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
     tl_weld_positions(model->mesh.positions, model->mesh.vertex_count, weld);
     const struct tl_simplified simplified = tl_simplify_model(model, weld);
+    avatar->simplified = simplified.after < simplified.before;
     report_line(tl_simplified_describe(model->name, &simplified));
     free(weld);
 }
@@ -94,7 +96,18 @@ static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_e
         tl_avatar_release(out);
         return false;
     }
-    simplify_avatar(settings, &out->model);
+    simplify_avatar(settings, out);
+    return true;
+}
+
+bool tl_scene_load_whole_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error)
+{
+    const struct tl_scene_params *scene = &settings->scene;
+    if (!tl_avatar_load_in(tl_settings_avatar(scene), (enum tl_units)scene->avatar_units, out, error))
+        return false;
+    bool turns = scene->avatar_up == TL_UP_AUTO && !out->model.rig && out->model.units.z_up;
+    const struct tl_placing placing = {.z_up = turns || scene->avatar_up == TL_UP_Z, .scale = 1};
+    tl_placing_apply(&placing, &out->model.mesh);
     return true;
 }
 

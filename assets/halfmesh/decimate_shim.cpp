@@ -30,7 +30,7 @@ constexpr int NONE = -1;
 
 /* New edges may be this many times as long as the sides of equal triangles of the target's number: light is
  * computed at vertices, and a shadow on a flat back is as sharp as they are close. */
-constexpr double LONGEST = 2;
+constexpr double LONGEST = 1.6;
 
 /* A collapse costs as much as a mean distance of this share of its longest new edge, where the surface is
  * flatter than that: there it keeps vertices evenly spaced. */
