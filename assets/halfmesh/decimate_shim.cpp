@@ -42,6 +42,9 @@ constexpr double TURN_COS = 0.7;
 /* 1: an equilateral triangle, 0: a line. New triangles are no worse than this, or than the worst before. */
 constexpr double SHAPE = 0.25;
 
+/* The share of the time that passes before the first collapse. */
+constexpr double BUILDING = 0.3;
+
 /* A vertex of the mesh: a place, or one that a refused face has for its own. */
 struct Node {
     Vec position;
@@ -603,8 +606,9 @@ void decimate(Decimation &work)
         for (size_t i = 0; i < work.due.size() && work.triangles > source.triangle_target; i++)
             if (work.due[i] <= affordable)
                 take_turn(work, static_cast<int>(i), affordable, moved);
-        double share =
+        double collapsed =
             static_cast<double>(first - work.triangles) / static_cast<double>(first - source.triangle_target);
+        double share = BUILDING + (1 - BUILDING) * collapsed;
         if (source.progress && !source.progress(source.user, share))
             break;
     }
