@@ -2,6 +2,7 @@
 #include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/session.h"
+#include "app/scene/whole_body.h"
 #include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
 #include "config/file.h"
@@ -67,9 +68,15 @@ static bool export_frame(tl_session *session, const struct tl_arguments *argumen
     if (garment)
         garment->positions = positions = positions_in_file(session, garment);
     bool is_glb = tl_path_has_extension(arguments->output, "glb");
+    struct tl_whole_body body;
+    if (!tl_whole_body_load(session, &body, is_glb ? surfaces : NULL, error)) {
+        free(positions);
+        return false;
+    }
     bool written = is_glb
                        ? tl_model_export_glb(arguments->output, surfaces, frame.surface_count, error)
                        : tl_model_export_obj(arguments->output, tl_session_garment(session), garment, error);
+    tl_whole_body_release(&body);
     free(positions);
     return written;
 }

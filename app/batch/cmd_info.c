@@ -9,7 +9,9 @@
 #include "assets/model.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern_place.h"
+#include "assets/simplify/simplify.h"
 #include "cloth/cloth.h"
+#include "cloth/mesh/topology.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -177,6 +179,20 @@ static void describe_pins(cJSON *object, const tl_model *model)
         cJSON_AddNumberToObject(colours, tl_pin_colour_names[TL_PIN_RED + channel], (double)painted[channel]);
 }
 
+/* What a heavy model is as an avatar; simplifies it. Panels that were sewn are no body. */
+static void describe_simplified(cJSON *object, tl_model *model)
+{
+    if (model->mesh.index_count / 3 <= TL_SIMPLIFY_ABOVE || model->stitch_count > 0)
+        return;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
+    tl_weld_positions(model->mesh.positions, model->mesh.vertex_count, weld);
+    const struct tl_simplified simplified = tl_simplify_model(model, weld);
+    char *line = tl_simplified_describe(model->name, &simplified);
+    cJSON_AddStringToObject(object, "as_avatar", line ? line : "cannot be simplified: drawn as it is");
+    free(line);
+    free(weld);
+}
+
 static cJSON *describe_model(tl_model *model, tl_audit *audit)
 {
     cJSON *object = cJSON_CreateObject();
@@ -206,6 +222,7 @@ static cJSON *describe_model(tl_model *model, tl_audit *audit)
     describe_notes(object, "defects", model->defects, model->defect_count);
     describe_notes(object, "approximated", model->approximated, model->approximated_count);
     describe_notes(object, "ignored", model->ignored, model->ignored_count);
+    describe_simplified(object, model);
     return object;
 }
 

@@ -9,8 +9,10 @@
 #include "assets/pattern/pattern.h"
 #include "assets/pattern/pattern_worn.h"
 #include "assets/refine.h"
+#include "assets/simplify/simplify.h"
 #include "assets/stitches/stitches.h"
 #include "cloth/contact/collider.h"
+#include "cloth/mesh/topology.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -32,8 +34,8 @@ static void report_line(char *line)
     free(line);
 }
 
-/* The option's up axis, or the one that the geometry shows. A recorded motion, or a rig, moves vertices in
- * the file's own axes: such models are not turned unless they are told to. */
+/* The option's up axis, or the one that the geometry shows, which is logged. A recorded motion, or a rig,
+ * moves vertices in the file's own axes: such models are not turned unless they are told to. */
 static bool is_z_up(const tl_model *model, int up, bool moves, const char *option)
 {
     if (up != TL_UP_AUTO || moves)
@@ -61,6 +63,20 @@ static bool needs_limbs(const char *garment)
     return tl_garment_is_for_figure(garment) || tl_pattern_is_file(garment);
 }
 
+/* Simplifies a heavy body that wears a garment. What is shown alone is shown as its file has it. */
+static void simplify_avatar(const struct tl_settings *settings, tl_avatar *avatar)
+{
+    tl_model *model = &avatar->model;
+    if (settings->scene.body_detail == TL_BODY_FULL || strcmp(settings->scene.garment, "none") == 0)
+        return;
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, model->mesh.vertex_count);
+    tl_weld_positions(model->mesh.positions, model->mesh.vertex_count, weld);
+    const struct tl_simplified simplified = tl_simplify_model(model, weld);
+    avatar->simplified = simplified.after < simplified.before;
+    report_line(tl_simplified_describe(model->name, &simplified));
+    free(weld);
+}
+
 /* Makes or reads the avatar that the scene names, which is not "none". */
 static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error)
 {
@@ -76,10 +92,23 @@ static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_e
     report_line(tl_units_describe(out->model.name, &out->model.units, "scene.avatar_units"));
     for (size_t i = 0; i < out->model.defect_count; i++)
         tl_info("%s: %s", out->model.name, out->model.defects[i]);
-    if (place_avatar(settings, out, error))
-        return true;
-    tl_avatar_release(out);
-    return false;
+    if (!place_avatar(settings, out, error)) {
+        tl_avatar_release(out);
+        return false;
+    }
+    simplify_avatar(settings, out);
+    return true;
+}
+
+bool tl_scene_load_whole_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error)
+{
+    const struct tl_scene_params *scene = &settings->scene;
+    if (!tl_avatar_load_in(tl_settings_avatar(scene), (enum tl_units)scene->avatar_units, out, error))
+        return false;
+    bool turns = scene->avatar_up == TL_UP_AUTO && !out->model.rig && out->model.units.z_up;
+    const struct tl_placing placing = {.z_up = turns || scene->avatar_up == TL_UP_Z, .scale = 1};
+    tl_placing_apply(&placing, &out->model.mesh);
+    return true;
 }
 
 /* Finds the clip that the scene names; -1: the rest pose. */

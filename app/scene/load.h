@@ -16,6 +16,10 @@ bool tl_scene_plays_motion(const struct tl_settings *settings);
  * Lifetime: the caller releases and frees *out. */
 bool tl_scene_load_avatar(const struct tl_settings *settings, tl_avatar **out, int *clip, tl_error *error);
 
+/* Loads again, and places, the file of an avatar that was simplified: with all of its vertices. Logs nothing.
+ * Errors: as above. Lifetime: the caller releases *out. */
+bool tl_scene_load_whole_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error);
+
 /* How a garment came to stand where it does. */
 struct tl_scene_standing {
     float lifted_m; /* onto the ground */

@@ -14,6 +14,8 @@
 #include "render/local/lamp.h"
 #include "render/renderer.h"
 
+/* Whether a heavy body that wears a garment is simplified. */
+enum tl_body_detail { TL_BODY_AUTO, TL_BODY_FULL };
 enum tl_drape_choice { TL_DRAPE_AUTO, TL_DRAPE_AUTHORED, TL_DRAPE_SETTLE };
 
 struct tl_scene_params {          /* table "scene": what to show; names of built-ins or paths */
@@ -21,6 +23,7 @@ struct tl_scene_params {          /* table "scene": what to show; names of built
     char avatar[TL_STRING_SIZE];  /* "auto", "form", "none", or a glTF or OBJ file */
     int units, avatar_units;      /* enum tl_units: of their files */
     int drape;                    /* enum tl_drape_choice */
+    int body_detail;              /* enum tl_body_detail */
     bool refit;                   /* built-in garments cut for the form are scaled to the avatar */
     int up, avatar_up;            /* enum tl_up: of their files */
     float turn_deg, scale, move_m[3];    /* places the garment's file */
