@@ -82,10 +82,12 @@ static bool measure_error(const struct tl_experiment *experiment, const struct t
     return true;
 }
 
+/* The page has all of the text. */
 static char *exact_head(const struct tl_experiment *experiment)
 {
+    const char *text = experiment->exact_text;
     return experiment->exact == TL_EXACT_NONE ? tl_copy_string("for comparison")
-                                              : tl_format("exact: %s", experiment->exact_text);
+                                              : tl_format("exact: %.*s", (int)strcspn(text, ";"), text);
 }
 
 static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)

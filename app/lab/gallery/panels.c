@@ -7,12 +7,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#define PAPER  0xffffffu
-#define INK    0x202428u
-#define OPEN   0xd4d6d8u /* where neither picture shows anything */
-#define FRAME  0x18b4ffu /* around what is magnified */
-#define MARGIN 6
-#define BAND   (TL_CANVAS_LETTER + 2 * MARGIN) /* heads, and scales below rows */
+#define PAPER   0xffffffu
+#define INK     0x202428u
+#define OPEN    0xd4d6d8u /* where neither picture shows anything */
+#define FRAME   0x18b4ffu /* around what is magnified */
+#define MARGIN  6
+#define BAND    (TL_CANVAS_LETTER + 2 * MARGIN) /* a line of text, or a scale below a row */
+#define HEADS   (BAND + LEADING)                /* of two lines */
+#define LEADING (TL_CANVAS_LETTER + MARGIN)
 
 /* What is magnified: a square of 1/ZOOM_PART of the picture's side, ZOOM times. Exact and technique stand one
  * above the other, so that both together are as high as the picture. */
@@ -164,6 +166,15 @@ static void draw_head(tl_image *canvas, int x, int y, int width, const char *tex
     tl_text_draw(canvas, x + MARGIN, y + MARGIN, &style, text);
 }
 
+/* In two lines where one is too short. */
+static void draw_column_head(tl_image *canvas, int x, int width, const char *text)
+{
+    const struct tl_text_style style = {
+        .size = TL_CANVAS_LETTER, .colour = INK, .width = width - 2 * MARGIN, .lines = 2, .leading = LEADING};
+    int above = tl_text_measure(&style, text).lines < 2 ? LEADING : 0; /* heads end above their pictures */
+    tl_text_draw(canvas, x + MARGIN, above + MARGIN, &style, text);
+}
+
 /* A bar of the scale's colours between its ends in numbers, with their unit. */
 static void draw_scale(tl_image *canvas, int x, int y, int width, double end)
 {
@@ -202,7 +213,7 @@ static void draw_row(tl_image *canvas, const struct tl_panel_row *row, int side,
 void tl_panels_size(int count, int side, int *width, int *height)
 {
     *width = 3 * side + side / ZOOM_PART * ZOOM;
-    *height = BAND + count * (side + BAND);
+    *height = HEADS + count * (side + BAND);
 }
 
 tl_image tl_panels_make(const struct tl_panel_row *rows, int count, int side, const char *exact,
@@ -211,12 +222,12 @@ tl_image tl_panels_make(const struct tl_panel_row *rows, int count, int side, co
     int width, height;
     tl_panels_size(count, side, &width, &height);
     tl_image canvas = tl_canvas_create(width, height, PAPER);
-    draw_head(&canvas, 0, 0, side, exact);
-    draw_head(&canvas, side, 0, side, tested);
-    draw_head(&canvas, 2 * side, 0, side, "their difference");
-    draw_head(&canvas, 3 * side, 0, width - 3 * side, "4 x larger");
+    draw_column_head(&canvas, 0, side, exact);
+    draw_column_head(&canvas, side, side, tested);
+    draw_column_head(&canvas, 2 * side, side, "their difference");
+    draw_column_head(&canvas, 3 * side, width - 3 * side, "4 x larger");
     for (int i = 0; i < count; i++)
-        draw_row(&canvas, &rows[i], side, BAND + i * (side + BAND), end);
+        draw_row(&canvas, &rows[i], side, HEADS + i * (side + BAND), end);
     return canvas;
 }
 
