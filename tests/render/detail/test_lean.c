@@ -160,10 +160,10 @@ static const char *const path_names[] = {"samples", "vertices", "reference", "la
 #define NEAR_M    0.1f
 #define FAR_M     10.0f
 
-/* Where the cloth is seen from, and whether its UVs are mirrored. */
+/* Where the cloth is seen from, whether its UVs are mirrored, and whether its threads are turned. */
 struct pose {
     const char *name;
-    bool is_back, is_mirrored;
+    bool is_back, is_mirrored, is_turned;
 };
 static int lit_diagonal;
 static bool lit_behind;
@@ -202,7 +202,7 @@ static void be_grooved(struct test_scene *scene, const struct pose *pose)
     }
     tl_material *cloth = test_scene_add(
         scene, test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.1f, 40));
-    *cloth = cloth_of(WIDTH, WIDTH, 0);
+    *cloth = pose->is_turned ? cloth_of(0.3f, 0.12f, 0.6f) : cloth_of(WIDTH, WIDTH, 0);
     cloth->weave = &scene->weave;
     tl_mesh *mesh = &scene->shapes[0].mesh;
     for (size_t i = 0; pose->is_mirrored && i < mesh->vertex_count; i++)
@@ -274,17 +274,21 @@ static double highlight_error(tl_renderer *renderer, enum path path, const struc
     return difference / all;
 }
 
-/* By every path, on both sides and with UVs of both hands. */
+/* By every path, on both sides, with UVs of both hands and with threads that are turned. Measured: 5 to 9 %,
+ * and 5 to 13 % of turned threads, whose broad lobes the fan approximates. Without covariance 21 to 34 %;
+ * with the other hand 52 % of turned threads at samples, 63 % of all else under lamps. */
 static void test_far_grooves_are_the_mean_of_near(void **state)
 {
     struct test_device *device = *state;
-    static const struct pose poses[] = {{"front", false, false},
-                                        {"back", true, false},
-                                        {"mirrored", false, true},
-                                        {"mirrored back", true, true}};
+    static const struct pose poses[] = {{"front", false, false, false},
+                                        {"back", true, false, false},
+                                        {"mirrored", false, true, false},
+                                        {"turned, mirrored", false, true, true},
+                                        {"turned, mirrored back", true, true, true}};
     for (enum path path = 0; path < PATHS; path++)
         for (size_t i = 0; i < TL_COUNT(poses); i++)
-            assert_true(highlight_error(device->renderer, path, &poses[i]) < 0.11); /* measured: 5 to 9 % */
+            assert_true(highlight_error(device->renderer, path, &poses[i]) <
+                        (poses[i].is_turned ? 0.15 : 0.11));
 }
 
 int main(void)
