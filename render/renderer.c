@@ -54,7 +54,8 @@ static uint64_t map_texel_bytes(const struct tl_light_params *light)
     if (light->method == TL_METHOD_UNSHADOWED || light->method == TL_METHOD_MAPS ||
         light->visibility == TL_VISIBILITY_RAYS)
         return 0;
-    return light->visibility == TL_VISIBILITY_DEPTH ? TL_SHADOW_TEXEL_BYTES / 2 : TL_SHADOW_TEXEL_BYTES;
+    bool halves = light->visibility == TL_VISIBILITY_DEPTH || light->moments == TL_MOMENTS_HALF;
+    return halves ? TL_SHADOW_TEXEL_BYTES / 2 : TL_SHADOW_TEXEL_BYTES;
 }
 
 static bool check_light_size(const struct tl_render_settings *settings, uint64_t *bytes, tl_error *error)

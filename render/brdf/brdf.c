@@ -19,12 +19,6 @@ static float square_of(float exponent)
     return 2 / (4 * exponent + 2);
 }
 
-/* A width by its square without maps and bumps, and what these add to it. */
-static float width_of(float square, float widening)
-{
-    return sqrtf(tl_facet_square(square, finite_or(widening, 0)));
-}
-
 static float given_square(float width, float otherwise)
 {
     return finite_or(width, 0) > 0 ? width * width : otherwise;
@@ -34,29 +28,51 @@ struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossines
 {
     float own = square_of(tl_lobe_exponent(finite_or(material->glossiness, 0)));
     float wider = square_of(tl_lobe_exponent(finite_or(glossiness, 0))) - own;
-    const float both[2] = {wider, wider};
-    return tl_brdf_bumped(material, f0, glossiness, both);
+    const float both[3] = {wider, wider, 0};
+    return tl_brdf_bumped(material, f0, glossiness, 1, both);
 }
 
-/* The spreads are along u and v, the widths along the threads. */
-static void widen(struct tl_gloss *gloss, float own, float by_glossiness, const float widening[2])
+/* The spreads are along u and v, the widths along the threads, which are turned towards v. */
+static void widen(struct tl_brdf *brdf, float own, float by_glossiness, float handedness,
+                  const float widening[3])
 {
-    float c = cosf(gloss->rotation), s = sinf(gloss->rotation);
+    struct tl_gloss *gloss = &brdf->gloss;
+    float c = cosf(gloss->rotation), s = copysignf(1, handedness) * sinf(gloss->rotation);
+    float u = finite_or(widening[0], 0), v = finite_or(widening[1], 0), uv = finite_or(widening[2], 0);
     bool is_ward = gloss->model == TL_REFLECT_WARD;
-    float weft = is_ward ? c * c * widening[0] + s * s * widening[1] : by_glossiness;
-    float warp = is_ward ? s * s * widening[0] + c * c * widening[1] : by_glossiness;
-    gloss->width_weft = width_of(given_square(gloss->width_weft, own), weft);
-    gloss->width_warp = width_of(given_square(gloss->width_warp, own), warp);
+    float weft = is_ward ? c * c * u + s * s * v + 2 * c * s * uv : by_glossiness;
+    float warp = is_ward ? s * s * u + c * c * v - 2 * c * s * uv : by_glossiness;
+    float product = is_ward ? c * s * (v - u) + (c * c - s * s) * uv : 0;
+    weft = tl_facet_square(given_square(gloss->width_weft, own), finite_or(weft, 0));
+    warp = tl_facet_square(given_square(gloss->width_warp, own), finite_or(warp, 0));
+    product = tl_facet_product(weft, warp, product);
+    struct tl_facet_axes axes = {{weft, warp}, 1, 0};
+    if (product != 0)
+        axes = tl_facet_axes_of(weft, warp, product);
+    gloss->width_weft = sqrtf(axes.square[0]);
+    gloss->width_warp = sqrtf(axes.square[1]);
+    brdf->turn = axes.sine;
 }
 
-struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness,
-                              const float widening[2])
+struct tl_brdf_frame tl_brdf_own_frame(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame)
+{
+    if (brdf->turn == 0)
+        return *frame;
+    const vec3s t = frame->tangent, b = frame->bitangent;
+    const float sine = brdf->turn, cosine = sqrtf(1 - sine * sine);
+    return (struct tl_brdf_frame){frame->normal,
+                                  glms_vec3_add(glms_vec3_scale(t, cosine), glms_vec3_scale(b, sine)),
+                                  glms_vec3_sub(glms_vec3_scale(b, cosine), glms_vec3_scale(t, sine))};
+}
+
+struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness, float handedness,
+                              const float widening[3])
 {
     struct tl_brdf brdf = {
         .gloss = material->gloss, .f0 = f0, .exponent = tl_lobe_exponent(finite_or(glossiness, 0))};
     struct tl_gloss *gloss = &brdf.gloss;
     float own = square_of(tl_lobe_exponent(finite_or(material->glossiness, 0)));
-    widen(gloss, own, square_of(brdf.exponent) - own, widening);
+    widen(&brdf, own, square_of(brdf.exponent) - own, handedness, widening);
     gloss->index = gloss->index > 0 ? finite_or(gloss->index, 1) : 1;
     gloss->extinction = fmaxf(finite_or(gloss->extinction, 0), 0);
     for (int c = 0; c < 3; c++)
@@ -66,7 +82,7 @@ struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float gloss
 
 /* A thread's lobe is as wide as its own widths say, and widened as the surface's lobe is. */
 static struct tl_brdf thread_of(const tl_material *material, const struct tl_thread *thread, vec3s f0,
-                                vec3s kd, float glossiness, const float widening[2])
+                                vec3s kd, float glossiness, float handedness, const float widening[3])
 {
     struct tl_brdf brdf = {.gloss = {.model = TL_REFLECT_WARD,
                                      .ward = TL_WARD_BOUNDED,
@@ -79,20 +95,20 @@ static struct tl_brdf thread_of(const tl_material *material, const struct tl_thr
                            .is_inside = true,
                            .colour = glms_vec3_mul(thread->ratio, kd)};
     float own = square_of(tl_lobe_exponent(finite_or(material->glossiness, 0)));
-    widen(&brdf.gloss, own, 0, widening);
+    widen(&brdf, own, 0, handedness, widening);
     for (int c = 0; c < 3; c++)
         brdf.colour.raw[c] = fminf(fmaxf(finite_or(brdf.colour.raw[c], 0), 0), 1);
     return brdf;
 }
 
 struct tl_brdf_sum tl_brdf_sum_of(const tl_material *material, vec3s f0, vec3s kd, float glossiness,
-                                  const float widening[2])
+                                  float handedness, const float widening[3])
 {
     struct tl_brdf_sum sum = {.count = 1};
-    sum.items[0] = tl_brdf_bumped(material, f0, glossiness, widening);
+    sum.items[0] = tl_brdf_bumped(material, f0, glossiness, handedness, widening);
     for (int i = 0; i < material->thread_count; i++)
         sum.items[sum.count++] =
-            thread_of(material, &material->threads[i], sum.items[0].f0, kd, glossiness, widening);
+            thread_of(material, &material->threads[i], sum.items[0].f0, kd, glossiness, handedness, widening);
     return sum;
 }
 
@@ -254,7 +270,8 @@ vec3s tl_brdf_fresnel(const struct tl_brdf *brdf, float cosine)
 
 vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
 {
-    struct tl_brdf_angles at = tl_brdf_angles_of(frame, l, v);
+    const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
+    struct tl_brdf_angles at = tl_brdf_angles_of(&own, l, v);
     if (!(at.cos_a > 0 && at.cos_b > 0 && at.h.z > 0))
         return (vec3s){{0, 0, 0}};
     bool by_view = brdf->gloss.model == TL_REFLECT_PHONG || brdf->gloss.model == TL_REFLECT_BANKS;

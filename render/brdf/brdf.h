@@ -44,6 +44,8 @@ struct tl_brdf {
     struct tl_gloss gloss; /* with both widths resolved: neither is 0 */
     vec3s f0;
     float exponent; /* s = 1 / (1 - g) */
+    float turn; /* WARD: sine of the angle, at most 45 degrees, from the frame's tangent towards its bitangent
+                   by which the axes of the widths are turned: where slopes along both are correlated */
     bool is_inside; /* light that has been inside a thread: `colour` (1 - F) for F */
     vec3s colour;
 };
@@ -54,9 +56,13 @@ struct tl_brdf {
  * add. Widths are clamped to [1e-3, 1]. Inputs that are not finite become 0. */
 struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossiness);
 /* The same where unresolved bumps have different spreads along u and v: WARD's squared widths change by
- * `widening` (tl_bump_statistics_widening) instead. */
-struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness,
-                              const float widening[2]);
+ * `widening` (tl_bump_statistics_widening, _shear) along u, along v and in their product instead. They are
+ * the entries of a symmetric matrix, whose axes the widths then follow [Olano and Baker 2010]. `handedness`:
+ * of the surface's tangents, which orients a rotated material's threads; its sign counts. */
+struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness, float handedness,
+                              const float widening[3]);
+/* The frame in which a model's widths lie: `frame`, turned by brdf->turn. */
+struct tl_brdf_frame tl_brdf_own_frame(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame);
 
 /* The gloss of cloth of which light comes back from the threads' surface, white, and from their inside,
  * coloured [Sadeghi, Bisker, De Deken and Jensen 2013 measure both; their cylinders are not used here]:
@@ -74,7 +80,7 @@ struct tl_brdf_sum {
 };
 /* Of a point where maps give f0, the diffuse colour kd, glossiness and widening (tl_brdf_bumped). */
 struct tl_brdf_sum tl_brdf_sum_of(const tl_material *material, vec3s f0, vec3s kd, float glossiness,
-                                  const float widening[2]);
+                                  float handedness, const float widening[3]);
 /* f_r cos a of all of them. */
 vec3s tl_brdf_sum_gloss(const struct tl_brdf_sum *sum, const struct tl_brdf_frame *frame, vec3s l, vec3s v);
 

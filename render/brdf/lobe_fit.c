@@ -141,6 +141,16 @@ static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
     return fan.count;
 }
 
+/* The fit works in the frame of the widths. */
+static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
+                      struct tl_fitted_lobe *lobes)
+{
+    const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
+    struct tl_brdf straight = *brdf;
+    straight.turn = 0;
+    return fit_facets(&straight, &own, v, max_count, lobes);
+}
+
 /* The albedo of GGX facets: the mean of F G / G1 over the facets that the viewer sees, which are sampled by
  * Heitz's map from a disc [2018, "Sampling the GGX Distribution of Visible Normals"]. Both halves of the disc
  * show the same; within 2 % of the integral (test_lobe_fit). */
@@ -305,7 +315,7 @@ int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
         return fit_threads(brdf, frame, v, max_count, lobes);
     default:
         return is_ggx(brdf) ? fit_ggx(brdf, frame, v, max_count, lobes)
-                            : fit_facets(brdf, frame, v, max_count, lobes);
+                            : fit_turned(brdf, frame, v, max_count, lobes);
     }
 }
 
@@ -323,12 +333,16 @@ static bool are_lanes(const struct tl_brdf_sum *sum)
 }
 
 /* Lane i is gloss i of the sum; idle lanes repeat the first. */
-TL_CLONES static void fit_lanes(const struct tl_brdf_sum *sum, vec3s local, int max_count,
+TL_CLONES static void fit_lanes(const struct tl_brdf_sum *sum, vec3s viewer, int max_count,
                                 struct tl_ward_lanes *ward)
 {
     ward->gloss = &sum->items[0].gloss;
     for (int i = 0; i < TL_LANES; i++) {
-        const struct tl_gloss *gloss = &sum->items[i < sum->count ? i : 0].gloss;
+        const struct tl_brdf *brdf = &sum->items[i < sum->count ? i : 0];
+        const struct tl_gloss *gloss = &brdf->gloss;
+        const float sine = brdf->turn, cosine = sqrtf(1 - sine * sine);
+        const vec3s local = {
+            {cosine * viewer.x + sine * viewer.y, cosine * viewer.y - sine * viewer.x, viewer.z}};
         for (int c = 0; c < 3; c++)
             ward->viewer[c][i] = local.raw[c];
         ward->square[0][i] = gloss->width_weft * gloss->width_weft;
@@ -342,6 +356,7 @@ TL_CLONES static void fit_lanes(const struct tl_brdf_sum *sum, vec3s local, int 
 static int take_lane(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                      const struct tl_ward_lanes *ward, int i, struct tl_fitted_lobe *lobes)
 {
+    const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
     const vec3s plain = tl_brdf_fresnel(brdf, 1), away = glms_vec3_sub(tl_brdf_fresnel(brdf, 0), plain);
     vec3s scale;
     for (int c = 0; c < 3; c++) {
@@ -355,9 +370,9 @@ static int take_lane(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
             continue;
         vec3s weight = glms_vec3_scale(plain, ward->plain[k][i]);
         weight = glms_vec3_muladds(away, ward->away[k][i], weight);
-        vec3s direction = glms_vec3_scale(frame->tangent, ward->local[k][0][i]);
-        direction = glms_vec3_muladds(frame->bitangent, ward->local[k][1][i], direction);
-        direction = glms_vec3_muladds(frame->normal, ward->local[k][2][i], direction);
+        vec3s direction = glms_vec3_scale(own.tangent, ward->local[k][0][i]);
+        direction = glms_vec3_muladds(own.bitangent, ward->local[k][1][i], direction);
+        direction = glms_vec3_muladds(own.normal, ward->local[k][2][i], direction);
         lobes[count++] = (struct tl_fitted_lobe){direction, ward->exponent[i], glms_vec3_mul(scale, weight)};
     }
     return count;

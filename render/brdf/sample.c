@@ -119,7 +119,8 @@ static float cone_pdf(const struct sampling_cone *cone, const struct tl_brdf_fra
 
 float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
 {
-    struct tl_brdf_angles at = tl_brdf_angles_of(frame, l, v);
+    const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
+    struct tl_brdf_angles at = tl_brdf_angles_of(&own, l, v);
     if (!(at.cos_a > 0 && at.cos_b > 0))
         return 0;
     if (brdf->gloss.model == TL_REFLECT_BANKS) {
@@ -149,7 +150,8 @@ vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
         l = sample_cone(&cone, frame, u1, u2);
     } else if (has_facets(brdf)) {
         vec3s h = sample_half_vector(brdf, u1, u2);
-        h = from_frame(frame, h.x, h.y, h.z);
+        const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
+        h = from_frame(&own, h.x, h.y, h.z);
         l = tl_brdf_mirror(h, v);
         if (glms_vec3_dot(h, v) <= 0)
             l = glms_vec3_negate(frame->normal);

@@ -82,6 +82,33 @@ TL_INLINE float tl_facet_square(float square, float widening)
     return tl_minf(tl_maxf(square + widening, narrowest * narrowest), 1);
 }
 
+/* The principal axes of facets whose slopes are correlated: squared widths along them, and the angle from x
+ * to the first of them, at most 45 degrees. */
+struct tl_facet_axes {
+    float square[2], cosine, sine;
+};
+
+/* The largest product of widths along x and y with which squared widths along both axes stay within those of
+ * tl_facet_square. */
+TL_INLINE float tl_facet_product(float weft, float warp, float product)
+{
+    const float narrowest = 1e-6f;
+    float limit = tl_minf((weft - narrowest) * (warp - narrowest), (1 - weft) * (1 - warp));
+    limit = sqrtf(tl_maxf(limit, 0));
+    return tl_minf(tl_maxf(product, -limit), limit);
+}
+
+/* The axes of the symmetric matrix with `weft` and `warp` on its diagonal and `product` off it, which
+ * tl_facet_product limits: the angle by Jacobi's rotation. */
+TL_INLINE struct tl_facet_axes tl_facet_axes_of(float weft, float warp, float product)
+{
+    float mean = (weft + warp) / 2, half = (weft - warp) / 2;
+    float off = sqrtf(half * half + product * product), safe = tl_maxf(off, 1e-20f);
+    float cosine = sqrtf((1 + tl_minf(fabsf(half) / safe, 1)) / 2), sine = product / (2 * safe * cosine);
+    float signed_off = half < 0 ? -off : off;
+    return (struct tl_facet_axes){{mean + signed_off, mean - signed_off}, cosine, half < 0 ? -sine : sine};
+}
+
 TL_INLINE float tl_slope_exponent(float variance)
 {
     return tl_maxf(1 / tl_maxf(variance, 1e-7f) - 1, 1);

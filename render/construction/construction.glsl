@@ -64,7 +64,7 @@ void sew(uint number, vec2 uv, vec2 across, vec2 down)
 Bumps sewn_bumps()
 {
     vec3 normal = normalize(vec3(-sewn.slope_x, -sewn.slope_y, 1.0));
-    vec2 spread = vec2(sewn.spread_x, sewn.spread_y);
+    vec3 spread = vec3(sewn.spread_x, sewn.spread_y, sewn.spread_xy);
     return Bumps(normal, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0)));
 }
 

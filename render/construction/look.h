@@ -38,7 +38,7 @@ static inline struct tl_bump_statistics tl_construction_bumps(const Construction
     vec3s normal = glms_vec3_normalize((vec3s){{-look->slope_x, -look->slope_y, 1}});
     return (struct tl_bump_statistics){
         .normal = normal,
-        .spread = {look->spread_x, look->spread_y},
+        .spread = {look->spread_x, look->spread_y, look->spread_xy},
         .length = sqrtf(tl_minf(tl_maxf(1 - look->spread_x - look->spread_y, 0.0025f), 1))};
 }
 

@@ -242,6 +242,17 @@ tl_image tl_bake_moments(const tl_image *normals)
     return moments;
 }
 
+tl_image tl_bake_cross_moments(const tl_image *normals)
+{
+    tl_image moments = tl_image_create(normals->width, normals->height, 1, TL_IMAGE_F32);
+    assert(normals->channels >= 3);
+    for (size_t i = 0; i < texel_count(normals); i++) {
+        vec3s n = unit_normal(normals, i);
+        tl_image_floats(&moments)[i] = n.x * n.y;
+    }
+    return moments;
+}
+
 static float mean_z(vec4s moments)
 {
     return sqrtf(fmaxf(1 - moments.z - moments.w, 0));

@@ -41,6 +41,9 @@ float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height
 /* The moments (x, y, x^2, y^2) of unit normals, F32 x4, from normals in F32 x3 or bytes. Averages of the
  * moments give the mean normal and its spread. */
 tl_image tl_bake_moments(const tl_image *normals);
+/* The mixed moment x y of unit normals, F32 x1: with the others it gives the covariance of slopes along u and
+ * v [Olano and Baker 2010]. */
+tl_image tl_bake_cross_moments(const tl_image *normals);
 /* The length of the mean normal, from averaged moments. */
 float tl_moments_length(vec4s moments);
 

@@ -25,8 +25,8 @@ const int DETAIL_CLAMP_U = 16, DETAIL_CLAMP_V = 32;
 
 layout(binding = 8) uniform sampler2D detail_heights;       // m
 layout(binding = 9) uniform sampler2DArray detail_horizons; // sines at DETAIL_ANGLES angles, four per layer; then those of the back
-layout(binding = 10) uniform sampler2D detail_own_moments;  // of the normal map: (x, y, x^2, y^2)
-layout(binding = 11) uniform sampler2D detail_weave_moments;
+layout(binding = 10) uniform sampler2DArray detail_own_moments; // of the normal map: (x, y), (x^2, y^2), (x y, 0)
+layout(binding = 11) uniform sampler2DArray detail_weave_moments;
 layout(binding = 12) uniform sampler2D detail_cones; // of the front and of the back
 
 bool has_detail(int map)
@@ -58,6 +58,19 @@ vec4 detail_texel(sampler2D map, vec2 uv)
     return textureGrad(map, detail_field_uv(uv), turned * unmoved_across, turned * unmoved_down);
 #else
     return texture(map, detail_field_uv(uv));
+#endif
+}
+
+// The same of a layer of a map.
+vec2 detail_layer(sampler2DArray map, vec2 uv, float layer)
+{
+#if defined(VERTEX_STAGE)
+    return textureLod(map, vec3(detail_field_uv(uv), layer), 0.0).xy;
+#elif defined(DETAIL_SHIFTED)
+    mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
+    return textureGrad(map, vec3(detail_field_uv(uv), layer), turned * unmoved_across, turned * unmoved_down).xy;
+#else
+    return texture(map, vec3(detail_field_uv(uv), layer)).xy;
 #endif
 }
 
@@ -272,19 +285,21 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
 
 // ---- Averaged normals ----
 
-// Statistics of averaged normals: mean tangent-space normal, variance of its slopes along x and y, length of the mean.
+// Statistics of averaged normals: mean tangent-space normal, variances of its slopes along x and y and their covariance,
+// length of the mean.
 struct Bumps {
     vec3 normal;
-    vec2 spread;
+    vec3 spread;
     float length;
 };
 
-// `scale`: of slopes along u and v.
-Bumps detail_bumps(vec4 moments, vec2 scale)
+// Of averages of (x, y), their squares and x y. `scale`: of slopes along u and v.
+Bumps detail_bumps(vec2 first, vec2 squares, float product, vec2 scale)
 {
-    float z = sqrt(max(1.0 - moments.z - moments.w, 0.0));
-    vec3 mean = vec3(scale * moments.xy, z);
-    vec2 spread = max(moments.zw - moments.xy * moments.xy, 0.0) * scale * scale;
+    float z = sqrt(max(1.0 - squares.x - squares.y, 0.0));
+    vec3 mean = vec3(scale * first, z);
+    vec2 variance = max(squares - first * first, 0.0) * scale * scale;
+    vec3 spread = vec3(variance, scale.x * scale.y * (product - first.x * first.y));
     return Bumps(mean, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0))); // neglecting the variance of z
 }
 
@@ -296,22 +311,25 @@ float detail_rough(float rough, Bumps bumps, vec3 view)
     return detail_widened(rough, variance, variance, 1.0);
 #elif DETAIL_MINIFY == DETAIL_LEAN
     float square = dot(view.xy, view.xy);
-    vec2 along = square > 1e-12 ? view.xy * view.xy / square : vec2(0.5);
-    return detail_widened(rough, dot(bumps.spread, along), dot(bumps.spread, along.yx), abs(view.z));
+    vec3 along = square > 1e-12 ? vec3(view.xy * view.xy, 2.0 * view.x * view.y) / square : vec3(0.5, 0.5, 0.0);
+    vec3 across = vec3(along.yx, -along.z);
+    return detail_widened(rough, dot(bumps.spread, along), dot(bumps.spread, across), abs(view.z));
 #else
     return rough;
 #endif
 }
 
-// What maps and averaged normals add to squared widths of facets along u and v.
-vec2 detail_widenings(float own_rough, float rough, Bumps bumps)
+// What maps and averaged normals add to squared widths of facets along u and v, and to the product of both: a symmetric
+// matrix.
+vec3 detail_widenings(float own_rough, float rough, Bumps bumps)
 {
 #if DETAIL_MINIFY == DETAIL_TOKSVIG
-    return vec2(detail_widening(own_rough, rough, detail_variance(bumps.length)));
+    return vec3(vec2(detail_widening(own_rough, rough, detail_variance(bumps.length))), 0.0);
 #elif DETAIL_MINIFY == DETAIL_LEAN
-    return vec2(detail_widening(own_rough, rough, bumps.spread.x), detail_widening(own_rough, rough, bumps.spread.y));
+    return vec3(detail_widening(own_rough, rough, bumps.spread.x), detail_widening(own_rough, rough, bumps.spread.y),
+                2.0 * bumps.spread.z);
 #else
-    return vec2(detail_widening(own_rough, rough, 0.0));
+    return vec3(vec2(detail_widening(own_rough, rough, 0.0)), 0.0);
 #endif
 }
 

@@ -73,15 +73,35 @@ static tl_texture upload_heights(tl_gpu *gpu, const tl_image *image)
  * of their size. */
 #define FLOAT_MOMENTS_SIDE 512
 
-static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals)
+/* Fills a layer with `count` channels of an image, the first being `first`. */
+static void fill_channels(const tl_texture *texture, int layer, const tl_image *image, int first, int count)
 {
+    tl_image some = tl_image_create(image->width, image->height, count, TL_IMAGE_F32);
+    const size_t texels = (size_t)image->width * (size_t)image->height, stride = (size_t)image->channels;
+    for (size_t i = 0; i < texels; i++)
+        memcpy(tl_image_floats(&some) + (size_t)count * i, tl_image_floats(image) + stride * i + first,
+               (size_t)count * sizeof(float));
+    tl_texture_fill(texture, layer, &some, false);
+    tl_image_release(&some);
+}
+
+/* Layers: (x, y), (x^2, y^2), and where it is read (x y, 0). */
+static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals, const struct tl_detail_params *params)
+{
+    const bool is_lean = params->minify == TL_DETAIL_MINIFY_LEAN;
     tl_image moments = tl_bake_moments(normals);
     int width = moments.width, height = moments.height;
-    GLenum format = width <= FLOAT_MOMENTS_SIDE && height <= FLOAT_MOMENTS_SIDE ? GL_RGBA32F : GL_RGBA16F;
-    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D, format, width, height, 1,
+    GLenum format = width <= FLOAT_MOMENTS_SIDE && height <= FLOAT_MOMENTS_SIDE ? GL_RG32F : GL_RG16F;
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, format, width, height, is_lean ? 3 : 2,
                                            tl_texture_full_levels(width, height));
-    tl_texture_fill(&texture, 0, &moments, false);
+    fill_channels(&texture, 0, &moments, 0, 2);
+    fill_channels(&texture, 1, &moments, 2, 2);
     tl_image_release(&moments);
+    if (is_lean) {
+        moments = tl_bake_cross_moments(normals);
+        tl_texture_fill(&texture, 2, &moments, false);
+        tl_image_release(&moments);
+    }
     return texture;
 }
 
@@ -158,7 +178,7 @@ static void add_heights(struct tl_detail_entry *entry, tl_gpu *gpu, const struct
         entry->textures[TL_DETAIL_HORIZONS] = upload_horizons(gpu, &heights, tl_detail_angle_count(params));
     if (own_normals) {
         tl_image slopes = tl_bake_slopes(&heights.field), normals = tl_bake_normals(&slopes, 1);
-        entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, &normals);
+        entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, &normals, params);
         tl_image_release(&slopes);
         tl_image_release(&normals);
     }
@@ -169,16 +189,16 @@ static void add_heights(struct tl_detail_entry *entry, tl_gpu *gpu, const struct
     tl_detail_heights_release(&heights);
 }
 
-static void add_moments(struct tl_detail_entry *entry, tl_gpu *gpu)
+static void add_moments(struct tl_detail_entry *entry, tl_gpu *gpu, const struct tl_detail_params *params)
 {
     const struct tl_map *map = &entry->material->normal_map;
     const tl_weave *weave = entry->material->weave;
     if (map->image) {
-        entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, map->image);
+        entry->textures[TL_DETAIL_OWN_MOMENTS] = upload_moments(gpu, map->image, params);
         set_wrap(&entry->textures[TL_DETAIL_OWN_MOMENTS], map->clamp_u, map->clamp_v);
     }
     if (weave && weave->normal.texels) {
-        entry->textures[TL_DETAIL_WEAVE_MOMENTS] = upload_moments(gpu, &weave->normal);
+        entry->textures[TL_DETAIL_WEAVE_MOMENTS] = upload_moments(gpu, &weave->normal, params);
         set_wrap(&entry->textures[TL_DETAIL_WEAVE_MOMENTS], false, false);
     }
 }
@@ -189,7 +209,7 @@ static struct tl_detail_entry make_entry(tl_gpu *gpu, const tl_material *materia
     struct tl_detail_entry entry = {.material = material, .uv_metres = uv_metres};
     add_heights(&entry, gpu, params);
     if (tl_detail_wants_moments(params))
-        add_moments(&entry, gpu);
+        add_moments(&entry, gpu, params);
     for (int i = 0; i < TL_DETAIL_UNITS; i++)
         entry.flags |= entry.textures[i].id ? unit_flags[i] : 0;
     return entry;

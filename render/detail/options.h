@@ -19,7 +19,8 @@ enum tl_detail_shadow { TL_DETAIL_SHADOW_NONE, TL_DETAIL_SHADOW_HORIZON, TL_DETA
 /* Number of horizon azimuths; looked up between the two nearest to the light. */
 enum tl_detail_angles { TL_DETAIL_ANGLES_8, TL_DETAIL_ANGLES_16, TL_DETAIL_ANGLES_32 };
 /* The variance added to the gloss where normals are averaged: none; one variance, from the length of the mean
- * normal [Toksvig 2005]; variances along u and v, projected on the view direction [Olano and Baker 2010]. */
+ * normal [Toksvig 2005]; variances along u and v and their covariance, projected on
+ * the view direction [Olano and Baker 2010]. */
 enum tl_detail_minify { TL_DETAIL_MINIFY_NONE, TL_DETAIL_MINIFY_TOKSVIG, TL_DETAIL_MINIFY_LEAN };
 
 struct tl_detail_params { /* table "detail" */

@@ -73,11 +73,11 @@ static uint32_t exponents_between(float least, float greatest)
  * make any, where `low` says that there are such. */
 static uint32_t thread_exponents(const tl_material *material, float low, float high)
 {
-    const float none[2] = {0, 0}, all[2] = {1, 1}, *widest = low < material->glossiness ? all : none;
+    const float none[3] = {0, 0, 0}, all[3] = {1, 1, 0}, *widest = low < material->glossiness ? all : none;
     const struct tl_brdf_sum narrow =
-        tl_brdf_sum_of(material, material->specular, material->diffuse, high, none);
+        tl_brdf_sum_of(material, material->specular, material->diffuse, high, 1, none);
     const struct tl_brdf_sum wide =
-        tl_brdf_sum_of(material, material->specular, material->diffuse, low, widest);
+        tl_brdf_sum_of(material, material->specular, material->diffuse, low, 1, widest);
     uint32_t needed = 0;
     for (int i = 1; i < narrow.count; i++) {
         float least, greatest, unused;

@@ -234,6 +234,7 @@ struct tl_lobes_input tl_input_lobes(const struct tl_light_params *light)
 struct tl_shadow_input tl_input_shadows(const struct tl_light_params *light)
 {
     return (struct tl_shadow_input){.kind = (enum tl_visibility)light->visibility,
+                                    .moments = (enum tl_moments)light->moments,
                                     .map_size = light->map_size,
                                     .in_passes = tl_light_source(light) == TL_LIGHT_CHAIN,
                                     .blur_m = light->blur_m};

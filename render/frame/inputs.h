@@ -67,6 +67,7 @@ struct tl_cut_input {
 
 struct tl_shadow_input {
     enum tl_visibility kind;
+    enum tl_moments moments;
     int map_size;   /* texels */
     bool in_passes; /* maps in an array: as many as PEMs in a pass */
     float blur_m;

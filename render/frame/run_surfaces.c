@@ -21,10 +21,11 @@ bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
 #define SHADOW_REQUEST(job)                                                                                  \
     (struct tl_shadow_request)                                                                               \
     {                                                                                                        \
-        .kind = (job)->shadow_options->kind, .regions = (job)->regions, .suns = (job)->suns,                 \
-        .environment_yaw = *(job)->yaw, .caster_surfaces = (job)->shapes->surfaces,                          \
-        .caster_count = (job)->shapes->surface_count, .casters = *(job)->casters,                            \
-        .surfaces = (job)->surfaces, .surface_count = (job)->shapes->drawn_count,                            \
+        .kind = (job)->shadow_options->kind, .moments = (job)->shadow_options->moments,                      \
+        .regions = (job)->regions, .suns = (job)->suns, .environment_yaw = *(job)->yaw,                      \
+        .caster_surfaces = (job)->shapes->surfaces, .caster_count = (job)->shapes->surface_count,            \
+        .casters = *(job)->casters, .surfaces = (job)->surfaces,                                             \
+        .surface_count = (job)->shapes->drawn_count,                                                         \
         .ground_index = (job)->ground_input->is_drawn ? (int)(job)->shapes->drawn_count - 1 : -1,            \
         .map_size = (job)->shadow_options->map_size,                                                         \
         .maps_per_array = (job)->shadow_options->in_passes ? *(job)->pems_per_pass : TL_REGIONS_MAX,         \

@@ -75,7 +75,7 @@ static const tl_program *program_of(struct tl_gbuffer *gbuffer, tl_gpu *gpu,
 static void allocate(struct tl_gbuffer *gbuffer, tl_gpu *gpu, const struct tl_gbuffer_request *request)
 {
     static const unsigned formats[TL_GBUFFER_LAYERS] = {GL_RGBA32F, GL_RGBA16F, GL_RGBA16F,
-                                                        GL_RGBA16F, GL_R32UI,   GL_RG16F};
+                                                        GL_RGBA16F, GL_R32UI,   GL_RGBA16F};
     int layers = request->only_triangle ? 1 : request->frames ? TL_GBUFFER_LAYERS : TL_GBUFFER_WIDENING;
     const tl_target *target = &gbuffer->target;
     if (target->width == request->width && target->height == request->height &&

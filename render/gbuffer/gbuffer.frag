@@ -24,7 +24,7 @@ layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAME
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
 #endif
 #ifdef FRAMES
-layout(location = 5) out vec2 out_widening; // added to squared widths of facets along u and v
+layout(location = 5) out vec4 out_widening; // added to squared widths of facets along u and v, and to their product
 #endif
 #ifdef BEHIND
 layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
@@ -100,7 +100,7 @@ void main()
     float rough = 1.0 - glossiness(place.uv);
 #ifdef FRAMES
     float own_rough = 1.0 - material_scalars.x;
-    out_widening = vec2(detail_widening(own_rough, rough, 0.0));
+    out_widening = vec4(vec2(detail_widening(own_rough, rough, 0.0)), 0.0, 0.0);
 #endif
     vec3 kd = diffuse(colour.rgb, place.uv);
 #ifndef FRAMES
@@ -116,7 +116,7 @@ void main()
         n = side * bent_normal(bumps.normal, normal, tangent, smooth_normal);
 #endif
 #ifdef FRAMES
-        out_widening = detail_widenings(own_rough, rough, bumps);
+        out_widening = vec4(detail_widenings(own_rough, rough, bumps), 0.0);
 #endif
         rough = detail_rough(rough, bumps, view);
         kd *= detail_open(bumps.length);

@@ -17,8 +17,8 @@ enum tl_gbuffer_layer {
     TL_GBUFFER_SPECULAR, /* RGBA16F: F ks; octahedral y of the smooth normal */
     TL_GBUFFER_TRIANGLE, /* R32UI: 0 nothing; else 1 + the triangle's number counted through all surfaces, and
                             TL_SAMPLE_BACK where its back is seen */
-    TL_GBUFFER_WIDENING, /* RG16F: added to squared widths of facets along u and v. Only where something is
-                            faceted: F ks is its F0 then */
+    TL_GBUFFER_WIDENING, /* RGBA16F: added to squared widths of facets along u and v, and to their product.
+                            Only where something is faceted: F ks is its F0 then */
     TL_GBUFFER_LAYERS
 };
 

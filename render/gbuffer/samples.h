@@ -19,7 +19,8 @@ typedef struct tl_sample {
     float glossiness;
     vec3s diffuse;     /* kd */
     vec3s specular;    /* F ks */
-    float widening[2]; /* added to squared widths of facets along u and v; 0 where nothing is faceted */
+    float widening[3]; /* added to squared widths of facets along u and v, and to their product; 0 where
+                          nothing is faceted */
 } tl_sample;
 
 /* In tiles of 4 x 4 texels, so that sixteen samples in a row are neighbours. */

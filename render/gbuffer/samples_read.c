@@ -18,7 +18,7 @@ struct layers {
     const uint16_t *diffuses;  /* ... */
     const uint16_t *speculars; /* ... */
     const uint32_t *triangles; /* [height][width] */
-    const uint16_t *widenings; /* [height][width][2], or NULL */
+    const uint16_t *widenings; /* [height][width][4], or NULL */
 };
 
 /* Barycentric weights of the point of the triangle's plane that is nearest to `p`, inside the triangle. */
@@ -82,8 +82,8 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
                         .glossiness = 1 - from_half(normal[3]),
                         .diffuse = half_vector(diffuse),
                         .specular = half_vector(specular)};
-    for (size_t i = 0; layers->widenings && i < 2; i++)
-        sample.widening[i] = from_half(layers->widenings[2 * texel + i]);
+    for (size_t i = 0; layers->widenings && i < 3; i++)
+        sample.widening[i] = from_half(layers->widenings[4 * texel + i]);
     uint32_t corners[3];
     size_t index;
     const tl_surface *surface = tl_triangle_find(ranges, sample.triangle & ~TL_SAMPLE_BACK, corners, &index);
@@ -160,7 +160,7 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
     out->width = target->width;
     out->height = target->height;
     bool faceted = target->colour_count > TL_GBUFFER_WIDENING;
-    size_t texel_bytes = faceted ? 16 + 3 * 8 + 4 + 4 : 16 + 3 * 8 + 4;
+    size_t texel_bytes = faceted ? 16 + 3 * 8 + 4 + 8 : 16 + 3 * 8 + 4;
     size_t bytes = (size_t)target->width * (size_t)target->height * texel_bytes;
     if (bytes != out->staging_bytes) {
         free(out->staging);
@@ -176,7 +176,8 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
         .diffuses = read_layer(gbuffer, TL_GBUFFER_DIFFUSE, GL_RGBA, GL_HALF_FLOAT, 8, &at),
         .speculars = read_layer(gbuffer, TL_GBUFFER_SPECULAR, GL_RGBA, GL_HALF_FLOAT, 8, &at),
         .triangles = read_layer(gbuffer, TL_GBUFFER_TRIANGLE, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &at),
-        .widenings = faceted ? read_layer(gbuffer, TL_GBUFFER_WIDENING, GL_RG, GL_HALF_FLOAT, 4, &at) : NULL,
+        .widenings =
+            faceted ? read_layer(gbuffer, TL_GBUFFER_WIDENING, GL_RGBA, GL_HALF_FLOAT, 8, &at) : NULL,
     };
     gather(&layers, ranges, eye, out);
 }

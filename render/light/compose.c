@@ -290,9 +290,9 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
     const vec4s stored = tl_sample_tangent(sample, request->ranges);
     vec3s tangent = into_environment(block, (vec3s){{stored.x, stored.y, stored.z}});
     vec3s normal = into_environment(block, sample->normal);
-    lobes->gloss =
-        tl_brdf_sum_of(material, sample->specular, sample->diffuse, sample->glossiness, sample->widening);
-    float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+    const float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+    lobes->gloss = tl_brdf_sum_of(material, sample->specular, sample->diffuse, sample->glossiness,
+                                  stored.w * side, sample->widening);
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
     lobes->facets =
         tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);

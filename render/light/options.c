@@ -11,6 +11,7 @@ static const char *const lobe_names[] = {"single", "dual", NULL};
 static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
 static const char *const visibility_names[] = {"vsm", "depth", "rays", NULL};
+static const char *const moments_names[] = {"float", "half", NULL};
 static const char *const ratio_at_names[] = {"samples", "vertices", NULL};
 static const char *const bounce_names[] = {"off", "one", "all", NULL};
 static const char *const composition_names[] = {"sum", "difference", "ratio", NULL};
@@ -76,6 +77,9 @@ static const struct tl_option light_rows[] = {
         "mirrors (exponent 200 and more) reflect nearby lit surfaces; off: these reflect as black"),
     TL_OPTION_INT(light_params, map_size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 1, 4096, "texels",
                   "side of a shadow map; larger: smaller shadows appear, more time and memory"),
+    TL_OPTION_ENUM(light_params, moments, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, moments_names,
+                   "vsm: precision of depth's moments; half: half the memory, but light leaks within "
+                   "centimetres of what shadows"),
     TL_OPTION_FLOAT(light_params, blur_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 0, 10, "m",
                     "shadow blur: sigma is this times the tangent of a region's cone angle; larger: softer"),
     TL_OPTION_FLOAT(

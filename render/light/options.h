@@ -49,6 +49,7 @@ struct tl_light_params { /* table "light" */
     int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */
+    int moments;        /* enum tl_moments, of variance maps */
     float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
     float depth_bias_m; /* metres */
     float min_variance; /* m^2, floor of the VSM variance */

@@ -29,9 +29,14 @@ vec2 widened(vec2 widths, vec2 widening)
     return clamp(sqrt(max(widths * widths + widening, 0.0)), 1e-3, 1.0);
 }
 
-vec2 widths_of(vec2 widening)
+// The same of facets with correlated slopes: the entries of a symmetric matrix (tl_facet_product).
+vec3 squares_of(vec2 widths, vec3 widening)
 {
-    return widened(gloss_widths.xy, widening);
+    vec2 squares = widened(widths, widening.xy);
+    squares *= squares;
+    vec2 room = max(squares - 1e-6, 0.0), above = 1.0 - squares;
+    float limit = sqrt(max(min(room.x * room.y, above.x * above.y), 0.0));
+    return vec3(squares, clamp(widening.z, -limit, limit));
 }
 
 float fresnel_dielectric(float index, float cosine)
@@ -121,10 +126,13 @@ float masked(Cosines c, float width)
     return g / (PI * c.b);
 }
 
-float ward(Cosines c, vec2 widths, bool is_bounded)
+float ward(Cosines c, vec3 squares, bool is_bounded)
 {
-    vec2 slope = c.half_plane / (widths * c.half_normal);
-    float facets = exp(-dot(slope, slope)) / (4.0 * PI * widths.x * widths.y);
+    vec2 slope = c.half_plane / c.half_normal;
+    float determinant = squares.x * squares.y - squares.z * squares.z;
+    float steepness =
+        dot(slope * slope, squares.yx) - 2.0 * slope.x * slope.y * squares.z; // times the determinant
+    float facets = exp(-steepness / determinant) / (4.0 * PI * sqrt(determinant));
     float steep = c.t * c.half_normal * c.half_normal;
     if (is_bounded)
         return facets > 0.0 ? facets * c.a / (steep * steep) : 0.0;
@@ -146,14 +154,14 @@ float thread_scale(float s)
 }
 
 // f_r cos a without the Fresnel term.
-float lobe(Cosines c, float s, vec2 widening)
+float lobe(Cosines c, float s, vec3 widening)
 {
     if (MODEL == TORRANCE_SPARROW) {
-        float width = widths_of(widening).x;
+        float width = widened(gloss_widths.xy, widening.xy).x;
         return facets(c.half_sine2 / (c.half_normal * c.half_normal), width) * masked(c, width);
     }
     if (MODEL == WARD)
-        return ward(c, widths_of(widening), WARD_FORM == BOUNDED);
+        return ward(c, squares_of(gloss_widths.xy, widening), WARD_FORM == BOUNDED);
     if (MODEL == BLINN_PHONG)
         return (4.0 * s + 2.0) / (8.0 * PI) * power(c.half_normal, c.half_sine2, 4.0 * s);
     if (MODEL == BANKS) {
@@ -166,7 +174,7 @@ float lobe(Cosines c, float s, vec2 widening)
 }
 
 // f_r cos a of a material whose maps give f0, s and `widening`. Tables are made for constant values and ignore the maps.
-vec3 gloss(Cosines c, vec3 f0, float s, vec2 widening)
+vec3 gloss(Cosines c, vec3 f0, float s, vec3 widening)
 {
     if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
         return vec3(0.0);
@@ -178,7 +186,7 @@ vec3 gloss(Cosines c, vec3 f0, float s, vec2 widening)
 }
 
 // Light that has been inside threads (tl_brdf_sum_of of brdf.h); `widening` along weft and warp as Ward's facets have it.
-vec3 inside_threads(Cosines c, vec3 f0, vec3 kd, vec2 widening)
+vec3 inside_threads(Cosines c, vec3 f0, vec3 kd, vec3 widening)
 {
     vec3 sent = vec3(0.0);
 #ifdef THREADS
@@ -187,7 +195,7 @@ vec3 inside_threads(Cosines c, vec3 f0, vec3 kd, vec2 widening)
     float away = 1.0 - clamp(c.t, 0.0, 1.0), away2 = away * away;
     vec3 surface = f0 + (min(50.0 * f0, vec3(1.0)) - f0) * (away2 * away2 * away);
     for (int i = 0; i < THREADS; i++)
-        sent += clamp(thread_ratios[i] * kd, 0.0, 1.0) * ward(c, widened(thread_widths[i], widening), true);
+        sent += clamp(thread_ratios[i] * kd, 0.0, 1.0) * ward(c, squares_of(thread_widths[i], widening), true);
     sent *= 1.0 - surface;
 #endif
     return sent;

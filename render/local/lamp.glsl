@@ -44,7 +44,7 @@ vec3 tangent_across(vec3 n, vec3 tangent)
 }
 
 // As tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the front; `side`
-// is -1 on back faces. The sign of the bitangent does not matter, because the models are symmetric.
+// is -1 on back faces. The sign of the bitangent matters to correlated slopes alone (plane_side in local.frag).
 Frame frame_of(vec3 n, vec3 tangent, float side)
 {
     vec3 t = tangent_across(n, tangent);

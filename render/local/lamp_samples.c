@@ -40,7 +40,7 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
         const vec4s tangent = tl_sample_tangent(sample, request->ranges);
         float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
         lit.gloss = tl_brdf_sum_of(lit.material, sample->specular, sample->diffuse, sample->glossiness,
-                                   sample->widening);
+                                   side * tangent.w, sample->widening);
         lit.frame = tl_brdf_frame_make(sample->normal, (vec3s){{tangent.x, tangent.y, tangent.z}}, tangent.w,
                                        side * lit.material->gloss.rotation);
     }

@@ -167,21 +167,39 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 }
 #endif
 
-// What maps and bumps add to squared widths along weft and warp.
-vec2 thread_widening_here()
+// On which side of u the second axis of Cosines.half_plane lies: 1 where it is the bitangent of the surface.
+float plane_side(float side)
+{
+    float handed = tangent.w < 0.0 ? -1.0 : 1.0;
+#if defined(COSINES)
+    return handed;
+#elif defined(TANGENT_SPACE)
+    return side;
+#else
+    return side * handed;
+#endif
+}
+
+// What maps and bumps add to squared widths along weft and warp, and to their product.
+vec3 thread_widening_here(float side)
 {
     float own_rough = 1.0 - material_scalars.x;
     float yarn_rough = 1.0 - glossiness(place.uv);
-    vec2 wider = bumpy ? detail_widenings(own_rough, yarn_rough, bumps)
-                       : vec2(detail_widening(own_rough, yarn_rough, 0.0));
-    vec2 shares = gloss_widths.zw * gloss_widths.zw; // spreads are along u and v, widths along the threads
-    return vec2(dot(wider, shares), dot(wider, shares.yx));
+    vec3 wider = bumpy ? detail_widenings(own_rough, yarn_rough, bumps)
+                       : vec3(vec2(detail_widening(own_rough, yarn_rough, 0.0)), 0.0);
+    // Spreads are along u and v, widths along the threads, which are turned towards v (tl_brdf_bumped).
+    vec2 shares = gloss_widths.zw * gloss_widths.zw;
+    float mixed = gloss_widths.z * gloss_widths.w * (tangent.w < 0.0 ? -1.0 : 1.0);
+    float product = mixed * (wider.y - wider.x) + (shares.x - shares.y) * wider.z;
+    return vec3(dot(wider.xy, shares) + 2.0 * mixed * wider.z, dot(wider.xy, shares.yx) - 2.0 * mixed * wider.z,
+                plane_side(side) * product);
 }
 
 // The same for the model's facets; `rough` is the roughness of all lobes that are round.
-vec2 widening_here(float rough)
+vec3 widening_here(float rough, float side)
 {
-    return MODEL == WARD ? thread_widening_here() : vec2(detail_widening(1.0 - material_scalars.x, rough, 0.0));
+    return MODEL == WARD ? thread_widening_here(side)
+                         : vec3(vec2(detail_widening(1.0 - material_scalars.x, rough, 0.0)), 0.0);
 }
 
 // Unshadowed reflected light divided by the irradiance.
@@ -203,10 +221,10 @@ vec3 reflected(float side, vec3 smooth_normal)
     float rough = 1.0 - glossiness(place.uv);
     if (bumpy)
         rough = detail_rough(rough, bumps, view);
-    vec3 shine = gloss(c, specular_f0(place.uv), lobe_exponent(1.0 - rough), widening_here(rough));
+    vec3 shine = gloss(c, specular_f0(place.uv), lobe_exponent(1.0 - rough), widening_here(rough, side));
 #endif
 #ifdef THREADS
-    shine += inside_threads(c, specular_f0(place.uv), kd, thread_widening_here());
+    shine += inside_threads(c, specular_f0(place.uv), kd, thread_widening_here(side));
 #endif
     vec3 light = kd * (max(c.a, 0.0) / PI) + shine;
     return shown > 0.0 ? shown * light : vec3(0.0);

@@ -50,7 +50,7 @@ vec4 lit(vec3 n, float side, vec3 l, vec3 v, vec3 h)
 {
     Frame frame = frame_of(n, vertex_tangent.xyz, side);
     Cosines c = cosines_of(frame, l, v, h);
-    vec3 light = gloss(c, material_specular, lobe_exponent(material_scalars.x), vec2(0.0));
+    vec3 light = gloss(c, material_specular, lobe_exponent(material_scalars.x), vec3(0.0));
 #ifdef STEP
     float shown = c.a > 0.0 ? 1.0 : 0.0;
 #else

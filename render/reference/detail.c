@@ -7,26 +7,22 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct tl_moment_map {
-    const tl_image *of;
-    tl_image image;
-    struct tl_map_texture texture;
-};
-
-const struct tl_map_texture *tl_reference_moments(struct tl_reference_detail *detail, const tl_image *normals)
+const struct tl_moment_map *tl_reference_moments(struct tl_reference_detail *detail, const tl_image *normals)
 {
     if (!normals || !normals->texels || !tl_detail_wants_moments(&detail->params))
         return NULL;
     for (size_t i = 0; i < detail->count; i++)
         if (detail->items[i]->of == normals)
-            return &detail->items[i]->texture;
+            return detail->items[i];
     struct tl_moment_map *made = TL_NEW(struct tl_moment_map);
     made->of = normals;
     made->image = tl_bake_moments(normals);
     made->texture = tl_map_texture_make(&made->image, false);
+    made->cross_image = tl_bake_cross_moments(normals);
+    made->cross_texture = tl_map_texture_make(&made->cross_image, false);
     detail->items = tl_resize(detail->items, detail->count + 1, sizeof(struct tl_moment_map *));
     detail->items[detail->count++] = made;
-    return &made->texture;
+    return made;
 }
 
 void tl_reference_detail_release(struct tl_reference_detail *detail)
@@ -34,6 +30,8 @@ void tl_reference_detail_release(struct tl_reference_detail *detail)
     for (size_t i = 0; i < detail->count; i++) {
         tl_map_texture_release(&detail->items[i]->texture);
         tl_image_release(&detail->items[i]->image);
+        tl_map_texture_release(&detail->items[i]->cross_texture);
+        tl_image_release(&detail->items[i]->cross_image);
         free(detail->items[i]);
     }
     free(detail->items);

@@ -8,6 +8,13 @@
 #include "render/detail/detail.h"
 #include "render/gpu/map_texture.h"
 
+/* The moments of a normal map: (x, y, x^2, y^2), and x y. */
+struct tl_moment_map {
+    const tl_image *of;
+    tl_image image, cross_image;
+    struct tl_map_texture texture, cross_texture;
+};
+
 struct tl_reference_detail {
     struct tl_detail_params params;
     size_t count;
@@ -18,8 +25,7 @@ void tl_reference_detail_release(struct tl_reference_detail *detail);
 
 /* The moments of a normal map, made at the first call for each map. NULL when `normals` is NULL or no option
  * needs them. */
-const struct tl_map_texture *tl_reference_moments(struct tl_reference_detail *detail,
-                                                  const tl_image *normals);
+const struct tl_moment_map *tl_reference_moments(struct tl_reference_detail *detail, const tl_image *normals);
 
 /* The shift in UV by parallax or relief. `view` is in the tangent space of the front; `side` is -1 for a back
  * face. */

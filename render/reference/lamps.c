@@ -49,7 +49,8 @@ vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl
     if (scene->lamp_count == 0)
         return sum;
     const struct tl_brdf_sum brdfs =
-        tl_brdf_sum_of(point->material, point->f0, point->albedo, point->glossiness, point->widening);
+        tl_brdf_sum_of(point->material, point->f0, point->albedo, point->glossiness,
+                       point->side * point->handedness, point->widening);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(point->normal, point->tangent, point->handedness,
                                                           point->side * point->material->gloss.rotation);
     for (size_t i = 0; i < scene->lamp_count; i++) {

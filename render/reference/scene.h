@@ -27,8 +27,8 @@ struct tl_reference_map {
 struct tl_reference_material {
     struct tl_reference_map maps[TL_MAP_USES], emission;
     const struct tl_map_texture *weave[TL_WEAVE_USES];
-    const struct tl_map_texture *own_moments, *weave_moments; /* NULL: none */
-    struct tl_construction_tables *construction;              /* NULL: not sewn; owned */
+    const struct tl_moment_map *own_moments, *weave_moments; /* NULL: none */
+    struct tl_construction_tables *construction;             /* NULL: not sewn; owned */
     struct tl_detail_heights heights; /* of the first part that uses the material; empty: none */
 };
 

@@ -104,8 +104,10 @@ static struct tl_bump_statistics own_bumps(const struct sample_place *place)
     if (place->prepared->own_moments) {
         const struct tl_reference_map *map = &place->prepared->maps[TL_MAP_NORMAL];
         struct tl_footprint at = through_rows(&place->footprint, map->rows);
+        const struct tl_moment_map *moments = place->prepared->own_moments;
         return tl_bump_statistics_of_moments(
-            tl_map_texture_fetch(place->prepared->own_moments, &at, map->clamp_u, map->clamp_v), scales);
+            tl_map_texture_fetch(&moments->texture, &at, map->clamp_u, map->clamp_v),
+            tl_map_texture_fetch(&moments->cross_texture, &at, map->clamp_u, map->clamp_v).x, scales);
     }
     vec3s n = decoded(map_at(place, TL_MAP_NORMAL));
     return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
@@ -116,7 +118,9 @@ static struct tl_bump_statistics weave_bumps(const struct sample_place *place)
     const float height = place->detail->height_scale;
     const float scale[2] = {height * place->slopes[0], height * place->slopes[1]};
     if (place->prepared->weave_moments)
-        return tl_bump_statistics_of_moments(weave_texel(place, place->prepared->weave_moments), scale);
+        return tl_bump_statistics_of_moments(
+            weave_texel(place, &place->prepared->weave_moments->texture),
+            weave_texel(place, &place->prepared->weave_moments->cross_texture).x, scale);
     vec3s n = decoded(weave_at(place, TL_WEAVE_NORMAL));
     return tl_bump_statistics_of_normal((vec3s){{scale[0] * n.x, scale[1] * n.y, n.z}});
 }
@@ -288,8 +292,8 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
         set_coat(place, smooth, result);
     layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
     if (layers->faceted) {
-        layers->gloss =
-            tl_brdf_sum_of(material, result->f0, result->albedo, result->glossiness, result->widening);
+        layers->gloss = tl_brdf_sum_of(material, result->f0, result->albedo, result->glossiness,
+                                       place->tangent.w, result->widening);
         layers->frame = tl_brdf_frame_make(result->normal, result->tangent, result->handedness,
                                            place->side * material->gloss.rotation);
         result->glossy = (vec3s){{0, 0, 0}};
@@ -312,6 +316,7 @@ static void set_lobes(const struct sample_place *place, const struct tl_referenc
     for (int i = 0; i < 2; i++)
         result->widening[i] =
             tl_bump_statistics_widening(place->detail, 1 - place->material->glossiness, 1 - g, &bumps, i);
+    result->widening[2] = tl_bump_statistics_shear(place->detail, &bumps);
     if (bumped) {
         n = glms_vec3_scale(bent_normal(place, bumps.normal, smooth), place->side);
         g = 1 -

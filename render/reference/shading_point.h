@@ -58,7 +58,7 @@ struct tl_shading_point {
     vec3s albedo, f0;  /* diffuse colour and reflectance at normal incidence, independent of `lobe` */
     float handedness;  /* bitangent = handedness * cross(normal, tangent) */
     float glossiness;  /* glossiness from the maps; `exponent` is derived from it */
-    float widening[2]; /* added to squared widths of facets along u and v */
+    float widening[3]; /* added to squared widths of facets along u and v, and to their product */
     const tl_material *material; /* borrowed from the surface */
 };
 

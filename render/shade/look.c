@@ -134,12 +134,12 @@ TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_loo
 struct bump_lanes {
     bool is_given, has_moments;
     float scale[2][TL_LANES]; /* of the slopes along u and v */
-    float texel[4][TL_LANES];
+    float texel[4][TL_LANES], cross[TL_LANES];
 };
 
 /* `scale` multiplies all slopes, `factors` those of each lane; NULL: 1. */
 TL_INLINE void keep_bumps(const tl_quad texels[TL_LANES], float scale, const float (*factors)[TL_LANES],
-                          bool has_moments, struct bump_lanes *bumps)
+                          bool has_moments, const tl_quad cross[TL_LANES], struct bump_lanes *bumps)
 {
     bumps->is_given = true;
     bumps->has_moments = has_moments;
@@ -149,6 +149,8 @@ TL_INLINE void keep_bumps(const tl_quad texels[TL_LANES], float scale, const flo
     for (int i = 0; i < TL_LANES; i++)
         for (int c = 0; c < 4; c++)
             bumps->texel[c][i] = texels[i][c];
+    for (int i = 0; i < TL_LANES; i++)
+        bumps->cross[i] = cross[i][0];
 }
 
 TL_INLINE struct tl_bump_statistics bumps_at(const struct bump_lanes *bumps, bool has_moments, int lane)
@@ -158,14 +160,15 @@ TL_INLINE struct tl_bump_statistics bumps_at(const struct bump_lanes *bumps, boo
         texel[c] = bumps->texel[c][lane];
     const float scale[2] = {bumps->scale[0][lane], bumps->scale[1][lane]};
     if (has_moments)
-        return tl_bump_statistics_of_moments((vec4s){{texel[0], texel[1], texel[2], texel[3]}}, scale);
+        return tl_bump_statistics_of_moments((vec4s){{texel[0], texel[1], texel[2], texel[3]}},
+                                             bumps->cross[lane], scale);
     return tl_bump_statistics_of_normal(
         (vec3s){{scale[0] * (2 * texel[0] - 1), scale[1] * (2 * texel[1] - 1), 2 * texel[2] - 1}});
 }
 
 /* The statistics of one layer of bumps, or of the sum of two. */
 struct statistic_lanes {
-    float normal[3][TL_LANES], spread[2][TL_LANES], length[TL_LANES];
+    float normal[3][TL_LANES], spread[3][TL_LANES], length[TL_LANES];
 };
 
 TL_INLINE void store_statistics(struct statistic_lanes *to, int lane, const struct tl_bump_statistics *from)
@@ -173,15 +176,22 @@ TL_INLINE void store_statistics(struct statistic_lanes *to, int lane, const stru
     tl_lane_store(to->normal, lane, from->normal);
     to->spread[0][lane] = from->spread[0];
     to->spread[1][lane] = from->spread[1];
+    to->spread[2][lane] = from->spread[2];
     to->length[lane] = from->length;
+}
+
+TL_INLINE struct tl_bump_statistics statistics_of(const struct statistic_lanes *from, int lane)
+{
+    return (struct tl_bump_statistics){tl_lane_vector(from->normal, lane),
+                                       {from->spread[0][lane], from->spread[1][lane], from->spread[2][lane]},
+                                       from->length[lane]};
 }
 
 TL_INLINE void add_bumps_as(const struct bump_lanes *bumps, bool has_moments, struct statistic_lanes *sum)
 {
     for (int i = 0; i < TL_LANES; i++) {
         struct tl_bump_statistics more = bumps_at(bumps, has_moments, i);
-        const struct tl_bump_statistics so_far = {
-            tl_lane_vector(sum->normal, i), {sum->spread[0][i], sum->spread[1][i]}, sum->length[i]};
+        const struct tl_bump_statistics so_far = statistics_of(sum, i);
         more = tl_bump_statistics_add(&so_far, &more);
         store_statistics(sum, i, &more);
     }
@@ -222,8 +232,7 @@ TL_INLINE void bend(struct tl_look_lanes *lanes, const struct statistic_lanes *b
 {
     const struct tl_detail_params params = {.minify = minify};
     for (int i = 0; i < TL_LANES; i++) {
-        struct tl_bump_statistics at = {
-            tl_lane_vector(bumps->normal, i), {bumps->spread[0][i], bumps->spread[1][i]}, bumps->length[i]};
+        const struct tl_bump_statistics at = statistics_of(bumps, i);
         vec3s normal = tl_lane_vector(lanes->normal, i);
         vec3s smooth = tl_lane_vector(lanes->smooth, i);
         vec3s tangent = tl_lane_vector(lanes->tangent, i);
@@ -237,6 +246,7 @@ TL_INLINE void bend(struct tl_look_lanes *lanes, const struct statistic_lanes *b
                 tl_bump_statistics_widening(&params, own_rough, 1 - lanes->glossiness[i], &at, axis);
             lanes->widening[axis][i] = has_tangent ? wider : lanes->widening[axis][i];
         }
+        lanes->widening[2][i] = has_tangent ? tl_bump_statistics_shear(&params, &at) : 0;
         float rough = tl_bump_statistics_roughness(&params, 1 - lanes->glossiness[i], &at, viewer);
         for (int c = 0; c < 3; c++)
             lanes->shown[c][i] = has_tangent ? side * n.raw[c] : lanes->shown[c][i];
@@ -262,8 +272,7 @@ TL_INLINE void sew(struct tl_look_lanes *lanes, struct statistic_lanes *sum)
             (vec2s){{lanes->change[0][0][i], lanes->change[1][0][i]}},
             (vec2s){{lanes->change[0][1][i], lanes->change[1][1][i]}});
         const struct tl_bump_statistics more = tl_construction_bumps(&sewn);
-        const struct tl_bump_statistics so_far = {
-            tl_lane_vector(sum->normal, i), {sum->spread[0][i], sum->spread[1][i]}, sum->length[i]};
+        const struct tl_bump_statistics so_far = statistics_of(sum, i);
         const struct tl_bump_statistics all = tl_bump_statistics_add(&so_far, &more);
         store_statistics(sum, i, &all);
         for (int c = 0; c < 3; c++) {
@@ -279,16 +288,20 @@ TL_INLINE void apply_bumps(const struct tl_detail_params *detail, struct tl_look
 {
     const struct tl_shade_part *part = lanes->part;
     const struct tl_shade_map *own = &part->maps[TL_MAP_NORMAL];
-    tl_quad texels[TL_LANES] = {{0}};
+    tl_quad texels[TL_LANES] = {{0}}, cross[TL_LANES] = {{0}};
     struct bump_lanes bumps[2] = {{0}};
     if (part->own_moments || own->texels) {
         read_map(lanes, own, part->own_moments ? part->own_moments : own->texels, texels);
-        keep_bumps(texels, part->material->normal_scale, NULL, part->own_moments, &bumps[0]);
+        if (part->own_cross)
+            read_map(lanes, own, part->own_cross, cross);
+        keep_bumps(texels, part->material->normal_scale, NULL, part->own_moments, cross, &bumps[0]);
     }
     const struct tl_texels *weave = part->weave_moments ? part->weave_moments : part->weave_normal;
     if (weave) {
         read_weave(lanes, weave_at, weave, texels);
-        keep_bumps(texels, detail->height_scale, lanes->slopes, part->weave_moments, &bumps[1]);
+        if (part->weave_cross)
+            read_weave(lanes, weave_at, part->weave_cross, cross);
+        keep_bumps(texels, detail->height_scale, lanes->slopes, part->weave_moments, cross, &bumps[1]);
     }
     struct statistic_lanes sum;
     const struct tl_bump_statistics flat = {.normal = {{0, 0, 1}}, .length = 1};
@@ -334,7 +347,7 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
     }
     for (int i = 0; i < TL_LANES; i++) {
         lanes->glossiness[i] = material->glossiness;
-        lanes->widening[0][i] = lanes->widening[1][i] = 0;
+        lanes->widening[0][i] = lanes->widening[1][i] = lanes->widening[2][i] = 0;
         lanes->diffuse[i] = diffuse;
         lanes->f0[i] = f0;
     }

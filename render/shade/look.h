@@ -30,7 +30,7 @@ struct tl_look_lanes {
     float smooth[3][TL_LANES]; /* the given normal, normalised */
     float shown[3][TL_LANES];  /* shading normal, unit, on the viewer's side */
     float glossiness[TL_LANES];
-    float widening[2][TL_LANES];             /* added to squared widths of facets along u and v */
+    float widening[3][TL_LANES]; /* added to squared widths of facets along u and v, and to their product */
     tl_quad diffuse[TL_LANES], f0[TL_LANES]; /* RGB: kd; reflectance at normal incidence */
 };
 

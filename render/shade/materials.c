@@ -7,9 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What of an image was packed: its colours, its numbers, the moments of its normals; or a weave's tint with
+/* What of an image was packed: its colours, its numbers, the moments of its normals, the mixed
+ * one apart; or a weave's tint with
  * its gloss. */
-enum packed { PACKED_COLOUR, PACKED_DATA, PACKED_MOMENTS, PACKED_WEAVE };
+enum packed { PACKED_COLOUR, PACKED_DATA, PACKED_MOMENTS, PACKED_CROSS, PACKED_WEAVE };
 
 struct tl_shade_image {
     const tl_image *image; /* of a weave its tint */
@@ -60,9 +61,9 @@ static struct tl_texels pack(const tl_image *image, enum packed kind, const tl_w
 {
     if (kind == PACKED_WEAVE)
         return pack_weave(weave);
-    if (kind != PACKED_MOMENTS)
+    if (kind != PACKED_MOMENTS && kind != PACKED_CROSS)
         return tl_texels_make(image, kind == PACKED_COLOUR);
-    tl_image moments = tl_bake_moments(image);
+    tl_image moments = kind == PACKED_CROSS ? tl_bake_cross_moments(image) : tl_bake_moments(image);
     struct tl_texels texels = tl_texels_make(&moments, false);
     tl_image_release(&moments);
     return texels;
@@ -163,7 +164,9 @@ static void add_weave(struct tl_shade_materials *materials, float uv_metres, boo
     part->weave_tint = find_image(materials, &weave->tint, PACKED_WEAVE, weave);
     if (moments)
         part->weave_moments = find_image(materials, &weave->normal, PACKED_MOMENTS, NULL);
-    else
+    if (moments && materials->detail.minify == TL_DETAIL_MINIFY_LEAN)
+        part->weave_cross = find_image(materials, &weave->normal, PACKED_CROSS, NULL);
+    if (!moments)
         part->weave_normal = find_image(materials, &weave->normal, PACKED_DATA, NULL);
 }
 
@@ -203,6 +206,8 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     for (enum tl_map_use use = 0; use < TL_MAP_USES; use++) {
         if (use == TL_MAP_NORMAL && moments) {
             part.own_moments = find_image(materials, material->normal_map.image, PACKED_MOMENTS, NULL);
+            if (materials->detail.minify == TL_DETAIL_MINIFY_LEAN)
+                part.own_cross = find_image(materials, material->normal_map.image, PACKED_CROSS, NULL);
             part.maps[use] = (struct tl_shade_map){.clamp_u = material->normal_map.clamp_u,
                                                    .clamp_v = material->normal_map.clamp_v};
             tl_uv_transform_rows(&material->normal_map.transform, part.maps[use].rows);

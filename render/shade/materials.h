@@ -25,8 +25,9 @@ struct tl_shade_map {
 struct tl_shade_part {
     const tl_material *material;
     struct tl_shade_map maps[TL_MAP_USES];
-    const struct tl_texels *own_moments; /* of the normal map: with its UV */
-    const struct tl_texels *weave_tint;  /* factor on kd; what is added to glossiness in the fourth channel */
+    const struct tl_texels *own_moments;             /* of the normal map: with its UV */
+    const struct tl_texels *own_cross, *weave_cross; /* the mixed moments; NULL: 0 */
+    const struct tl_texels *weave_tint; /* factor on kd; what is added to glossiness in the fourth channel */
     const struct tl_texels *weave_moments; /* NULL where they are not kept: */
     const struct tl_texels *weave_normal;
     float weave_scale[2];         /* repeats per UV unit */

@@ -129,8 +129,8 @@ struct gloss_lanes {
     /* Facets: */
     float tangent[3][TL_LANES], bitangent[3][TL_LANES], normal[3][TL_LANES]; /* the frame of the threads */
     float viewer[3][TL_LANES];                                               /* in it */
-    float square[2][TL_LANES];                                               /* of Ward's widths */
-    float thread_square[TL_THREADS_MAX][2][TL_LANES]; /* ... of each system of threads */
+    float square[3][TL_LANES];                        /* of Ward's widths, and their product */
+    float thread_square[TL_THREADS_MAX][3][TL_LANES]; /* ... of each system of threads */
 };
 
 /* Schlick's factor of what is missing from F0 to its greatest value. */
@@ -174,19 +174,24 @@ TL_INLINE void find_frames(const struct tl_pixel_lanes *lanes, struct gloss_lane
             frame_of(look->part, tl_lane_vector(look->shown, i), tl_lane_vector(look->tangent, i),
                      look->tangent[3][i], look->side[i]);
         vec3s viewer = tl_lane_vector(look->viewer, i);
-        float along_u = look->widening[0][i], along_v = look->widening[1][i];
+        float along_u = look->widening[0][i], along_v = look->widening[1][i], both = look->widening[2][i];
+        const float cs = look->part->turn_cosine * look->part->turn_sine *
+                         (look->tangent[3][i] < 0 ? -1.0f : 1.0f); /* as in tl_brdf_bumped */
         gloss->viewer[0][i] = glms_vec3_dot(viewer, frame.tangent);
         gloss->viewer[1][i] = glms_vec3_dot(viewer, frame.bitangent);
         gloss->viewer[2][i] = glms_vec3_dot(viewer, frame.normal);
         tl_lane_store(gloss->tangent, i, frame.tangent);
         tl_lane_store(gloss->bitangent, i, frame.bitangent);
         tl_lane_store(gloss->normal, i, frame.normal);
-        const float weft = cc * along_u + ss * along_v, warp = ss * along_u + cc * along_v;
-        gloss->square[0][i] = tl_facet_square(look->part->ward_squares[0], weft);
-        gloss->square[1][i] = tl_facet_square(look->part->ward_squares[1], warp);
-        for (int k = 0; k < look->part->material->thread_count; k++) {
-            gloss->thread_square[k][0][i] = tl_facet_square(look->part->thread_squares[k][0], weft);
-            gloss->thread_square[k][1][i] = tl_facet_square(look->part->thread_squares[k][1], warp);
+        const float weft = cc * along_u + ss * along_v + 2 * cs * both;
+        const float warp = ss * along_u + cc * along_v - 2 * cs * both;
+        const float product = cs * (along_v - along_u) + (cc - ss) * both;
+        for (int k = -1; k < look->part->material->thread_count; k++) {
+            const float *own = k < 0 ? look->part->ward_squares : look->part->thread_squares[k];
+            float(*square)[TL_LANES] = k < 0 ? gloss->square : gloss->thread_square[k];
+            square[0][i] = tl_facet_square(own[0], weft);
+            square[1][i] = tl_facet_square(own[1], warp);
+            square[2][i] = tl_facet_product(square[0][i], square[1][i], product);
         }
     }
 }
@@ -263,14 +268,27 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
     struct tl_ward_lanes ward;
     const float least = 1e-6f; /* of a cosine: the light of pixels below the surface is not used */
     ward.gloss = thread < 0 ? &look->part->material->gloss : &bounded;
-    memcpy(ward.viewer, gloss->viewer, sizeof ward.viewer);
-    memcpy(ward.square, thread < 0 ? gloss->square : gloss->thread_square[thread], sizeof ward.square);
-    for (int i = 0; i < TL_LANES; i++)
-        ward.viewer[2][i] = tl_maxf(ward.viewer[2][i], least);
+    const float(*square)[TL_LANES] = thread < 0 ? gloss->square : gloss->thread_square[thread];
+    float cosine[TL_LANES], sine[TL_LANES]; /* into the axes of the widths, and back */
+    for (int i = 0; i < TL_LANES; i++) {
+        const struct tl_facet_axes axes = tl_facet_axes_of(square[0][i], square[1][i], square[2][i]);
+        const float x = gloss->viewer[0][i], y = gloss->viewer[1][i];
+        cosine[i] = axes.cosine, sine[i] = axes.sine;
+        ward.square[0][i] = axes.square[0], ward.square[1][i] = axes.square[1];
+        ward.viewer[0][i] = cosine[i] * x + sine[i] * y;
+        ward.viewer[1][i] = cosine[i] * y - sine[i] * x;
+        ward.viewer[2][i] = tl_maxf(gloss->viewer[2][i], least);
+    }
     tl_ward_fit(&ward, look->part->fan_count, look->count);
     lobes->count = ward.count;
     lobes->is_varied = false;
-    memcpy(lobes->local, ward.local, (size_t)ward.count * sizeof ward.local[0]);
+    for (int k = 0; k < ward.count; k++)
+        for (int i = 0; i < TL_LANES; i++) {
+            const float x = ward.local[k][0][i], y = ward.local[k][1][i];
+            lobes->local[k][0][i] = cosine[i] * x - sine[i] * y;
+            lobes->local[k][1][i] = cosine[i] * y + sine[i] * x;
+            lobes->local[k][2][i] = ward.local[k][2][i];
+        }
     for (int i = 0; i < TL_LANES; i++)
         lobes->log_exponent[0][i] = tl_log2(ward.exponent[i]);
     for (int i = 0; i < look->count; i++) {
@@ -394,13 +412,15 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         vec3s normal = tl_lane_vector(gloss->normal, i);
         vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
         float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
-        float u = square_of[0][i] + wider, v = square_of[1][i] + wider;
+        float u = square_of[0][i] + wider, v = square_of[1][i] + wider, uv = square_of[2][i];
+        float determinant = tl_maxf(u * v - uv * uv, 1e-12f);
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
               y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
         float square = glms_vec3_dot(sum, sum); /* 4 cos^2 t */
         float published = sqrtf(cos_a / cos_b), bounded = 4 * cos_a * square / (z * z * z * z);
-        float value = tl_exp2(-1.44269504f * (x * x / u + y * y / v) / (z * z)) *
-                      (is_bounded ? bounded : published) / (4 * (float)M_PI * sqrtf(u * v));
+        float value =
+            tl_exp2(-1.44269504f * (x * x * v - 2 * x * y * uv + y * y * u) / (determinant * z * z)) *
+            (is_bounded ? bounded : published) / (4 * (float)M_PI * sqrtf(determinant));
         bool is_seen = (cos_a > 0) & (cos_b > 0);
         lobe[i] = is_seen ? value : 0;
         share[i] = schlick_share(0.5f * sqrtf(square));
@@ -422,8 +442,9 @@ TL_INLINE void add_brdf(const struct tl_pixel_lanes *lanes, const struct gloss_l
         if (!(seen[i] > 0))
             continue;
         vec3s f0 = {{look->f0[i][0], look->f0[i][1], look->f0[i][2]}};
-        const float widening[2] = {look->widening[0][i], look->widening[1][i]};
-        struct tl_brdf brdf = tl_brdf_bumped(look->part->material, f0, look->glossiness[i], widening);
+        const float widening[3] = {look->widening[0][i], look->widening[1][i], look->widening[2][i]};
+        struct tl_brdf brdf =
+            tl_brdf_bumped(look->part->material, f0, look->glossiness[i], look->tangent[3][i], widening);
         const struct tl_brdf_frame frame = {tl_lane_vector(gloss->normal, i),
                                             tl_lane_vector(gloss->tangent, i),
                                             tl_lane_vector(gloss->bitangent, i)};

@@ -13,26 +13,38 @@ vec3 decode(vec3 texel)
 // has derivatives.
 vec2 weave_slopes = vec2(1.0);
 
+// Moments of the normal map, or where there is none of the height map's slopes.
+vec2 own_moments(vec2 uv, float layer)
+{
+    return has_map(MAP_NORMAL) ? map_layer(detail_own_moments, MAP_NORMAL, uv, layer)
+                               : detail_layer(detail_own_moments, uv, layer);
+}
+
 Bumps own_bumps(vec2 uv)
 {
-    if (has_detail(DETAIL_OWN_MOMENTS)) // of the normal map, or where there is none of the height map's slopes
-        return has_map(MAP_NORMAL) ? detail_bumps(map_texel(detail_own_moments, MAP_NORMAL, uv), vec2(material_scalars.y))
-                                   : detail_bumps(detail_texel(detail_own_moments, uv), vec2(1.0));
+    if (has_detail(DETAIL_OWN_MOMENTS)) {
+        vec2 scale = vec2(has_map(MAP_NORMAL) ? material_scalars.y : 1.0);
+        float product = DETAIL_MINIFY == DETAIL_LEAN ? own_moments(uv, 2.0).x : 0.0;
+        return detail_bumps(own_moments(uv, 0.0), own_moments(uv, 1.0), product, scale);
+    }
     vec3 n = vec3(0.0, 0.0, 1.0);
     if (has_map(MAP_NORMAL)) {
         n = decode(map_texel(normal_map, MAP_NORMAL, uv).xyz);
         n.xy *= material_scalars.y;
     }
-    return Bumps(n, vec2(0.0), 1.0);
+    return Bumps(n, vec3(0.0), 1.0);
 }
 
 Bumps weave_bumps(vec2 uv)
 {
     vec2 scale = detail_range.w * weave_slopes; // of slopes
-    if (has_detail(DETAIL_WEAVE_MOMENTS))
-        return detail_bumps(weave_texel(detail_weave_moments, uv), scale);
+    if (has_detail(DETAIL_WEAVE_MOMENTS)) {
+        float product = DETAIL_MINIFY == DETAIL_LEAN ? weave_layer(detail_weave_moments, uv, 2.0).x : 0.0;
+        return detail_bumps(weave_layer(detail_weave_moments, uv, 0.0), weave_layer(detail_weave_moments, uv, 1.0),
+                            product, scale);
+    }
     vec3 n = decode(weave_texel(weave_normal, uv).xyz);
-    return Bumps(vec3(scale * n.xy, n.z), vec2(0.0), 1.0);
+    return Bumps(vec3(scale * n.xy, n.z), vec3(0.0), 1.0);
 }
 
 // Slopes add as those of summed heights do.

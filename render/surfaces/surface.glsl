@@ -70,6 +70,18 @@ vec4 weave_texel(sampler2D map, vec2 uv)
     vec2 scale = exp2(WEAVE_BIAS) * weave_scale;
     return textureGrad(map, uv * weave_scale, unmoved_across * scale, unmoved_down * scale);
 }
+
+vec2 map_layer(sampler2DArray map, int use, vec2 uv, float layer)
+{
+    mat2 turned = transpose(mat2(uv_rows[2 * use].xy, uv_rows[2 * use + 1].xy));
+    return textureGrad(map, vec3(map_uv(use, uv), layer), turned * unmoved_across, turned * unmoved_down).xy;
+}
+
+vec2 weave_layer(sampler2DArray map, vec2 uv, float layer)
+{
+    vec2 scale = exp2(WEAVE_BIAS) * weave_scale;
+    return textureGrad(map, vec3(uv * weave_scale, layer), unmoved_across * scale, unmoved_down * scale).xy;
+}
 #else
 vec4 map_texel(sampler2D map, int use, vec2 uv)
 {
@@ -79,6 +91,16 @@ vec4 map_texel(sampler2D map, int use, vec2 uv)
 vec4 weave_texel(sampler2D map, vec2 uv)
 {
     return texture(map, uv * weave_scale, WEAVE_BIAS);
+}
+
+vec2 map_layer(sampler2DArray map, int use, vec2 uv, float layer)
+{
+    return texture(map, vec3(map_uv(use, uv), layer)).xy;
+}
+
+vec2 weave_layer(sampler2DArray map, vec2 uv, float layer)
+{
+    return texture(map, vec3(uv * weave_scale, layer), WEAVE_BIAS).xy;
 }
 #endif
 

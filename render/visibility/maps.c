@@ -27,6 +27,7 @@ struct tl_shadow_maps {
     tl_program programs[PROGRAM_COUNT], blur;
     GLuint framebuffer, depth_framebuffer; /* the second has no colours */
     enum tl_visibility kind;
+    enum tl_moments moments;
     int count, per_array, size;
     int array_count;
     tl_texture *arrays; /* 2D arrays, per_array layers each; the last one fewer */
@@ -106,23 +107,25 @@ tl_texture tl_depth_array_create(tl_gpu *gpu, int size, int layers)
 static void allocate_moments(tl_shadow_maps *maps)
 {
     int count = maps->count, per_array = maps->per_array, size = maps->size;
+    const GLenum format = maps->moments == TL_MOMENTS_HALF ? GL_RG16F : GL_RG32F;
     for (int i = 0; i < maps->array_count; i++) {
         int layers = i + 1 < maps->array_count ? per_array : count - i * per_array;
-        maps->arrays[i] = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, GL_RG32F, size, size, layers, 1);
+        maps->arrays[i] = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, format, size, size, layers, 1);
     }
     maps->depth = tl_texture_create(maps->gpu, GL_TEXTURE_2D, GL_DEPTH_COMPONENT32F, size, size, 1, 1);
-    maps->scratch = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, GL_RG32F, size, size, 1, 1);
+    maps->scratch = tl_texture_create(maps->gpu, GL_TEXTURE_2D_ARRAY, format, size, size, 1, 1);
 }
 
 static void allocate(tl_shadow_maps *maps, const struct tl_shadow_request *request)
 {
     int count = request->regions->count, per_array = request->maps_per_array, size = request->map_size;
-    if (maps->kind == request->kind && maps->count == count && maps->per_array == per_array &&
-        maps->size == size)
+    if (maps->kind == request->kind && maps->moments == request->moments && maps->count == count &&
+        maps->per_array == per_array && maps->size == size)
         return;
     release_textures(maps);
     maps->drawn_before = false;
     maps->kind = request->kind;
+    maps->moments = request->moments;
     maps->count = count;
     maps->per_array = per_array;
     maps->size = size;

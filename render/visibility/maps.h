@@ -2,8 +2,9 @@
  *
  * vsm: a variance shadow map a region, fitted to the casters' sphere and blurred by a Gaussian that follows
  * the region's cone [002, sections 3.3 and 4]. Depth is linear, 0 and 1 where the sphere begins and ends, so
- * one unit is its diameter. RG32F: in half precision a depth of 1 m has steps of 1 mm and, worse, its
- * variance a floor of several centimetres.
+ * one unit is its diameter. Moments are RG32F, or RG16F, which takes half the memory: there a depth of half a
+ * unit has steps of 2^-12, and its variance an error of as much, so that light leaks where the shadow's
+ * caster is less than 1 / 64 of a unit away: several centimetres.
  *
  * depth: a plain depth map a region, fitted to the casters as they are seen along its direction; four texels
  * compared and blended by a look-up. A blur wider than that costs more truth than it gives beauty (FRONTIER:
@@ -24,13 +25,14 @@
 
 #define TL_BLUR_RADIUS_MAX    64   /* texels; a wider Gaussian is cut to it, with a warning */
 #define TL_BLUR_SIGMA_MIN     0.3f /* texels; a narrower one would change the third digit only */
-#define TL_SHADOW_TEXEL_BYTES 8    /* of a variance map; a depth map takes half */
+#define TL_SHADOW_TEXEL_BYTES 8    /* of a variance map; one in half precision, and a depth map, take half */
 #define TL_SUN_MAP_SIZE_MIN   1024 /* texels: a sun is sharp; 1 to 2 mm on a dress */
 
 typedef struct tl_shadow_maps tl_shadow_maps;
 
 struct tl_shadow_request {
     enum tl_visibility kind; /* VSM or DEPTH */
+    enum tl_moments moments; /* of VSM */
     const struct tl_regions *regions;
     const struct tl_suns *suns;
     float environment_yaw; /* rad */

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 
 enum tl_visibility { TL_VISIBILITY_VSM, TL_VISIBILITY_DEPTH, TL_VISIBILITY_RAYS };
+/* The numbers in which variance maps keep moments: RG32F, or RG16F as in [002, figure 8]. */
+enum tl_moments { TL_MOMENTS_FLOAT, TL_MOMENTS_HALF };
 
 struct tl_ray_params {
     int rays;          /* directions a region and refresh, at least 1 */

@@ -317,7 +317,8 @@ void test_scene_open_lamplit(struct test_scene *scene, struct test_shape shape, 
 static vec3s light_of(const struct tl_shading_point *shaded, vec3s point, const struct tl_lamp *lamp)
 {
     const struct tl_brdf_sum brdfs =
-        tl_brdf_sum_of(shaded->material, shaded->f0, shaded->albedo, shaded->glossiness, shaded->widening);
+        tl_brdf_sum_of(shaded->material, shaded->f0, shaded->albedo, shaded->glossiness,
+                       shaded->side * shaded->handedness, shaded->widening);
     const struct tl_brdf_frame frame = tl_brdf_frame_make(shaded->normal, shaded->tangent, shaded->handedness,
                                                           shaded->side * shaded->material->gloss.rotation);
     bool is_point = lamp->kind == TL_LAMP_POINT;

@@ -21,6 +21,7 @@ static const struct tl_technique techniques[] = {
     {.picture = "variance maps of 64 texels", .id = "D5", SET("light.map_size=64")},
     {.picture = "variance maps of 256 texels", .id = "D5", SET("light.map_size=256")},
     {.picture = "256 texels, not blurred", .id = "D5", SET("light.map_size=256", "light.blur_m=0")},
+    {.picture = "256 texels in half precision", .id = "D5", SET("light.map_size=256", "light.moments=half")},
     {.picture = "256 texels, leaks reduced",
      .id = "D5",
      SET("light.map_size=256", "light.bleed_reduction=0.2")},
@@ -113,11 +114,14 @@ static const struct tl_experiment experiments[] = {
      .title = "D5  Shadows from moments of depth",
      .text =
          "Each region has a map of the mean of depth and of its square; Chebyshev's inequality bounds the "
-         "visible share from the two. A blur as wide as the region softens the shadow. Matt cloth on a "
+         "visible share from the two. Moments in half precision take half the memory (D8). A blur as wide as "
+         "the region softens the shadow. Matt cloth on a "
          "matt ground, exact lobes.",
      .exact_text = "ray traced",
      .claims = {{"variance maps of 256 texels", "variance maps of 64 texels", "The design of this program"},
-                {"variance maps of 256 texels", "256 texels, not blurred", "The design of this program"}},
+                {"variance maps of 256 texels", "256 texels, not blurred", "The design of this program"},
+                {"variance maps of 256 texels", "256 texels in half precision",
+                 "The design of this program"}},
      .solid = "torus",
      .base = {"scene.preset=paper", "light.lobe=dual", "image.ground=true", GREY("0.5", "0"),
               "light.prefilter=slices"},

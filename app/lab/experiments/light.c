@@ -68,6 +68,7 @@ static const struct tl_technique techniques[] = {
     {.page = "exact slices", .group = "filter", PAPER(PAPER_SLICES)},
 
     {.page = "vsm, unblurred", .group = "back-end", PAPER(PAPER_SLICES, "light.blur_m=0")},
+    {.page = "vsm in half precision", .group = "back-end", PAPER(PAPER_SLICES, "light.moments=half")},
     {.page = "depth", .group = "back-end", PAPER(PAPER_SLICES, "light.visibility=depth")},
     {.page = "depth, sphere cut, sun", .group = "back-end", PAPER(SPHERE_CUT_SUN)},
     {.page = "depth, difference", .group = "back-end", PAPER(SPHERE_CUT_SUN, "light.composition=difference")},

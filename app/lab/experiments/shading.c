@@ -44,6 +44,9 @@ static const struct tl_technique techniques[] = {
      .group = "coordinates",
      .id = "A6",
      SET("shading.coordinates=matrix", TABLE)},
+    {.picture = "texture matrix",
+     .id = "A6",
+     SET("shading.frequency=fast_phong", "shading.coordinates=matrix", TABLE)},
     {.page = "cosines at vertices",
      .picture = "vertex",
      .group = "coordinates",
@@ -301,8 +304,12 @@ static const struct tl_experiment experiments[] = {
      .name = "a6",
      .scene = "gallery",
      .title = "A6  Coordinates of the tables",
-     .text = "The coordinates of a table are computed by one texture matrix, for a lamp and a viewer at "
-             "infinity; or at vertices, with a local viewer; or at pixels.",
+     .text =
+         "The coordinates of a table are affine in the normal where lamp and viewer are at infinity: one "
+         "texture matrix a table yields them at vertices [Heidrich and Seidel 1999, eq. 2 and 3], or at "
+         "pixels from normals left as short as interpolation makes them, which is the same (test "
+         "local_shading). `matrix` makes these normals unit. Or coordinates are computed at vertices, with "
+         "a local viewer; or at pixels.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .claims = {{"pixel", "vertex", "[000] 3.1"}, {"vertex", "matrix", "[000] 3.1"}},
      .solid = "torus",

@@ -247,7 +247,8 @@ void tl_gallery_fresnel_figures(FILE *out)
 void tl_gallery_memory_figures(FILE *out)
 {
     static const char *const heads[] = {"texels a side", "level 0 alone, MiB", "with mip levels, MiB",
-                                        "shadow maps of as many texels, RG32F, MiB"};
+                                        "shadow maps of as many texels, RG32F, MiB",
+                                        "the same in RG16F, MiB"};
     static const int sides[] = {16, 32, 64, 128, 256};
     const int regions = 24; /* as in the section's pictures */
     const double mebibyte = 1 << 20;
@@ -259,6 +260,7 @@ void tl_gallery_memory_figures(FILE *out)
         tl_cells_add(&cells, "%.3f", (double)tl_memory_cubes(regions, sides[i]) / mebibyte);
         tl_cells_add(&cells, "%.3f", (double)tl_memory_chains(regions, sides[i]) / mebibyte);
         tl_cells_add(&cells, "%.3f", (double)tl_memory_shadow_maps(regions, sides[i], 8) / mebibyte);
+        tl_cells_add(&cells, "%.3f", (double)tl_memory_shadow_maps(regions, sides[i], 4) / mebibyte);
     }
     tl_cells_print(&cells, TL_COUNT(heads), out);
 }

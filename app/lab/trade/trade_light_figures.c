@@ -103,8 +103,8 @@ void tl_trade_write_lobes(bool quick, FILE *out)
 void tl_trade_write_memory(const tl_environment *environment, FILE *out)
 {
     static const char *const heads[] = {
-        "regions",     "the paper, 128",        "RGBA16F, no mips",     "with mips",
-        "paraboloids", "the paper's maps, 256", "this program's, RG32F"};
+        "regions",     "the paper, 128",        "RGBA16F, no mips",      "with mips",
+        "paraboloids", "the paper's maps, 256", "this program's, RG32F", "RG16F"};
     const int size = 128, map = 256;
     struct tl_cells cells = {0};
     tl_cube cube = tl_cube_from_environment(environment, size);
@@ -126,6 +126,7 @@ void tl_trade_write_memory(const tl_environment *environment, FILE *out)
         tl_cells_add(&cells, "%.2f", (double)tl_memory_paraboloids(&cube, &regions) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", row->maps_mb[2]);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_shadow_maps(row->regions, map, 8) / MEBIBYTE);
+        tl_cells_add(&cells, "%.2f", (double)tl_memory_shadow_maps(row->regions, map, 4) / MEBIBYTE);
         tl_regions_release(&regions);
     }
     tl_cells_print(&cells, TL_COUNT(heads), out);

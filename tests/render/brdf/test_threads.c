@@ -41,8 +41,8 @@ static tl_material cloth_of(int systems)
 
 static struct tl_brdf_sum sum_of(const tl_material *material)
 {
-    const float none[2] = {0, 0};
-    return tl_brdf_sum_of(material, material->specular, material->diffuse, material->glossiness, none);
+    const float none[3] = {0, 0, 0};
+    return tl_brdf_sum_of(material, material->specular, material->diffuse, material->glossiness, 1, none);
 }
 
 /* Integrals by channel of one lobe, and of the fan that stands for it. */
@@ -153,12 +153,13 @@ static void test_widening(void **state)
 {
     (void)state;
     tl_material satin = cloth_of(1);
-    const float wider[2] = {0, 0.05f};
-    struct tl_brdf_sum sum = tl_brdf_sum_of(&satin, satin.specular, satin.diffuse, satin.glossiness, wider);
+    const float wider[3] = {0, 0.05f, 0};
+    struct tl_brdf_sum sum =
+        tl_brdf_sum_of(&satin, satin.specular, satin.diffuse, satin.glossiness, 1, wider);
     assert_near(sum.items[1].gloss.width_weft, 0.45, 1e-6);
     assert_near(sum.items[1].gloss.width_warp, sqrt(0.124 * 0.124 + 0.05), 1e-6);
     satin.gloss.rotation = GLM_PI_2f; /* the warp lies along u */
-    sum = tl_brdf_sum_of(&satin, satin.specular, satin.diffuse, satin.glossiness, wider);
+    sum = tl_brdf_sum_of(&satin, satin.specular, satin.diffuse, satin.glossiness, 1, wider);
     assert_near(sum.items[1].gloss.width_weft, sqrt(0.45 * 0.45 + 0.05), 1e-6);
     assert_near(sum.items[1].gloss.width_warp, 0.124, 1e-6);
 }

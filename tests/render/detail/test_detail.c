@@ -195,7 +195,7 @@ static void test_unused(void **state)
     assert_false(runs_detail(device->renderer));
     const struct tl_detail_params *choices[] = {&relief, &horizon, &lean};
     const size_t texels = (4 * 64 * 64 - 1) / 3;       /* with all smaller levels */
-    const size_t texel_bytes[] = {4 + 2, 16 + 16, 16}; /* heights and cones; the cloth's two sides; moments */
+    const size_t texel_bytes[] = {4 + 2, 16 + 16, 24}; /* heights and cones; the cloth's two sides; moments */
     for (size_t i = 0; i < TL_COUNT(choices); i++) {
         size_t bytes = bytes_with(device, stage, choices[i]);
         assert_true(runs_detail(device->renderer));

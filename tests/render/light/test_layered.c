@@ -212,7 +212,7 @@ static void test_only_what_the_scene_requires(void **state)
     struct tl_render_memory with = tl_renderer_memory(device->renderer);
     assert_true(runs(tl_renderer_last_plan(device->renderer), "transparency"));
     assert_true(with.transparency > 0);
-    assert_int_equal(with.targets - before.targets, 4 * WIDTH * HEIGHT); /* the layer of facets */
+    assert_int_equal(with.targets - before.targets, 8 * WIDTH * HEIGHT); /* the layer of facets */
     assert_true(with.pems > before.pems); /* exponents of the fan and the coat */
     tl_image_release(&image);
 

@@ -3,6 +3,7 @@
  * of 2 pi / 3 sr, so its cone has cos = 1 - 1/3 and tan = sqrt(5) / 2. */
 #include "tests/render/scenes.h"
 
+#include "config/memory.h"
 #include "render/env/from_environment.h"
 #include "render/visibility/maps.h"
 
@@ -449,6 +450,77 @@ static void test_rounds_stay_inside(void **state)
     tl_environment_release(&environment);
 }
 
+/* The largest light in the middle of the shadow of a sheet `height_m` above the ground, and the bytes of
+ * maps. */
+static float leak_under(struct test_device *device, const tl_environment *environment, float height_m,
+                        int moments, size_t *bytes)
+{
+    struct test_shape shapes[2] = {
+        test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 8),
+        test_square((vec3s){{0, height_m, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 0.6f, 4)};
+    tl_surface surfaces[2];
+    for (int i = 0; i < 2; i++) {
+        shapes[i].material.specular = (vec3s){{0, 0, 0}};
+        test_shape_refresh(&shapes[i]);
+        surfaces[i] = shapes[i].surface;
+    }
+    struct tl_render_settings settings = settings_of_six(32, 8);
+    settings.light.blur_m = 0;
+    settings.light.moments = moments;
+    /* From below the sheet: from afar, so that it does not hide what it shadows. */
+    tl_frame frame =
+        test_frame((vec3s){{0, 0.006f, 1.9f}}, (vec3s){{0, 0, 0}}, 0.09f, surfaces, 2, environment);
+    tl_image visibility = visibility_image(device, &frame, settings);
+    float most = 0;
+    int seen = 0;
+    for (int y = 0; y < settings.image.height; y++)
+        for (int x = 0; x < settings.image.width; x++) {
+            vec3s point = ground_point(&frame.camera, &settings, x, y);
+            if (point.y > 1e-4f || fabsf(point.z) > 0.4f || fabsf(point.x) > 0.4f)
+                continue;
+            seen++;
+            most = fmaxf(most, test_pixel(&visibility, x, y)[0]);
+        }
+    assert_true(seen > 20);
+    tl_image_release(&visibility);
+    *bytes = tl_renderer_memory(device->renderer).maps;
+    for (int i = 0; i < 2; i++)
+        test_shape_release(&shapes[i]);
+    return most;
+}
+
+/* Moments in half precision take half the memory. Rounded to 2^-12 of themselves, depths m of half a unit and
+ * squares have a variance that is off by e = 2^-12 m^2 + 2 m 2^-12 m at most; where a shadow's caster is d
+ * units away Chebyshev's bound lets e / (e + d^2) of the light through. One unit is 2 x 2 sqrt(2) m here. In
+ * floats e is 2^-12 times smaller. */
+static void test_half_precision_leaks_near_casters(void **state)
+{
+    struct test_device *device = *state;
+    patch_direction = (vec3s){{0, 1, 0}};
+    tl_environment environment = test_environment(128, 64, bright_patch);
+    static const float heights[] = {0.015f, 0.03f, 0.06f, 0.25f, 1};
+    float near_leak = 0;
+    for (size_t i = 0; i < TL_COUNT(heights); i++) {
+        size_t bytes[2];
+        float leaks[2];
+        for (int moments = TL_MOMENTS_FLOAT; moments <= TL_MOMENTS_HALF; moments++)
+            leaks[moments] = leak_under(device, &environment, heights[i], moments, &bytes[moments]);
+        float away = (heights[i] - 0.001f) / (4 * sqrtf(2)), error = 3 * 0.27f * ldexpf(1, -12);
+        float bound = error / (error + away * away);
+        print_message(
+            "a sheet %.3f m above the ground lets %.4f through in floats, %.4f in halves (bound %.4f); "
+            "%zu and %zu bytes\n",
+            (double)heights[i], (double)leaks[0], (double)leaks[1], (double)bound, bytes[0], bytes[1]);
+        assert_true(leaks[TL_MOMENTS_FLOAT] < 0.05f);
+        assert_true(leaks[TL_MOMENTS_HALF] <= bound + 0.005f);
+        near_leak = fmaxf(near_leak, leaks[TL_MOMENTS_HALF]);
+        /* Six maps and one that blurs, of 256 x 256 texels, of 8 bytes or 4, besides a depth buffer. */
+        assert_int_equal(bytes[0] - bytes[1], 7 * 256 * 256 * 4);
+    }
+    assert_true(near_leak > 0.1f); /* else nothing was rounded */
+    tl_environment_release(&environment);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -459,6 +531,7 @@ int main(void)
         cmocka_unit_test(test_mask_lets_light_through),
         cmocka_unit_test(test_region_view),
         cmocka_unit_test(test_depth_half_plane),
+        cmocka_unit_test(test_half_precision_leaks_near_casters),
         cmocka_unit_test(test_rounds_become_area_light),
         cmocka_unit_test(test_rounds_stay_inside),
     };
