@@ -2,7 +2,7 @@
  * along the diagonal across them and leave it as narrow along them. Variances along u and v alone are the
  * same for both diagonals. The oracle is the mean of the highlights of all fine normals, evaluated one by one
  * or drawn from so near that each normal fills a pixel. */
-#include "tests/render/scenes.h"
+#include "tests/render/paths.h"
 
 #include "assets/builtin/weave.h"
 #include "config/memory.h"
@@ -152,9 +152,6 @@ static void test_samples_follow_the_axes(void **state)
     assert_near(across, 0.0275 / 2, 0.03 * 0.0275);
 }
 
-enum path { AT_SAMPLES, AT_VERTICES, BY_REFERENCE, BY_LAMP, BY_LAMP_EXACTLY, PATHS };
-static const char *const path_names[] = {"samples", "vertices", "reference", "lamp, GL", "lamp, exact"};
-
 #define NEAR_SIZE 64 /* pixels, two to a texel */
 #define FAR_SIZE  4
 #define NEAR_M    0.1f
@@ -210,48 +207,8 @@ static void be_grooved(struct test_scene *scene, const struct pose *pose)
     test_scene_refresh(scene);
 }
 
-static void set_path(struct test_scene *scene, enum path path)
-{
-    struct tl_render_settings *settings = &scene->settings;
-    settings->light.method = path == BY_REFERENCE ? TL_METHOD_REFERENCE
-                             : path >= BY_LAMP    ? TL_METHOD_UNSHADOWED
-                                                  : TL_METHOD_PEM;
-    settings->light.visibility = TL_VISIBILITY_RAYS;
-    settings->light.composition = TL_COMPOSE_RATIO;
-    settings->light.ratio_at = path == AT_VERTICES ? TL_RATIO_AT_VERTICES : TL_RATIO_AT_SAMPLES;
-    settings->light.lobe = TL_LOBE_DUAL;
-    settings->light.cut = TL_CUT_SPHERE;
-    settings->light.regions = 48;
-    settings->light.pem_size = 64;
-    settings->light.fan = 7;
-    settings->detail.minify = TL_DETAIL_MINIFY_LEAN;
-    settings->image.supersample = 1;
-    settings->reference.strata = settings->reference.lobe_samples = 16;
-    settings->reference.replicates = 1;
-    scene->lamps[0] = test_lamp_towards(posed(lit_from(lit_diagonal, LIGHT_DEG)), 3);
-    scene->frame.lamp_count = path >= BY_LAMP ? 1 : 0;
-}
-
-static double seen(struct test_scene *scene, tl_renderer *renderer, enum path path, float degrees,
-                   float distance_m, float side_m, int size)
-{
-    vec3s eye = glms_vec3_scale(posed(lit_from(lit_diagonal, degrees)), distance_m);
-    float fov_deg = 2 * atanf(side_m / 2 / distance_m) * 180 / (float)M_PI;
-    tl_frame frame = test_frame(eye, (vec3s){{0, 0, 0}}, fov_deg, scene->surfaces, 1, &scene->environment);
-    frame.lamps = scene->lamps;
-    frame.lamp_count = scene->frame.lamp_count;
-    scene->frame = frame;
-    scene->settings.image.width = scene->settings.image.height = size;
-    tl_image image = path == BY_LAMP_EXACTLY ? test_scene_evaluate(scene) : test_scene_draw(scene, renderer);
-    double sum = 0;
-    for (int i = 0; i < size * size; i++)
-        sum += (double)tl_image_floats(&image)[4 * i + 1];
-    tl_image_release(&image);
-    return sum / (size * size);
-}
-
 /* Over both diagonals. */
-static double highlight_error(tl_renderer *renderer, enum path path, const struct pose *pose)
+static double highlight_error(tl_renderer *renderer, enum test_path path, const struct pose *pose)
 {
     double difference = 0, all = 0;
     lit_behind = pose->is_back;
@@ -260,17 +217,17 @@ static double highlight_error(tl_renderer *renderer, enum path path, const struc
         test_scene_open(&scene, test_environment(512, 256, path >= BY_LAMP ? test_black : wide_lamp),
                         (vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 30, NEAR_SIZE, NEAR_SIZE);
         be_grooved(&scene, pose);
-        set_path(&scene, path);
+        test_path_set(&scene, path, posed(lit_from(lit_diagonal, LIGHT_DEG)));
         for (int i = 0; i < DIRECTIONS; i += 2) {
-            float degrees = -LIGHT_DEG + 12 * (float)(i - DIRECTIONS / 2);
-            double near = seen(&scene, renderer, path, degrees, NEAR_M, 0.001f, NEAR_SIZE);
-            double far = seen(&scene, renderer, path, degrees, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
+            vec3s viewer = posed(lit_from(lit_diagonal, -LIGHT_DEG + 12 * (float)(i - DIRECTIONS / 2)));
+            double near = test_path_see(&scene, renderer, path, viewer, NEAR_M, 0.001f, NEAR_SIZE);
+            double far = test_path_see(&scene, renderer, path, viewer, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
             difference += fabs(far - near);
             all += near;
         }
         test_scene_close(&scene);
     }
-    printf("%-12s %s: off by %.1f %%\n", path_names[path], pose->name, 100 * difference / all);
+    printf("%-12s %s: off by %.1f %%\n", test_path_names[path], pose->name, 100 * difference / all);
     return difference / all;
 }
 
@@ -285,7 +242,7 @@ static void test_far_grooves_are_the_mean_of_near(void **state)
                                         {"mirrored", false, true, false},
                                         {"turned, mirrored", false, true, true},
                                         {"turned, mirrored back", true, true, true}};
-    for (enum path path = 0; path < PATHS; path++)
+    for (enum test_path path = 0; path < TEST_PATHS; path++)
         for (size_t i = 0; i < TL_COUNT(poses); i++)
             assert_true(highlight_error(device->renderer, path, &poses[i]) <
                         (poses[i].is_turned ? 0.15 : 0.11));

@@ -1,6 +1,6 @@
 /* A satin's highlight from afar against the mean of the same highlight from so near that its yarns are seen,
  * by every path that evaluates a gloss: what yarns and unresolved bumps do to anisotropic lobes. */
-#include "tests/render/scenes.h"
+#include "tests/render/paths.h"
 
 #include "assets/builtin/weave.h"
 
@@ -15,20 +15,12 @@
 #define LIGHT_DEG  30.0f
 #define DIRECTIONS 7 /* of the viewer, from 36 degrees short of the mirror direction to 36 beyond it */
 
-enum path { AT_SAMPLES, AT_VERTICES, BY_REFERENCE, BY_LAMP, BY_LAMP_EXACTLY, PATHS };
-
 /* Relative L1 errors over the highlight across and along the floats. LEAN takes slopes for Gaussian, but
  * yarns that dip for one crossing in five have long tails of steep slopes, and yarns of two kinds make one
  * lobe, whose peak is a quarter too low. The bounds are measured errors and a fifth of them. With widths that
  * yarns and bumps leave alone the errors are 29 to 48 %. */
-static const struct {
-    const char *name;
-    double bounds[2];
-} paths[PATHS] = {{"samples", {0.216, 0.34}},
-                  {"vertices", {0.22, 0.327}},
-                  {"reference", {0.232, 0.273}},
-                  {"lamp, GL", {0.268, 0.318}},
-                  {"lamp, exact", {0.267, 0.317}}};
+static const double path_bounds[TEST_PATHS][2] = {
+    {0.216, 0.34}, {0.22, 0.327}, {0.232, 0.273}, {0.268, 0.318}, {0.267, 0.317}};
 
 static vec3s lit_from(int plane, float degrees)
 {
@@ -70,49 +62,8 @@ static void be_satin(struct test_scene *scene)
     test_scene_refresh(scene);
 }
 
-static void set_path(struct test_scene *scene, enum path path)
-{
-    struct tl_render_settings *settings = &scene->settings;
-    settings->light.method = path == BY_REFERENCE ? TL_METHOD_REFERENCE
-                             : path >= BY_LAMP    ? TL_METHOD_UNSHADOWED
-                                                  : TL_METHOD_PEM;
-    settings->light.visibility = TL_VISIBILITY_RAYS;
-    settings->light.composition = TL_COMPOSE_RATIO;
-    settings->light.ratio_at = path == AT_VERTICES ? TL_RATIO_AT_VERTICES : TL_RATIO_AT_SAMPLES;
-    settings->light.lobe = TL_LOBE_DUAL;
-    settings->light.cut = TL_CUT_SPHERE;
-    settings->light.regions = 48;
-    settings->light.pem_size = 64;
-    settings->light.fan = 7;
-    settings->detail.minify = TL_DETAIL_MINIFY_LEAN;
-    settings->image.supersample = 1;
-    settings->reference.strata = settings->reference.lobe_samples = 16;
-    settings->reference.replicates = 1;
-    scene->lamps[0] = test_lamp_towards(lit_from(lit_plane, LIGHT_DEG), 3);
-    scene->frame.lamp_count = path >= BY_LAMP ? 1 : 0;
-}
-
-/* The mean of a view of `side_m` at the middle of the square. */
-static double seen(struct test_scene *scene, tl_renderer *renderer, enum path path, float degrees,
-                   float distance_m, float side_m, int size)
-{
-    vec3s eye = glms_vec3_scale(lit_from(lit_plane, degrees), distance_m);
-    float fov_deg = 2 * atanf(side_m / 2 / distance_m) * 180 / (float)M_PI;
-    tl_frame frame = test_frame(eye, (vec3s){{0, 0, 0}}, fov_deg, scene->surfaces, 1, &scene->environment);
-    frame.lamps = scene->lamps;
-    frame.lamp_count = scene->frame.lamp_count;
-    scene->frame = frame;
-    scene->settings.image.width = scene->settings.image.height = size;
-    tl_image image = path == BY_LAMP_EXACTLY ? test_scene_evaluate(scene) : test_scene_draw(scene, renderer);
-    double sum = 0;
-    for (int i = 0; i < size * size; i++)
-        sum += (double)tl_image_floats(&image)[4 * i + 1];
-    tl_image_release(&image);
-    return sum / (size * size);
-}
-
 /* Errors over the highlight in one plane of incidence: along the weft or along the warp. */
-static double highlight_error(tl_renderer *renderer, enum path path, int plane)
+static double highlight_error(tl_renderer *renderer, enum test_path path, int plane)
 {
     const float repeats_m = 0.0025f; /* 3.5 repeats across, 2 along: at whole ones there is no difference */
     struct test_scene scene;
@@ -121,13 +72,15 @@ static double highlight_error(tl_renderer *renderer, enum path path, int plane)
     test_scene_open(&scene, test_environment(512, 256, path >= BY_LAMP ? test_black : wide_lamp),
                     (vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 30, NEAR_SIZE, NEAR_SIZE);
     be_satin(&scene);
-    set_path(&scene, path);
-    printf("%-12s %s:", paths[path].name, plane == 0 ? "across the floats" : "along the floats ");
+    test_path_set(&scene, path, lit_from(lit_plane, LIGHT_DEG));
+    printf("%-12s %s:", test_path_names[path], plane == 0 ? "across the floats" : "along the floats ");
     for (int i = 0; i < DIRECTIONS; i++) {
         int from_mirror = i - DIRECTIONS / 2;
         float degrees = -LIGHT_DEG + 12 * (float)from_mirror;
-        double near = seen(&scene, renderer, path, degrees, NEAR_M, repeats_m, NEAR_SIZE);
-        double far = seen(&scene, renderer, path, degrees, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
+        double near =
+            test_path_see(&scene, renderer, path, lit_from(lit_plane, degrees), NEAR_M, repeats_m, NEAR_SIZE);
+        double far = test_path_see(&scene, renderer, path, lit_from(lit_plane, degrees), FAR_M, 1e-2f * FAR_M,
+                                   FAR_SIZE);
         printf("  %.4f/%.4f", far, near);
         difference += fabs(far - near);
         all += near;
@@ -140,9 +93,9 @@ static double highlight_error(tl_renderer *renderer, enum path path, int plane)
 static void test_far_highlight_is_the_mean_of_near(void **state)
 {
     struct test_device *device = *state;
-    for (enum path path = 0; path < PATHS; path++)
+    for (enum test_path path = 0; path < TEST_PATHS; path++)
         for (int plane = 0; plane < 2; plane++)
-            assert_near(highlight_error(device->renderer, path, plane), 0, paths[path].bounds[plane]);
+            assert_near(highlight_error(device->renderer, path, plane), 0, path_bounds[path][plane]);
 }
 
 /* A matt jersey under daylight from one side, on every path: what it looks like from 6 m against the mean of
@@ -158,7 +111,7 @@ static void test_a_far_knit_is_the_mean_of_near(void **state)
     params.wale_mm = 0.8f;
     params.course_mm = 0.5f;
     params.yarn_mm = 0.3f;
-    for (enum path path = AT_SAMPLES; path <= BY_REFERENCE; path++) {
+    for (enum test_path path = AT_SAMPLES; path <= BY_REFERENCE; path++) {
         struct test_scene scene;
         double worst = 0;
         lit_plane = 0;
@@ -170,14 +123,16 @@ static void test_a_far_knit_is_the_mean_of_near(void **state)
         cloth->diffuse = (vec3s){{0.5f, 0.5f, 0.5f}};
         cloth->weave = &scene.weave;
         test_scene_refresh(&scene);
-        set_path(&scene, path);
+        test_path_set(&scene, path, lit_from(lit_plane, LIGHT_DEG));
         for (int i = 0; i < 3; i++) {
             const float degrees = 25 * (float)(i - 1), loops_m = 0.008f; /* ten wales, sixteen courses */
-            double near = seen(&scene, device->renderer, path, degrees, NEAR_M, loops_m, NEAR_SIZE);
-            double far = seen(&scene, device->renderer, path, degrees, 6, 0.06f, FAR_SIZE);
+            double near = test_path_see(&scene, device->renderer, path, lit_from(lit_plane, degrees), NEAR_M,
+                                        loops_m, NEAR_SIZE);
+            double far = test_path_see(&scene, device->renderer, path, lit_from(lit_plane, degrees), 6, 0.06f,
+                                       FAR_SIZE);
             worst = fmax(worst, fabs(far / near - 1));
         }
-        printf("%-12s a jersey from afar is off by %.1f %% of the mean of near\n", paths[path].name,
+        printf("%-12s a jersey from afar is off by %.1f %% of the mean of near\n", test_path_names[path],
                100 * worst);
         assert_true(worst < bounds[path]);
         test_scene_close(&scene);
@@ -206,7 +161,7 @@ static void stretch(struct test_scene *scene, float along_u, float along_v)
 }
 
 /* A highlight of the satin, with slopes along u only, on cloth that is stretched. */
-static double stretched_shade(tl_renderer *renderer, enum path path, vec2s by, float height)
+static double stretched_shade(tl_renderer *renderer, enum test_path path, vec2s by, float height)
 {
     struct test_scene scene;
     lit_plane = 0;
@@ -214,10 +169,11 @@ static double stretched_shade(tl_renderer *renderer, enum path path, vec2s by, f
                     (vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 30, FAR_SIZE, FAR_SIZE);
     be_satin(&scene);
     keep_slopes_along_u(&scene.weave);
-    set_path(&scene, path);
+    test_path_set(&scene, path, lit_from(lit_plane, LIGHT_DEG));
     stretch(&scene, by.x, by.y);
     scene.settings.detail.height_scale = height;
-    double shade = seen(&scene, renderer, path, -LIGHT_DEG, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
+    double shade = test_path_see(&scene, renderer, path, lit_from(lit_plane, -LIGHT_DEG), FAR_M,
+                                 1e-2f * FAR_M, FAR_SIZE);
     test_scene_close(&scene);
     return shade;
 }
@@ -227,13 +183,13 @@ static double stretched_shade(tl_renderer *renderer, enum path path, vec2s by, f
 static void test_slopes_follow_the_stretch(void **state)
 {
     const struct test_device *device = *state;
-    for (enum path path = AT_SAMPLES; path < PATHS; path++) {
+    for (enum test_path path = AT_SAMPLES; path < TEST_PATHS; path++) {
         double rest = stretched_shade(device->renderer, path, (vec2s){{1, 1}}, 1);
         double lower = stretched_shade(device->renderer, path, (vec2s){{1, 1}}, 1 / 1.5f);
         double along = stretched_shade(device->renderer, path, (vec2s){{1.5f, 1}}, 1);
         double across = stretched_shade(device->renderer, path, (vec2s){{1, 1.5f}}, 1);
         printf("%-12s at rest %.4f, two thirds as high %.4f; stretched along the slopes %.4f, across %.4f\n",
-               paths[path].name, rest, lower, along, across);
+               test_path_names[path], rest, lower, along, across);
         assert_true(fabs(lower / rest - 1) > 0.05);
         assert_near(along, lower, 0.01 * lower);
         assert_near(across, rest, 0.01 * rest);
