@@ -46,9 +46,7 @@ static void widen(struct tl_brdf *brdf, float own, float by_glossiness, float ha
     weft = tl_facet_square(given_square(gloss->width_weft, own), finite_or(weft, 0));
     warp = tl_facet_square(given_square(gloss->width_warp, own), finite_or(warp, 0));
     product = tl_facet_product(weft, warp, product);
-    struct tl_facet_axes axes = {{weft, warp}, 1, 0};
-    if (product != 0)
-        axes = tl_facet_axes_of(weft, warp, product);
+    const struct tl_facet_axes axes = tl_facet_axes_of(weft, warp, product);
     gloss->width_weft = sqrtf(axes.square[0]);
     gloss->width_warp = sqrtf(axes.square[1]);
     brdf->turn = axes.sine;

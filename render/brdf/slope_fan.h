@@ -99,14 +99,19 @@ TL_INLINE float tl_facet_product(float weft, float warp, float product)
 }
 
 /* The axes of the symmetric matrix with `weft` and `warp` on its diagonal and `product` off it, which
- * tl_facet_product limits: the angle by Jacobi's rotation. */
+ * tl_facet_product limits: the angle by Jacobi's rotation. A product that is rounding turns nothing: round
+ * facets have no axes. */
 TL_INLINE struct tl_facet_axes tl_facet_axes_of(float weft, float warp, float product)
 {
     float mean = (weft + warp) / 2, half = (weft - warp) / 2;
-    float off = sqrtf(half * half + product * product), safe = tl_maxf(off, 1e-20f);
-    float cosine = sqrtf((1 + tl_minf(fabsf(half) / safe, 1)) / 2), sine = product / (2 * safe * cosine);
-    float signed_off = half < 0 ? -off : off;
-    return (struct tl_facet_axes){{mean + signed_off, mean - signed_off}, cosine, half < 0 ? -sine : sine};
+    float off = sqrtf(half * half + product * product), signed_off = half < 0 ? -off : off;
+    bool is_turned = fabsf(product) > 1e-6f * mean;
+    float safe = tl_maxf(off, 1e-20f), share = is_turned ? tl_minf(fabsf(half) / safe, 1) : 1;
+    float cosine = sqrtf((1 + share) / 2), sine = is_turned ? product / (2 * safe * cosine) : 0;
+    return (struct tl_facet_axes){
+        {is_turned ? mean + signed_off : weft, is_turned ? mean - signed_off : warp},
+        cosine,
+        half < 0 ? -sine : sine};
 }
 
 TL_INLINE float tl_slope_exponent(float variance)

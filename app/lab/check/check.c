@@ -64,7 +64,7 @@ const struct tl_invariant tl_invariants[] = {
      "0.1 to 0.2 are usual by rays, 1.2 at a rim of light of a small lamp; --baseline makes it that of the "
      "scene",
      true, tl_measure_tile},
-    {"image.place", "outlines lie where the reference's do: displacement, pixels", 0.1,
+    {"image.place", "outlines lie where the reference's do: displacement, pixels", BY_SETTINGS,
      "0.003 is usual; half a pixel reads as 0.3, because edges are sharper than their gradients", true,
      tl_measure_place},
     {"maps.moments",

@@ -51,6 +51,7 @@ void tl_measure_place(const struct tl_checked *checked, struct tl_finding *findi
     if (!checked->truth)
         return;
     vec2s off = checked->truth->displacement;
+    finding->bound = 0.1 / (double)checked->settings->image.scale; /* what is drawn smaller is enlarged */
     if (tl_finding_add(finding, (double)glms_vec2_norm(off)))
         tl_finding_place(finding, "%.2f to the right, %.2f down", (double)off.x, (double)off.y);
 }
