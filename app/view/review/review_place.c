@@ -110,7 +110,8 @@ void tl_review_place_toggle(struct tl_review *review)
 bool tl_review_place_hide(struct tl_review *review)
 {
     bool was_shown = review->placing.shown;
-    review->placing.shown = false;
+    if (was_shown)
+        tl_review_place_toggle(review);
     return was_shown;
 }
 
