@@ -38,56 +38,37 @@ static void fill_group(struct tl_region_group *group, const struct tl_region *re
     group->reach_cosine = reach < GLM_PI_2f ? cosf(reach) : -2;
 }
 
-/* Adds sixteen regions' lights through the lobe of each. */
-TL_INLINE void add_group(const struct tl_region_group *group, const float lobe[TL_LANES],
-                         float lanes[3][TL_LANES])
+/* The sum that the exact light is divided by; see tl_lobe_map_function. `diffuse` is constant where it is
+ * called: a branch in the loop would keep it from being done in vectors. */
+TL_INLINE void sum_lobes(const struct tl_region_lights *lights, vec3s d, float s, bool diffuse, float sum[3])
 {
-    for (int c = 0; c < 3; c++)
-        for (int lane = 0; lane < TL_LANES; lane++)
-            lanes[c][lane] += group->power[c][lane] * lobe[lane];
-}
-
-/* Cosines between a direction and those of a group. */
-TL_INLINE void find_cosines(const struct tl_region_group *group, vec3s d, float cosines[TL_LANES])
-{
-    for (int lane = 0; lane < TL_LANES; lane++)
-        cosines[lane] = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
-}
-
-TL_INLINE void sum_of(float lanes[3][TL_LANES], float sum[3])
-{
+    float lanes[3][TL_LANES] = {{0}};
+    for (int g = 0; g < lights->group_count; g++) {
+        const struct tl_region_group *group = &lights->groups[g];
+        float lobe[TL_LANES];
+        for (int lane = 0; lane < TL_LANES; lane++) {
+            float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
+            float exponent = lobe_broadened_exponent(s, group->spread[lane]);
+            lobe[lane] = diffuse
+                             ? tl_region_lobe_diffuse(cosine, group->sine[lane], group->inverse_sine[lane])
+                             : tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
+        }
+        for (int c = 0; c < 3; c++)
+            for (int lane = 0; lane < TL_LANES; lane++)
+                lanes[c][lane] += group->power[c][lane] * lobe[lane];
+    }
     for (int c = 0; c < 3; c++)
         sum[c] = tl_sum_lanes(lanes[c]);
 }
 
-/* The sum that the exact light is divided by; see tl_lobe_map_function. */
-TL_CLONES static void sum_lobes(const struct tl_region_lights *lights, vec3s d, float s, float sum[3])
+TL_CLONES static void sum_gloss(const struct tl_region_lights *lights, vec3s d, float s, float sum[3])
 {
-    float lanes[3][TL_LANES] = {{0}};
-    for (int g = 0; g < lights->group_count; g++) {
-        const struct tl_region_group *group = &lights->groups[g];
-        float cosines[TL_LANES], lobe[TL_LANES];
-        find_cosines(group, d, cosines);
-        for (int lane = 0; lane < TL_LANES; lane++)
-            lobe[lane] = tl_region_lobe(cosines[lane], group->sine[lane], group->inverse_sine[lane],
-                                        lobe_broadened_exponent(s, group->spread[lane]));
-        add_group(group, lobe, lanes);
-    }
-    sum_of(lanes, sum);
+    sum_lobes(lights, d, s, false, sum);
 }
 
 TL_CLONES static void sum_diffuse(const struct tl_region_lights *lights, vec3s d, float sum[3])
 {
-    float lanes[3][TL_LANES] = {{0}};
-    for (int g = 0; g < lights->group_count; g++) {
-        const struct tl_region_group *group = &lights->groups[g];
-        float cosines[TL_LANES], lobe[TL_LANES];
-        find_cosines(group, d, cosines);
-        for (int lane = 0; lane < TL_LANES; lane++)
-            lobe[lane] = tl_region_lobe_diffuse(cosines[lane], group->sine[lane], group->inverse_sine[lane]);
-        add_group(group, lobe, lanes);
-    }
-    sum_of(lanes, sum);
+    sum_lobes(lights, d, 1, true, sum);
 }
 
 /* Divides channel by channel; 1 where no region has light. */
@@ -102,7 +83,7 @@ static vec3s divide(vec3s light, const float sum[3])
 static vec3s gain_of(vec3s direction, float exponent, vec3s light, const void *context)
 {
     float sum[3];
-    sum_lobes(context, direction, tl_minf(exponent, TL_REGION_LOBE_MAX), sum);
+    sum_gloss(context, direction, tl_minf(exponent, TL_REGION_LOBE_MAX), sum);
     return divide(light, sum);
 }
 

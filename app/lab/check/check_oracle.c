@@ -48,7 +48,7 @@ void tl_measure_tile(const struct tl_checked *checked, struct tl_finding *findin
 
 void tl_measure_place(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!checked->truth)
+    if (!checked->truth || !checked->truth->has_outlines)
         return;
     vec2s off = checked->truth->displacement;
     finding->bound = 0.1 / (double)checked->settings->image.scale; /* what is drawn smaller is enlarged */

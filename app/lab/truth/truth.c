@@ -278,8 +278,8 @@ static void keep_cover(const struct comparison *comparison, int tile, const stru
 
 /* How far the image's outlines lie from the reference's, in pixels: the displacement d that explains the
  * difference of coverages best, image - reference = -d . gradient, by least squares over all pixels (Lucas
- * and Kanade 1981). 0 where outlines do not run in two directions. */
-static vec2s find_displacement(const struct comparison *comparison)
+ * and Kanade 1981). Returns false where outlines do not run in two directions. */
+static bool find_displacement(const struct comparison *comparison, vec2s *out)
 {
     const float *got = tl_image_floats(comparison->image) + 3, *cover = comparison->cover;
     double xx = 0, xy = 0, yy = 0, x_off = 0, y_off = 0;
@@ -294,10 +294,9 @@ static vec2s find_displacement(const struct comparison *comparison)
             x_off += along * off, y_off += down * off;
         }
     double determinant = xx * yy - xy * xy;
-    if (!(determinant > 1e-3 * xx * yy))
-        return (vec2s){{0, 0}};
-    return (vec2s){
+    *out = (vec2s){
         {(float)((yy * x_off - xy * y_off) / determinant), (float)((xx * y_off - xy * x_off) / determinant)}};
+    return determinant > 1e-3 * xx * yy;
 }
 
 static void add_all(const struct tile_sums *tiles, int count, struct tile_sums *whole)
@@ -433,7 +432,7 @@ static void compare(const struct comparison *comparison, struct tl_truth *out)
         keep_cover(comparison, i, &light);
     }
     add_all(tiles, count, &whole);
-    out->displacement = find_displacement(comparison);
+    out->has_outlines = find_displacement(comparison, &out->displacement);
     if (whole.count > 0) {
         double values = 3.0 * whole.count, square = (whole.square - whole.variance) / values;
         double mean = (whole.all.light[0] + whole.all.light[1] + whole.all.light[2]) / values;
@@ -512,8 +511,11 @@ void tl_truth_worst(struct tl_truth *a, const struct tl_truth *b)
         a->patch_x = b->patch_x;
         a->patch_y = b->patch_y;
     }
-    if (glms_vec2_norm(b->displacement) > glms_vec2_norm(a->displacement))
+    if (b->has_outlines && (!a->has_outlines || is_worse((double)glms_vec2_norm(b->displacement),
+                                                         (double)glms_vec2_norm(a->displacement)))) {
+        a->has_outlines = true;
         a->displacement = b->displacement;
+    }
     a->mean_error = is_worse(b->mean_error, a->mean_error) ? b->mean_error : a->mean_error;
     a->garment_error = is_worse(b->garment_error, a->garment_error) ? b->garment_error : a->garment_error;
 }

@@ -25,6 +25,7 @@ struct tl_truth {
      * that are thinner than a tile do not count here. */
     double patch_error;
     int patch_x, patch_y;
+    bool has_outlines;  /* in two directions: else there is no displacement */
     vec2s displacement; /* of the image's outlines from the reference's, to the right and down, pixels */
 };
 

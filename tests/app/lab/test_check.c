@@ -380,19 +380,32 @@ static void patches_are_named(void **state)
     take_down(&stand);
 }
 
-/* Each pixel becomes the mean of itself and its right neighbour. */
+/* Each pixel becomes the mean of itself and another one: the image moves away from that by half of the way.
+ */
+static void blend_with(const struct stand *stand, int right, int down)
+{
+    float *pixels = tl_image_floats(&stand->image);
+    for (int y = 0; y + down < HEIGHT; y++)
+        for (int x = 0; x + right < WIDTH; x++)
+            for (int c = 0; c < 4; c++)
+                pixels[4 * (y * WIDTH + x) + c] = 0.5f * (pixels[4 * (y * WIDTH + x) + c] +
+                                                          pixels[4 * ((y + down) * WIDTH + x + right) + c]);
+}
+
 static void outlines_that_are_displaced_are_named(void **state)
 {
     (void)state;
-    struct stand *stand = by_rays();
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x + 1 < WIDTH; x++) {
-            float *pixel = tl_image_floats(&stand->image) + 4 * (y * WIDTH + x);
-            for (int c = 0; c < 4; c++)
-                pixel[c] = 0.5f * (pixel[c] + pixel[4 + c]);
-        }
-    assert_breaks(&stand->checked, "image.place", "-0.");
-    take_down(&stand);
+    for (int down = 0; down < 2; down++) {
+        struct stand *stand = by_rays();
+        blend_with(stand, !down, down);
+        struct tl_verdict verdict = verdict_on(&stand->checked, "image.place");
+        float right, below;
+        assert_false(verdict.ok);
+        assert_int_equal(sscanf(verdict.finding.place, "%f to the right, %f down", &right, &below), 2);
+        assert_near(down ? below : right, -0.4, 0.15);
+        assert_near(down ? right : below, 0, 0.1);
+        take_down(&stand);
+    }
 }
 
 static void a_plan_over_budget_is_named(void **state)
@@ -530,6 +543,25 @@ static void move_curtain(struct stand *stand)
         if (mesh->positions[v].y > 0.01f)
             mesh->positions[v].z += 0.15f * (1 - mesh->positions[v].y);
     tl_tangent_frames_update(stand->frames, mesh->positions, mesh->normals, mesh->tangents);
+}
+
+/* One region is renewed in a frame where 24 of 96 should be. */
+static void visibility_that_is_not_renewed_is_named(void **state)
+{
+    (void)state;
+    struct stand *stand = by_rays();
+    struct tl_render_settings slower = stand->settings;
+    slower.light.refresh = 1;
+    for (int i = 0; i < 12 + 24; i++) {
+        stand->scene.mesh.positions[VERTEX].z += 1e-4f;
+        stand->scene.surface.motion_revision += 1000;
+        draw(stand, &stand->renderer, &stand->frame, i < 12 ? &stand->settings : &slower, &stand->image);
+        if (i == 11)
+            assert_true(verdict_on(&stand->checked, "visibility.age").finding.is_measured &&
+                        verdict_on(&stand->checked, "visibility.age").ok);
+    }
+    assert_breaks(&stand->checked, "visibility.age", "older than 16 frames");
+    take_down(&stand);
 }
 
 /* The back-end's bound is what tells stale from fresh. */
@@ -696,6 +728,7 @@ int main(void)
         cmocka_unit_test(a_leaking_shadow_is_named),
         cmocka_unit_test(visibility_out_of_range_is_named),
         cmocka_unit_test(moments_that_cannot_be_are_named),
+        cmocka_unit_test(visibility_that_is_not_renewed_is_named),
         cmocka_unit_test(a_stale_map_is_named),
         cmocka_unit_test(a_skipped_update_is_named),
         cmocka_unit_test(lost_light_is_named),
