@@ -19,8 +19,8 @@ add_library(toile_light STATIC
   brdf/power.c
   construction/options.c
   construction/tables.c
-  brdf/table_error.c
-  brdf/tables.c
+  brdf/tables/table_error.c
+  brdf/tables/tables.c
   env/convert.c
   env/cube.c
   env/emitters.c

@@ -1,4 +1,4 @@
-#include "render/brdf/tables.h"
+#include "render/brdf/tables/tables.h"
 #include "render/local/shading.h"
 #include "render/plan/affects.h"
 

@@ -26,7 +26,7 @@ struct tl_shading_params {
     int coordinates;           /* enum tl_coordinates */
     int reflectance;           /* enum tl_reflectance_by */
     int table_size;            /* texels, side */
-    int table_precision;       /* enum tl_precision (render/brdf/tables.h) */
+    int table_precision;       /* enum tl_precision (render/brdf/tables/tables.h) */
     int table_range;           /* enum tl_table_range: treatment of the singular factor */
     int max_textures_per_pass; /* tables; a model with more takes several passes */
     int pass_target;           /* enum tl_pass_target: precision of the product of several passes */

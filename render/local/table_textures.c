@@ -1,7 +1,7 @@
 #include "render/local/table_textures.h"
 
 #include "config/memory.h"
-#include "render/brdf/tables.h"
+#include "render/brdf/tables/tables.h"
 
 #include <epoxy/gl.h>
 

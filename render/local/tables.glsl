@@ -1,4 +1,4 @@
-// Gloss from the tables of render/brdf/tables.h. There are TABLES of them; a pass multiplies FIRST_TABLE to LAST_TABLE.
+// Gloss from the tables of render/brdf/tables/tables.h. There are TABLES of them; a pass multiplies FIRST_TABLE to LAST_TABLE.
 // TABLE0_X and so on are numbers of enum tl_table_input; TABLE0_ANGLES: the axes are angles.
 layout(location = 80) uniform vec4 table_axes[3]; // scale and bias of x, of y: the texture matrix
 layout(location = 83) uniform vec3 table_scales;

@@ -7,7 +7,7 @@
 #include "render/brdf/fresnel.h"
 #include "render/brdf/normalise.h"
 #include "render/brdf/power.h"
-#include "render/brdf/table_error.h"
+#include "render/brdf/tables/table_error.h"
 #include "render/pem/memory.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
-#include "render/brdf/tables.h"
+#include "render/brdf/tables/tables.h"
 
 #include "config/memory.h"
 #include "render/brdf/fresnel.h"
-#include "render/brdf/table_error.h"
+#include "render/brdf/tables/table_error.h"
 
 #include "tests/testing.h"
 

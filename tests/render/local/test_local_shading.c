@@ -3,7 +3,7 @@
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
-#include "render/brdf/tables.h"
+#include "render/brdf/tables/tables.h"
 #include "render/scene/view.h"
 #include "render/trace/trace.h"
 

@@ -28,8 +28,8 @@
  *
  * `texels` are rows from v = 0 up, without padding (GL_UNPACK_ALIGNMENT 1), `channels` 1 (GL_RED: swizzle to
  * RGB) or 3: uint8_t or uint16_t, normalised (GL_R8, GL_RGB16, ...), or float. Pure; threads: any. */
-#ifndef TOILE_RENDER_BRDF_TABLES_H
-#define TOILE_RENDER_BRDF_TABLES_H
+#ifndef TOILE_RENDER_BRDF_TABLES_TABLES_H
+#define TOILE_RENDER_BRDF_TABLES_TABLES_H
 
 #include "render/brdf/brdf.h"
 

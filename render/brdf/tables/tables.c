@@ -1,4 +1,4 @@
-#include "render/brdf/tables.h"
+#include "render/brdf/tables/tables.h"
 
 #include "config/memory.h"
 

@@ -1,4 +1,4 @@
-#include "render/brdf/table_error.h"
+#include "render/brdf/tables/table_error.h"
 
 #include <math.h>
 

@@ -6,10 +6,10 @@
  *
  *     relative RMSE = sqrt(sum (table - direct)^2 / sum direct^2)
  *     darkening     = 1 - sum table / sum direct, over the grazing pairs only */
-#ifndef TOILE_RENDER_BRDF_TABLE_ERROR_H
-#define TOILE_RENDER_BRDF_TABLE_ERROR_H
+#ifndef TOILE_RENDER_BRDF_TABLES_TABLE_ERROR_H
+#define TOILE_RENDER_BRDF_TABLES_TABLE_ERROR_H
 
-#include "render/brdf/tables.h"
+#include "render/brdf/tables/tables.h"
 
 /* Pairs whose n.l or n.v is smaller count as grazing (beyond 78.5 degrees). */
 #define TL_GRAZING_COSINE 0.2f
