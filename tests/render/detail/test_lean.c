@@ -248,10 +248,39 @@ static void test_far_grooves_are_the_mean_of_near(void **state)
                         (poses[i].is_turned ? 0.15 : 0.11));
 }
 
+/* What the gallery says of the built-in cloths: over a whole repeat their slopes are hardly correlated, so
+ * that the covariance is for normal maps. */
+static void test_built_in_slopes_are_hardly_correlated(void **state)
+{
+    (void)state;
+    for (int pattern = TL_WEAVE_PLAIN; pattern <= TL_WEAVE_PILE; pattern++) {
+        struct tl_weave_params params = *(const struct tl_weave_params *)tl_weave_options.defaults;
+        tl_weave weave;
+        params.pattern = pattern;
+        assert_true(tl_weave_create(&params, &weave));
+        tl_image moments = tl_bake_moments(&weave.normal), cross = tl_bake_cross_moments(&weave.normal);
+        const size_t count = (size_t)moments.width * (size_t)moments.height;
+        double sums[5] = {0};
+        for (size_t i = 0; i < count; i++)
+            for (size_t m = 0; m < 5; m++)
+                sums[m] +=
+                    (double)(m < 4 ? tl_image_floats(&moments)[4 * i + m] : tl_image_floats(&cross)[i]) /
+                    (double)count;
+        double along = sums[2] - sums[0] * sums[0], across = sums[3] - sums[1] * sums[1];
+        double correlation = (sums[4] - sums[0] * sums[1]) / sqrt(along * across);
+        printf("pattern %d: slopes are correlated by %.3f\n", pattern, correlation);
+        assert_near(correlation, 0, 0.04);
+        tl_image_release(&moments);
+        tl_image_release(&cross);
+        tl_weave_release(&weave);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_a_lobe_is_the_mean_of_its_normals),
                                        cmocka_unit_test(test_samples_follow_the_axes),
+                                       cmocka_unit_test(test_built_in_slopes_are_hardly_correlated),
                                        cmocka_unit_test(test_far_grooves_are_the_mean_of_near)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
