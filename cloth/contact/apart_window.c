@@ -1,6 +1,7 @@
 /* Windows of keep_apart.h: the balls, planes and contacts that hold until the next one. */
 #include "cloth/contact/keep_apart.h"
 
+#include "cloth/mesh/team.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -46,7 +47,6 @@ static void choose_radii(struct tl_apart *apart, const vec3d *x, double h)
 {
     size_t count = apart->near.topology->vertex_count;
     int lead = apart->substeps + 1 < WINDOW_SUBSTEPS ? apart->substeps + 1 : WINDOW_SUBSTEPS;
-#pragma omp parallel for if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
         double speed = vec3d_norm(vec3d_sub(apart->speed[i], tl_affine_at(&apart->velocity, x[i])));
         double wanted = RADIUS_M + RADIUS_LEAD * speed * lead * h;
@@ -58,7 +58,6 @@ static void choose_radii(struct tl_apart *apart, const vec3d *x, double h)
 static void widen_radii(struct tl_apart *apart, const vec3d *from, const vec3d *to)
 {
     size_t count = apart->near.topology->vertex_count;
-#pragma omp parallel for if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
         apart->way[i] = vec3d_sub(tl_affine_undo(&apart->back, to[i]), from[i]);
         double wanted = WIDE * vec3d_norm(apart->way[i]);
@@ -101,7 +100,6 @@ static double measure_list(struct tl_apart *apart, const vec3d *x)
     if (!tl_affine_invert(&moved, &back) || back.norm > LIST_STRETCH)
         return 0;
     bool good = true;
-#pragma omp parallel for reduction(&& : good) if (count >= TL_PARALLEL_VERTICES)
     for (size_t i = 0; i < count; i++) {
         apart->off[i] = vec3d_distance(tl_affine_undo(&back, x[i]), near->base[i]);
         good = good && near->reach[i] - apart->off[i] >= WANTED_SHARE * back.norm * apart->radius[i];
@@ -445,20 +443,32 @@ static void add_body(const struct tl_apart *apart, const struct tl_apart_params 
         }
 }
 
+struct looking {
+    const struct tl_apart *apart;
+    const struct tl_apart_params *params;
+    const vec3d *x;
+    const double *reach;
+    struct found *parts; /* one for each thread of the team */
+};
+
+static void look_on_team(void *context)
+{
+    const struct looking *now = context;
+    look_at_range(now->apart, now->params, now->x, now->reach, tl_team_range(now->apart->near.pair_count, 1),
+                  &now->parts[tl_team_thread()]);
+}
+
 static void find_planes(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *x,
                         double stretch, bool still)
 {
     size_t count = apart->near.topology->vertex_count;
-    size_t part_count = count >= TL_NEAR_PARALLEL_VERTICES ? (size_t)omp_get_max_threads() : 1;
+    size_t part_count = tl_team_size(count);
     struct found *parts = TL_NEW_ARRAY(struct found, part_count);
     double *reach = TL_NEW_ARRAY(double, count);
     for (size_t i = 0; i < count; i++)
         reach[i] = apart->off[i] + stretch * (apart->radius[i] + params->thickness_m / 2);
-#pragma omp parallel num_threads((int)part_count) if (part_count > 1)
-    {
-        struct tl_range range = tl_thread_range(apart->near.pair_count, 1);
-        look_at_range(apart, params, x, reach, range, &parts[omp_get_thread_num()]);
-    }
+    struct looking looking = {apart, params, x, reach, parts};
+    tl_team_run(count, look_on_team, &looking);
     if (still)
         add_body(apart, params, x, &parts[part_count - 1]);
     gather_planes(apart, parts, part_count);

@@ -1,5 +1,6 @@
 #include "cloth/contact/contact.h"
 
+#include "cloth/mesh/team.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -411,25 +412,43 @@ bool tl_contacts_height(const struct tl_contacts *contacts, size_t particle, vec
     return out->height_m < HUGE_VAL;
 }
 
+/* What is solved for, on the team. */
+struct solving {
+    struct surroundings surroundings;
+    struct tl_contacts *contacts;
+    const struct tl_contact_params *params;
+    struct tl_particles *particles;
+};
+
+static void solve_particles(void *context)
+{
+    const struct solving *now = context;
+    struct tl_particles *particles = now->particles;
+    const struct tl_range range = tl_team_range(particles->count, 1);
+    for (size_t i = range.from; i < range.to; i++) {
+        struct tl_contact_cache *cache = &now->contacts->caches[i];
+        if (is_released(now->contacts, i))
+            continue;
+        if (particles->w[i] > 0)
+            particles->x[i] =
+                keep_out(&now->surroundings, cache, particles->x[i], particles->previous[i], now->params);
+        else if (particles->driven[i])
+            particles->x[i] = park_pin(&now->surroundings, cache, particles->x[i], now->params);
+    }
+}
+
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles)
 {
-    const struct surroundings surroundings = surroundings_of(contacts->collider);
+    struct solving now = {surroundings_of(contacts->collider), contacts, params, particles};
+    const struct surroundings surroundings = now.surroundings;
     if (!surroundings.collider)
         return;
     for (size_t i = 0; i < contacts->sample_count; i++)
         if (!is_sample_released(contacts, &contacts->samples[i]))
             solve_sample(&surroundings, &contacts->samples[i],
                          &contacts->caches[contacts->particle_count + i], params, particles);
-    for (size_t i = 0; i < particles->count; i++) {
-        struct tl_contact_cache *cache = &contacts->caches[i];
-        if (is_released(contacts, i))
-            continue;
-        if (particles->w[i] > 0)
-            particles->x[i] = keep_out(&surroundings, cache, particles->x[i], particles->previous[i], params);
-        else if (particles->driven[i])
-            particles->x[i] = park_pin(&surroundings, cache, particles->x[i], params);
-    }
+    tl_team_run(particles->count, solve_particles, &now);
 }
 
 /* ---- Velocities ---- */

@@ -1,7 +1,9 @@
 #include "cloth/contact/keep_apart.h"
 
+#include "cloth/mesh/team.h"
 #include "config/memory.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -223,21 +225,39 @@ static void truncate_one(const struct tl_apart *apart, const struct tl_apart_par
     *x = result;
 }
 
+/* What is truncated, on the team, and what was seen of any vertex. */
+struct truncating {
+    const struct tl_apart *apart;
+    const struct tl_apart_params *params;
+    vec3d *x;
+    atomic_bool rim, stopped, over, sunk;
+};
+
+static void see(bool one, atomic_bool *any)
+{
+    if (one)
+        atomic_store(any, true);
+}
+
+static void truncate_range(void *context)
+{
+    struct truncating *now = context;
+    struct truncation seen = {0};
+    const struct tl_range range = tl_team_range(now->apart->near.topology->vertex_count, 1);
+    for (size_t i = range.from; i < range.to; i++)
+        truncate_one(now->apart, now->params, i, &now->x[i], &seen);
+    see(seen.rim, &now->rim);
+    see(seen.stopped, &now->stopped);
+    see(seen.over, &now->over);
+    see(seen.sunk, &now->sunk);
+}
+
 static struct truncation truncate_all(const struct tl_apart *apart, const struct tl_apart_params *params,
                                       vec3d *x)
 {
-    size_t count = apart->near.topology->vertex_count;
-    bool rim = false, stopped = false, over = false, sunk = false;
-#pragma omp parallel for reduction(|| : rim, stopped, over, sunk) if (count >= TL_PARALLEL_VERTICES)
-    for (size_t i = 0; i < count; i++) {
-        struct truncation seen = {0};
-        truncate_one(apart, params, i, &x[i], &seen);
-        rim = rim || seen.rim;
-        stopped = stopped || seen.stopped;
-        over = over || seen.over;
-        sunk = sunk || seen.sunk;
-    }
-    return (struct truncation){rim, stopped, over, sunk};
+    struct truncating now = {.apart = apart, .params = params, .x = x};
+    tl_team_run(apart->near.topology->vertex_count, truncate_range, &now);
+    return (struct truncation){now.rim, now.stopped, now.over, now.sunk};
 }
 
 /* ---- Planes that move ---- */
@@ -282,25 +302,40 @@ static void stop_planes(struct tl_apart *apart, const bool *held)
     }
 }
 
+/* What displacements are found for, on the team, and whether some vertex has none. */
+struct finding {
+    const struct tl_apart *apart;
+    const vec3d *x;
+    vec3d *kept;
+    bool *held;
+    atomic_bool missing;
+};
+
+static void find_range(void *context)
+{
+    struct finding *now = context;
+    const struct tl_apart *apart = now->apart;
+    const struct tl_range range = tl_team_range(apart->near.topology->vertex_count, 1);
+    for (size_t i = range.from; i < range.to; i++) {
+        const struct tl_apart_plane *planes = apart->planes + apart->plane_first[i];
+        size_t plane_count = apart->plane_first[i + 1] - apart->plane_first[i];
+        bool stopped = false;
+        vec3d d = vec3d_sub(tl_affine_undo(&apart->back, now->x[i]), apart->base[i]);
+        now->kept[i] = bounded(d, apart->radius[i], planes, plane_count, &stopped);
+        if (now->held[i] || is_kept(now->kept[i], apart->radius[i], planes, plane_count))
+            continue;
+        now->held[i] = true;
+        see(true, &now->missing);
+    }
+}
+
 /* Finds displacements `kept` [vertex] that all moving planes allow; returns whether each vertex has one, and
  * marks in `held` those that have none. */
 static bool find_displacements(const struct tl_apart *apart, const vec3d *x, vec3d *kept, bool *held)
 {
-    bool found = true;
-    size_t count = apart->near.topology->vertex_count;
-#pragma omp parallel for reduction(&& : found) if (count >= TL_PARALLEL_VERTICES)
-    for (size_t i = 0; i < count; i++) {
-        const struct tl_apart_plane *planes = apart->planes + apart->plane_first[i];
-        size_t plane_count = apart->plane_first[i + 1] - apart->plane_first[i];
-        bool stopped = false;
-        vec3d d = vec3d_sub(tl_affine_undo(&apart->back, x[i]), apart->base[i]);
-        kept[i] = bounded(d, apart->radius[i], planes, plane_count, &stopped);
-        if (held[i] || is_kept(kept[i], apart->radius[i], planes, plane_count))
-            continue;
-        held[i] = true;
-        found = false;
-    }
-    return found;
+    struct finding now = {.apart = apart, .x = x, .kept = kept, .held = held};
+    tl_team_run(apart->near.topology->vertex_count, find_range, &now);
+    return !now.missing;
 }
 
 /* Afterwards the window's planes hold no more. Its contacts serve the next substep too, which makes a window

@@ -34,7 +34,6 @@
 #include "cloth/contact/near.h"
 #include "cloth/contact/untangle.h"
 #include "cloth/mesh/particles.h"
-#include "cloth/mesh/threads.h"
 
 /* A vertex's displacement d from its base satisfies d.normal <= room. */
 struct tl_apart_plane {

@@ -1,6 +1,5 @@
 #include "cloth/contact/near_tree.h"
 
-#include "cloth/mesh/threads.h"
 #include "config/memory.h"
 #include "config/simd.h"
 

@@ -1,7 +1,7 @@
 /* Evaluation of the elastic energy and its forces: see pair_forces.h for the passes. */
 #include "cloth/energy/energy.h"
 #include "cloth/mesh/particles.h"
-#include "cloth/mesh/threads.h"
+#include "cloth/mesh/team.h"
 #include "config/simd.h"
 
 #include <string.h>
@@ -242,67 +242,78 @@ TL_CLONES static double bending_energy(const struct tl_pair_forces *pairs, struc
 
 static void add_energies(const struct tl_pair_forces *pairs)
 {
-    struct tl_range mine = tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK);
+    struct tl_range mine = tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK);
     for (size_t from = mine.from; from < mine.to; from += TL_PAIR_BLOCK)
         pairs->parts[pairs->metric_count + from / TL_PAIR_BLOCK] =
             bending_energy(pairs, block_from(from, mine));
 }
 
-/* Runs all passes. Returns the links' energy; the triangles' (and bending's) energies, if wanted, are in
- * pairs->parts. */
-static double evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
-                       bool wants_energy, vec3d *forces, const struct tl_particle_kernel *then)
+/* What the passes compute, on the team. */
+struct evaluation {
+    const struct tl_energy *energy;
+    const struct tl_cloth_fabric *fabric;
+    const vec3d *x;
+    bool wants_energy;
+    vec3d *forces;
+    const struct tl_particle_kernel *then;
+    double links; /* the links' energy; the triangles' (and bending's) energies, if wanted, are in
+                     pairs->parts */
+};
+
+/* Runs all passes. */
+static void evaluate(void *context)
 {
-    const struct tl_pair_forces *pairs = &energy->pairs;
-    const struct stretching k = {fabric->stretch_weft, fabric->stretch_warp, fabric->shear};
-    double links = 0;
-#pragma omp parallel if (pairs->vertex_count >= TL_PARALLEL_VERTICES)
-    {
-        unsigned denormals = tl_denormals_off();
-        tl_pair_forces_load_positions(pairs, x, tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK));
-        square_lengths(x, (const uint32_t(*)[2])pairs->edges, tl_thread_range(pairs->edge_count, TL_BATCH),
-                       pairs->squared);
-#pragma omp barrier
-        struct tl_range triangles = tl_thread_range(pairs->metric_count, 1);
-        if (wants_energy)
-            measure_all(pairs, k, triangles);
-        else
-            differentiate_all(pairs, k, triangles);
-#pragma omp barrier
-        add_shares(pairs, tl_thread_range(pairs->edge_count, TL_BATCH));
-        if (pairs->excess_count + energy->link_count > 0) {
-#pragma omp barrier
-#pragma omp single
-            links = add_rare(energy, fabric->stretch_warp);
-        }
-#pragma omp barrier
-        add_forces(pairs, tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK), forces, then);
-        if (wants_energy)
-            add_energies(pairs);
-        tl_denormals_restore(denormals);
+    struct evaluation *to = context;
+    const struct tl_pair_forces *pairs = &to->energy->pairs;
+    const struct stretching k = {to->fabric->stretch_weft, to->fabric->stretch_warp, to->fabric->shear};
+    unsigned denormals = tl_denormals_off();
+    tl_pair_forces_load_positions(pairs, to->x, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK));
+    square_lengths(to->x, (const uint32_t(*)[2])pairs->edges, tl_team_range(pairs->edge_count, TL_BATCH),
+                   pairs->squared);
+    tl_team_barrier();
+    struct tl_range triangles = tl_team_range(pairs->metric_count, 1);
+    if (to->wants_energy)
+        measure_all(pairs, k, triangles);
+    else
+        differentiate_all(pairs, k, triangles);
+    tl_team_barrier();
+    add_shares(pairs, tl_team_range(pairs->edge_count, TL_BATCH));
+    tl_team_barrier();
+    if (pairs->excess_count + to->energy->link_count > 0) {
+        if (tl_team_thread() == 0)
+            to->links = add_rare(to->energy, to->fabric->stretch_warp);
+        tl_team_barrier();
     }
-    return links;
+    add_forces(pairs, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK), to->forces, to->then);
+    if (to->wants_energy)
+        add_energies(pairs);
+    tl_denormals_restore(denormals);
 }
 
 void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                       vec3d *forces, const struct tl_particle_kernel *then)
 {
-    evaluate(energy, fabric, x, false, forces, then);
+    struct evaluation to = {.energy = energy, .fabric = fabric, .x = x, .forces = forces, .then = then};
+    tl_team_run(energy->pairs.vertex_count, evaluate, &to);
+}
+
+static void evaluate_bending(void *context)
+{
+    const struct evaluation *to = context;
+    const struct tl_pair_forces *pairs = &to->energy->pairs;
+    unsigned denormals = tl_denormals_off();
+    struct tl_range mine = tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK);
+    tl_pair_forces_load_positions(pairs, to->x, mine);
+    tl_team_barrier();
+    add_bending(pairs, mine, to->forces, to->then);
+    tl_denormals_restore(denormals);
 }
 
 void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
                               const struct tl_particle_kernel *then)
 {
-    const struct tl_pair_forces *pairs = &energy->pairs;
-#pragma omp parallel if (pairs->vertex_count >= TL_PARALLEL_VERTICES)
-    {
-        unsigned denormals = tl_denormals_off();
-        struct tl_range mine = tl_thread_range(pairs->vertex_count, TL_PAIR_BLOCK);
-        tl_pair_forces_load_positions(pairs, x, mine);
-#pragma omp barrier
-        add_bending(pairs, mine, forces, then);
-        tl_denormals_restore(denormals);
-    }
+    struct evaluation to = {.energy = energy, .x = x, .forces = forces, .then = then};
+    tl_team_run(energy->pairs.vertex_count, evaluate_bending, &to);
 }
 
 double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
@@ -310,7 +321,10 @@ double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_
 {
     const struct tl_pair_forces *pairs = &energy->pairs;
     size_t blocks = (vertex_count + TL_PAIR_BLOCK - 1) / TL_PAIR_BLOCK;
-    double total = evaluate(energy, fabric, x, true, forces, NULL);
+    struct evaluation to = {
+        .energy = energy, .fabric = fabric, .x = x, .wants_energy = true, .forces = forces};
+    tl_team_run(energy->pairs.vertex_count, evaluate, &to);
+    double total = to.links;
     for (size_t i = 0; i < pairs->metric_count + blocks; i++)
         total += pairs->parts[i];
     return total;

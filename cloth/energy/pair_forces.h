@@ -15,7 +15,7 @@
 #ifndef TOILE_CLOTH_ENERGY_PAIR_FORCES_H
 #define TOILE_CLOTH_ENERGY_PAIR_FORCES_H
 
-#include "cloth/mesh/threads.h"
+#include "cloth/mesh/team.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"
 #include "config/memory.h"

@@ -1,6 +1,6 @@
 #include "cloth/mesh/particles.h"
 
-#include "cloth/mesh/threads.h"
+#include "cloth/mesh/team.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -48,14 +48,18 @@ void tl_particles_release(struct tl_particles *particles)
     *particles = (struct tl_particles){0};
 }
 
+static void run_on_team(void *context)
+{
+    const struct tl_particle_kernel *kernel = context;
+    unsigned denormals = tl_denormals_off();
+    kernel->run(kernel->particles, tl_team_range(kernel->particles->count, 1), kernel->params);
+    tl_denormals_restore(denormals);
+}
+
 void tl_particles_run(const struct tl_particle_kernel *kernel)
 {
-#pragma omp parallel if (kernel->particles->count >= TL_PARALLEL_VERTICES)
-    {
-        unsigned denormals = tl_denormals_off();
-        kernel->run(kernel->particles, tl_thread_range(kernel->particles->count, 1), kernel->params);
-        tl_denormals_restore(denormals);
-    }
+    struct tl_particle_kernel on_team = *kernel;
+    tl_team_run(kernel->particles->count, run_on_team, &on_team);
 }
 
 struct tl_prediction tl_prediction_make(const vec3d *forces, double gravity, double drag, double h)

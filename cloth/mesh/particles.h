@@ -5,7 +5,7 @@
 #ifndef TOILE_CLOTH_MESH_PARTICLES_H
 #define TOILE_CLOTH_MESH_PARTICLES_H
 
-#include "cloth/mesh/threads.h"
+#include "cloth/mesh/team.h"
 #include "cloth/mesh/vec3d.h"
 #include "config/simd.h"
 

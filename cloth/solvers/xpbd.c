@@ -1,6 +1,6 @@
 #include "cloth/solvers/xpbd.h"
 
-#include "cloth/mesh/threads.h"
+#include "cloth/mesh/team.h"
 #include "config/simd.h"
 
 #include <string.h>
@@ -293,21 +293,21 @@ TL_CLONES static void read_positions(const double *positions, struct tl_range ra
 static void solve_membranes(const struct tl_energy *energy, const struct tl_stretch_watch *watch, vec3d *x)
 {
     double *positions = energy->pairs.positions;
-    struct tl_range mine = tl_thread_range(energy->pairs.vertex_count, TL_PAIR_BLOCK);
+    struct tl_range mine = tl_team_range(energy->pairs.vertex_count, TL_PAIR_BLOCK);
     tl_pair_forces_load_positions(&energy->pairs, x, mine);
-#pragma omp barrier
+    tl_team_barrier();
 
     size_t from = 0;
     for (size_t run = 0; run < energy->membrane_run_count; run++) {
         size_t end = energy->membrane_run_ends[run];
-        struct tl_range part = tl_thread_range(end - from, 1);
+        struct tl_range part = tl_team_range(end - from, 1);
         solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->max : 0,
                   positions, watch ? watch->seen + from + part.from : NULL);
         from = end;
-#pragma omp barrier
+        tl_team_barrier();
     }
     read_positions(positions, mine, x);
-#pragma omp barrier
+    tl_team_barrier();
 }
 
 /* One component of the curvature tensor, a vector and linear in the positions: L <- L + factor-weighted
@@ -343,10 +343,10 @@ static void solve_bends(const struct tl_energy *energy, vec3d *x)
     size_t from = 0;
     for (size_t run = 0; run < energy->bend_run_count; run++) {
         size_t end = energy->bend_run_ends[run];
-        struct tl_range part = tl_thread_range(end - from, 1);
+        struct tl_range part = tl_team_range(end - from, 1);
         solve_bend_run(energy->bends + from + part.from, part.to - part.from, x);
         from = end;
-#pragma omp barrier
+        tl_team_barrier();
     }
 }
 
@@ -364,17 +364,26 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
     particles->x[link->b] = vec3d_muladd(particles->x[link->b], push, -wb);
 }
 
+struct forward_sweep {
+    const struct tl_energy *energy;
+    const struct tl_stretch_watch *watch;
+    vec3d *x;
+};
+
+static void solve_on_team(void *context)
+{
+    const struct forward_sweep *sweep = context;
+    unsigned denormals = tl_denormals_off();
+    solve_membranes(sweep->energy, sweep->watch, sweep->x);
+    if (!sweep->energy->bending_is_force)
+        solve_bends(sweep->energy, sweep->x);
+    tl_denormals_restore(denormals);
+}
+
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
                    const struct tl_stretch_watch *watch)
 {
-#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
-    {
-        unsigned denormals = tl_denormals_off();
-        solve_membranes(energy, watch, particles->x);
-        if (!energy->bending_is_force)
-            solve_bends(energy, particles->x);
-        tl_denormals_restore(denormals);
-    }
+    tl_team_run(particles->count, solve_on_team, &(struct forward_sweep){energy, watch, particles->x});
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }

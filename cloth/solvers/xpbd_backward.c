@@ -1,6 +1,6 @@
 /* The backward half of a symmetric sweep of `preview`: bends, then membranes, each in reverse (xpbd.h). Plain
  * loops, since meshes of needles are rare. */
-#include "cloth/mesh/threads.h"
+#include "cloth/mesh/team.h"
 #include "cloth/solvers/xpbd.h"
 #include "config/simd.h"
 
@@ -90,32 +90,37 @@ static void solve_bend(const struct tl_bend *bend, int lane, vec3d *x)
 static struct tl_range part_of_run(const size_t *ends, size_t run)
 {
     size_t from = run > 0 ? ends[run - 1] : 0;
-    struct tl_range part = tl_thread_range(ends[run] - from, 1);
+    struct tl_range part = tl_team_range(ends[run] - from, 1);
     return (struct tl_range){from + part.from, from + part.to};
 }
 
-static void solve_on_team(const struct tl_energy *energy, vec3d *x)
+struct backward_sweep {
+    const struct tl_energy *energy;
+    vec3d *x;
+};
+
+static void solve_on_team(void *context)
 {
+    const struct backward_sweep *sweep = context;
+    const struct tl_energy *energy = sweep->energy;
+    vec3d *x = sweep->x;
+    unsigned denormals = tl_denormals_off();
     for (size_t run = energy->bend_run_count; run-- > 0 && !energy->bending_is_force;) {
         struct tl_range part = part_of_run(energy->bend_run_ends, run);
         for (size_t i = part.from * TL_BATCH; i < part.to * TL_BATCH; i++)
             solve_bend(&energy->bends[i / TL_BATCH], (int)(i % TL_BATCH), x);
-#pragma omp barrier
+        tl_team_barrier();
     }
     for (size_t run = energy->membrane_run_count; run-- > 0;) {
         solve_membranes(energy->previewed, part_of_run(energy->membrane_run_ends, run), x);
-#pragma omp barrier
+        tl_team_barrier();
     }
+    tl_denormals_restore(denormals);
 }
 
 void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles)
 {
     for (size_t i = energy->link_count; i-- > 0;)
         tl_xpbd_solve_link(&energy->links[i], particles);
-#pragma omp parallel if (particles->count >= TL_PARALLEL_VERTICES)
-    {
-        unsigned denormals = tl_denormals_off();
-        solve_on_team(energy, particles->x);
-        tl_denormals_restore(denormals);
-    }
+    tl_team_run(particles->count, solve_on_team, &(struct backward_sweep){energy, particles->x});
 }

@@ -1,0 +1,168 @@
+#include "cloth/mesh/team.h"
+
+#include <omp.h>
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#define MOST_THREADS 64
+/* Looks at what is waited for, before the core is offered to others: about 5 us. */
+#define SPINS 100
+/* Offers of the core before a thread without work sleeps: about 0.2 ms if nobody takes it, which is longer
+ * than most of what a substep does on one thread. */
+#define YIELDS 400
+
+/* The present work is told by one number, so that threads that have no part in it need not read the rest,
+ * which the next work may be changing: how many works there were before, and how many threads it has. */
+#define THREADS_BITS 8
+#define THREADS_MASK ((1u << THREADS_BITS) - 1)
+_Static_assert(MOST_THREADS <= THREADS_MASK, "a work's number holds its threads");
+
+static struct {
+    pthread_mutex_t taken; /* by the caller that has the team */
+    size_t made;           /* threads made so far, without the caller's */
+    void (*work)(void *context);
+    void *context;
+    _Atomic uint64_t number;          /* of the present work */
+    _Atomic unsigned arrived, passed; /* at the barrier; barriers so far */
+    pthread_mutex_t bed;              /* what sleepers wait on */
+    pthread_cond_t woken;
+    _Atomic unsigned sleepers;
+} team = {
+    .taken = PTHREAD_MUTEX_INITIALIZER, .bed = PTHREAD_MUTEX_INITIALIZER, .woken = PTHREAD_COND_INITIALIZER};
+
+/* The calling thread's place in the work that it does. */
+static _Thread_local struct {
+    size_t thread, threads;
+} mine = {0, 1};
+
+static void pause_or_yield(unsigned looks)
+{
+    if (looks >= SPINS)
+        sched_yield();
+#if defined __x86_64__ || defined __i386__
+    else
+        __builtin_ia32_pause();
+#endif
+}
+
+void tl_team_barrier(void)
+{
+    if (mine.threads == 1)
+        return;
+    unsigned before = atomic_load(&team.passed);
+    if (atomic_fetch_add(&team.arrived, 1) + 1 == mine.threads) {
+        atomic_store(&team.arrived, 0);
+        atomic_store(&team.passed, before + 1);
+        return;
+    }
+    for (unsigned looks = 0; atomic_load_explicit(&team.passed, memory_order_acquire) == before; looks++)
+        pause_or_yield(looks);
+}
+
+static void sleep_until_other(uint64_t number)
+{
+    pthread_mutex_lock(&team.bed);
+    atomic_fetch_add(&team.sleepers, 1);
+    while (atomic_load(&team.number) == number)
+        pthread_cond_wait(&team.woken, &team.bed);
+    atomic_fetch_sub(&team.sleepers, 1);
+    pthread_mutex_unlock(&team.bed);
+}
+
+static uint64_t wait_for_other(uint64_t number)
+{
+    for (unsigned looks = 0; looks < SPINS + YIELDS; looks++) {
+        uint64_t now = atomic_load_explicit(&team.number, memory_order_acquire);
+        if (now != number)
+            return now;
+        pause_or_yield(looks);
+    }
+    sleep_until_other(number);
+    return atomic_load(&team.number);
+}
+
+static void *serve(void *argument)
+{
+    uint64_t number = 0;
+    const size_t thread = (size_t)(uintptr_t)argument;
+    for (;;) {
+        number = wait_for_other(number);
+        mine.thread = thread;
+        mine.threads = number & THREADS_MASK;
+        if (thread >= mine.threads)
+            continue;
+        team.work(team.context);
+        tl_team_barrier();
+    }
+    return NULL;
+}
+
+/* Makes the threads that are missing; returns how many there are, the caller's included. */
+static size_t make_threads(size_t wanted)
+{
+    pthread_attr_t attributes;
+    if (team.made + 1 < wanted && pthread_attr_init(&attributes) == 0) {
+        pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+        pthread_t thread;
+        while (team.made + 1 < wanted &&
+               pthread_create(&thread, &attributes, serve, (void *)(uintptr_t)(team.made + 1)) == 0)
+            team.made++;
+        pthread_attr_destroy(&attributes);
+    }
+    return team.made + 1 < wanted ? team.made + 1 : wanted;
+}
+
+static void begin(size_t threads, void (*work)(void *context), void *context)
+{
+    uint64_t works = atomic_load(&team.number) >> THREADS_BITS;
+    team.work = work;
+    team.context = context;
+    atomic_store(&team.number, (works + 1) << THREADS_BITS | threads);
+    if (atomic_load(&team.sleepers) == 0)
+        return;
+    pthread_mutex_lock(&team.bed);
+    pthread_cond_broadcast(&team.woken);
+    pthread_mutex_unlock(&team.bed);
+}
+
+size_t tl_team_size(size_t vertex_count)
+{
+    size_t most = (size_t)omp_get_max_threads(), wanted = vertex_count / TL_VERTICES_PER_THREAD;
+    most = most < MOST_THREADS ? most : MOST_THREADS;
+    wanted = wanted < most ? wanted : most;
+    return wanted > 1 && !omp_in_parallel() && mine.threads == 1 ? wanted : 1;
+}
+
+void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context)
+{
+    size_t wanted = tl_team_size(vertex_count), threads = 1;
+    bool has_team = wanted > 1 && pthread_mutex_trylock(&team.taken) == 0;
+    threads = has_team ? make_threads(wanted) : 1;
+    if (threads > 1)
+        begin(threads, work, context);
+    const size_t thread = mine.thread, of = mine.threads;
+    mine.thread = 0;
+    mine.threads = threads;
+    work(context);
+    tl_team_barrier();
+    mine.thread = thread;
+    mine.threads = of;
+    if (has_team)
+        pthread_mutex_unlock(&team.taken);
+}
+
+size_t tl_team_thread(void)
+{
+    return mine.thread;
+}
+
+struct tl_range tl_team_range(size_t count, size_t unit)
+{
+    size_t units = (count + unit - 1) / unit;
+    size_t from = mine.thread * units / mine.threads * unit,
+           to = (mine.thread + 1) * units / mine.threads * unit;
+    return (struct tl_range){from < count ? from : count, to < count ? to : count};
+}
