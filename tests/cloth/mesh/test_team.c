@@ -17,8 +17,8 @@
 
 struct counted {
     atomic_int visits[COUNT];
-    atomic_int members; /* threads that took part */
-    size_t longest;     /* range of the first thread */
+    atomic_int members;    /* threads that took part */
+    atomic_size_t longest; /* range of a team's first thread */
 };
 
 static void visit(void *context)
