@@ -420,14 +420,29 @@ struct solving {
     struct tl_particles *particles;
 };
 
+/* Whether keep_out would leave a point at x where it is, for an avatar that stands still: its anchors do. The
+ * usual case. */
+TL_INLINE bool stands_clear(const struct tl_contact_cache *cache, double thickness, vec3d x)
+{
+    vec3d moved = vec3d_sub(x, cache->query_point);
+    if (cache->query_phase > 1 || cache->clearance <= 0 ||
+        vec3d_dot(moved, moved) > cache->clearance * cache->clearance)
+        return false;
+    return !cache->near || vec3d_dot(vec3d_sub(x, cache->anchor[0]), cache->normal) >= thickness;
+}
+
 static void solve_particles(void *context)
 {
     const struct solving *now = context;
     struct tl_particles *particles = now->particles;
+    const double thickness = now->params->thickness_m;
+    const bool still = now->surroundings.travel == 0, ground = now->surroundings.ground;
     const struct tl_range range = tl_team_range(particles->count, 1);
     for (size_t i = range.from; i < range.to; i++) {
         struct tl_contact_cache *cache = &now->contacts->caches[i];
-        if (is_released(now->contacts, i))
+        if (is_released(now->contacts, i) ||
+            (still && stands_clear(cache, thickness, particles->x[i]) &&
+             (!ground || particles->x[i].y >= thickness) && particles->w[i] > 0))
             continue;
         if (particles->w[i] > 0)
             particles->x[i] =

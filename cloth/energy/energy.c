@@ -11,8 +11,10 @@
 static const double sliver = 1e-4, needle = 0.02;
 
 /* Bending is an explicit force, not a constraint, if omega h of its fastest wave is at most this. The limit
- * of stability is 2. */
-#define FORCE_LIMIT 1.4
+ * of stability is 2 for bending alone; with membranes and contact, cloth near it trembles for ever: a wool
+ * dress of 27,500 vertices at 1.24 was not at rest after 10 s, and as a constraint after 1.8. At 1.05 both
+ * come to rest in the same time. */
+#define FORCE_LIMIT 1.1
 
 /* ---- Rest shapes ---- */
 

@@ -51,9 +51,7 @@ void tl_particles_release(struct tl_particles *particles)
 static void run_on_team(void *context)
 {
     const struct tl_particle_kernel *kernel = context;
-    unsigned denormals = tl_denormals_off();
     kernel->run(kernel->particles, tl_team_range(kernel->particles->count, 1), kernel->params);
-    tl_denormals_restore(denormals);
 }
 
 void tl_particles_run(const struct tl_particle_kernel *kernel)

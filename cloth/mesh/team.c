@@ -1,5 +1,7 @@
 #include "cloth/mesh/team.h"
 
+#include "cloth/mesh/particles.h"
+
 #include <omp.h>
 #include <pthread.h>
 #include <sched.h>
@@ -87,6 +89,7 @@ static uint64_t wait_for_other(uint64_t number)
 static void *serve(void *argument)
 {
     uint64_t number = 0;
+    (void)tl_denormals_off();
     const size_t thread = (size_t)(uintptr_t)argument;
     for (;;) {
         number = wait_for_other(number);
@@ -146,8 +149,10 @@ void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context
     const size_t thread = mine.thread, of = mine.threads;
     mine.thread = 0;
     mine.threads = threads;
+    unsigned denormals = tl_denormals_off();
     work(context);
     tl_team_barrier();
+    tl_denormals_restore(denormals);
     mine.thread = thread;
     mine.threads = of;
     if (has_team)

@@ -23,8 +23,8 @@ struct tl_range {
  * with fewer vertices each, barriers cost more than a further thread saves. */
 #define TL_VERTICES_PER_THREAD 500
 
-/* Calls work(context) on all threads of the team at once, the caller's included; returns when all have
- * returned. */
+/* Calls work(context) on all threads of the team at once, the caller's included, with denormals off; returns
+ * when all have returned. */
 void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context);
 
 /* Within work: waits until all threads of the team have come here. */

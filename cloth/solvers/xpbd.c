@@ -373,11 +373,9 @@ struct forward_sweep {
 static void solve_on_team(void *context)
 {
     const struct forward_sweep *sweep = context;
-    unsigned denormals = tl_denormals_off();
     solve_membranes(sweep->energy, sweep->watch, sweep->x);
     if (!sweep->energy->bending_is_force)
         solve_bends(sweep->energy, sweep->x);
-    tl_denormals_restore(denormals);
 }
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,

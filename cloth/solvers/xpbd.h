@@ -3,7 +3,7 @@
  * derive velocities from displacements. The multiplier starts at 0 in each substep, so that a single spring
  * is exactly implicit Euler.
  *
- * Bending is an explicit force in the prediction if the substep is at most 0.7 of bending's own critical
+ * Bending is an explicit force in the prediction if the substep is at most 0.55 of bending's own critical
  * step, which holds for clothes in their usual mesh and substeps: it then bends exactly as the energy says,
  * at a third of the cost. Otherwise it is a constraint of three rows like the others.
  *

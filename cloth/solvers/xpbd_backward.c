@@ -104,7 +104,6 @@ static void solve_on_team(void *context)
     const struct backward_sweep *sweep = context;
     const struct tl_energy *energy = sweep->energy;
     vec3d *x = sweep->x;
-    unsigned denormals = tl_denormals_off();
     for (size_t run = energy->bend_run_count; run-- > 0 && !energy->bending_is_force;) {
         struct tl_range part = part_of_run(energy->bend_run_ends, run);
         for (size_t i = part.from * TL_BATCH; i < part.to * TL_BATCH; i++)
@@ -115,7 +114,6 @@ static void solve_on_team(void *context)
         solve_membranes(energy->previewed, part_of_run(energy->membrane_run_ends, run), x);
         tl_team_barrier();
     }
-    tl_denormals_restore(denormals);
 }
 
 void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles)
