@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <time.h>
 
 #define MOST_THREADS 64
 /* Looks at what is waited for, before the core is offered to others: about 5 us. */
@@ -15,6 +16,16 @@
 /* Offers of the core before a thread without work sleeps: about 0.2 ms if nobody takes it, which is longer
  * than most of what a substep does on one thread. */
 #define YIELDS 400
+
+/* Where a process that does not yield has the cores too, a thread of the team may have to wait for it at each
+ * barrier for a time slice: a frame took 1 s that takes 66 ms alone. So whoever waits longer than PATIENCE at
+ * a barrier reports a stall, and then so many works are done alone, twice as many after each stall, until
+ * CALM_WORKS have passed without one. */
+#define PATIENCE_NS        1000000
+#define PATIENCE_VERTEX_NS 20 /* more for each vertex: threads of a large work end less evenly */
+#define FIRST_ALONE        256
+#define MOST_ALONE         16384
+#define CALM_WORKS         256
 
 /* The present work is told by one number, so that threads that have no part in it need not read the rest,
  * which the next work may be changing: how many works there were before, and how many threads it has. */
@@ -32,8 +43,15 @@ static struct {
     pthread_mutex_t bed;              /* what sleepers wait on */
     pthread_cond_t woken;
     _Atomic unsigned sleepers;
-} team = {
-    .taken = PTHREAD_MUTEX_INITIALIZER, .bed = PTHREAD_MUTEX_INITIALIZER, .woken = PTHREAD_COND_INITIALIZER};
+    _Atomic int64_t patience_ns; /* of the present work */
+    atomic_bool stalled;         /* in the present work */
+    size_t alone, next_alone;    /* works that are still to be done alone; after the next stall */
+    size_t calm;                 /* works since the last stall */
+} team = {.next_alone = FIRST_ALONE,
+
+          .taken = PTHREAD_MUTEX_INITIALIZER,
+          .bed = PTHREAD_MUTEX_INITIALIZER,
+          .woken = PTHREAD_COND_INITIALIZER};
 
 /* The calling thread's place in the work that it does. */
 static _Thread_local struct {
@@ -50,6 +68,25 @@ static void pause_or_yield(unsigned looks)
 #endif
 }
 
+static int64_t now_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static void wait_for_others(unsigned before)
+{
+    int64_t began_ns = 0;
+    for (unsigned looks = 0; atomic_load_explicit(&team.passed, memory_order_acquire) == before; looks++) {
+        pause_or_yield(looks);
+        if (looks == SPINS)
+            began_ns = now_ns();
+        else if (looks > SPINS && now_ns() - began_ns > team.patience_ns)
+            atomic_store(&team.stalled, true);
+    }
+}
+
 void tl_team_barrier(void)
 {
     if (mine.threads == 1)
@@ -60,8 +97,7 @@ void tl_team_barrier(void)
         atomic_store(&team.passed, before + 1);
         return;
     }
-    for (unsigned looks = 0; atomic_load_explicit(&team.passed, memory_order_acquire) == before; looks++)
-        pause_or_yield(looks);
+    wait_for_others(before);
 }
 
 static void sleep_until_other(uint64_t number)
@@ -118,6 +154,25 @@ static size_t make_threads(size_t wanted)
     return team.made + 1 < wanted ? team.made + 1 : wanted;
 }
 
+/* Whether the caller, which has the team, is to do its work alone. */
+static bool works_alone(void)
+{
+    if (team.alone == 0)
+        return false;
+    team.alone--;
+    return true;
+}
+
+static void note_stall(void)
+{
+    if (atomic_exchange(&team.stalled, false)) {
+        team.alone = team.next_alone;
+        team.next_alone = 2 * team.next_alone < MOST_ALONE ? 2 * team.next_alone : MOST_ALONE;
+        team.calm = 0;
+    } else if (++team.calm == CALM_WORKS)
+        team.next_alone = FIRST_ALONE;
+}
+
 static void begin(size_t threads, void (*work)(void *context), void *context)
 {
     uint64_t works = atomic_load(&team.number) >> THREADS_BITS;
@@ -143,9 +198,11 @@ void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context
 {
     size_t wanted = tl_team_size(vertex_count), threads = 1;
     bool has_team = wanted > 1 && pthread_mutex_trylock(&team.taken) == 0;
-    threads = has_team ? make_threads(wanted) : 1;
-    if (threads > 1)
+    threads = has_team && !works_alone() ? make_threads(wanted) : 1;
+    if (threads > 1) {
+        team.patience_ns = PATIENCE_NS + PATIENCE_VERTEX_NS * (int64_t)vertex_count;
         begin(threads, work, context);
+    }
     const size_t thread = mine.thread, of = mine.threads;
     mine.thread = 0;
     mine.threads = threads;
@@ -155,6 +212,8 @@ void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context
     tl_denormals_restore(denormals);
     mine.thread = thread;
     mine.threads = of;
+    if (threads > 1)
+        note_stall();
     if (has_team)
         pthread_mutex_unlock(&team.taken);
 }

@@ -5,7 +5,8 @@
  * and waking takes longer than the work between two of them, or spin, and then two processes that share the
  * cores wait for each other's turns: a dress that settles in 2 s alone settled in 27 s beside another. These
  * spin for a moment and then yield the core: alone they cost what spinning costs, and beside another process
- * hardly more than their share of the cores. Between works, threads of the team sleep.
+ * hardly more than their share of the cores. Where that is not enough, as beside a process that does not
+ * yield, the caller works alone for a while. Between works, threads of the team sleep.
  *
  * Threads: one caller has the team at a time; another one that comes meanwhile does its work alone, and so
  * does one that is itself at work in a team or in a parallel region of OpenMP. Errors: none; where a thread

@@ -14,6 +14,7 @@
 #define COUNT        1003 /* elements: no multiple of anything */
 #define UNIT         8
 #define ROUNDS       500
+#define MOST_WORKS   1000000
 
 struct counted {
     atomic_int visits[COUNT];
@@ -39,6 +40,19 @@ static void assert_visited(const struct counted *counted, int times)
         assert_int_equal(counted->visits[i], times);
 }
 
+/* Runs works until one has had so many threads: beside other processes the caller may work alone. */
+static void run_with_all(int threads, size_t vertex_count, struct counted *counted)
+{
+    int works = 0, before = 0;
+    for (; works < MOST_WORKS && counted->members - before != threads; works++) {
+        before = counted->members;
+        tl_team_run(vertex_count, visit, counted);
+        assert_true(counted->members - before == threads || counted->members - before == 1);
+    }
+    assert_visited(counted, works);
+    assert_int_equal(counted->members - before, threads);
+}
+
 static void test_ranges(void **state)
 {
     (void)state;
@@ -48,9 +62,7 @@ static void test_ranges(void **state)
         struct counted counted = {0};
         omp_set_num_threads(threads[t]);
         assert_int_equal(tl_team_size(VERTICES), threads[t]);
-        tl_team_run(VERTICES, visit, &counted);
-        assert_visited(&counted, 1);
-        assert_int_equal(counted.members, threads[t]);
+        run_with_all(threads[t], VERTICES, &counted);
         assert_true(counted.longest <= (size_t)(COUNT / threads[t]) + UNIT);
     }
     omp_set_num_threads(before);
@@ -66,9 +78,7 @@ static void test_small_cloth(void **state)
     assert_int_equal(tl_team_size(2 * TL_VERTICES_PER_THREAD - 1), 1);
     assert_int_equal(tl_team_size(3 * TL_VERTICES_PER_THREAD), 3);
     struct counted counted = {0};
-    tl_team_run(3 * TL_VERTICES_PER_THREAD, visit, &counted);
-    assert_visited(&counted, 1);
-    assert_int_equal(counted.members, 3);
+    run_with_all(3, 3 * TL_VERTICES_PER_THREAD, &counted);
     omp_set_num_threads(before);
 }
 
@@ -76,14 +86,15 @@ static void test_small_cloth(void **state)
  * would read an old number, or one too new. */
 struct rounds {
     int numbers[2][MOST_THREADS]; /* [round % 2] */
-    int threads;
-    atomic_int wrong;
+    atomic_int members, wrong;
 };
 
 static void pass_on(void *context)
 {
     struct rounds *rounds = context;
-    size_t me = tl_team_thread(), next = (me + 1) % (size_t)rounds->threads;
+    atomic_fetch_add(&rounds->members, 1);
+    tl_team_barrier();
+    size_t me = tl_team_thread(), next = (me + 1) % (size_t)rounds->members;
     for (int round = 1; round <= ROUNDS; round++) {
         rounds->numbers[round % 2][me] = round;
         tl_team_barrier();
@@ -97,11 +108,15 @@ static void test_barriers(void **state)
     (void)state;
     int before = omp_get_max_threads();
     for (int threads = 1; threads <= 4; threads++) {
-        struct rounds rounds = {.threads = threads};
+        struct rounds rounds = {0};
         omp_set_num_threads(threads);
-        for (int work = 0; work < 20; work++)
+        for (int work = 0, together = 0; work < MOST_WORKS && together < 5; work++) {
+            rounds.members = 0;
             tl_team_run(VERTICES, pass_on, &rounds);
+            together += rounds.members == threads;
+        }
         assert_int_equal(rounds.wrong, 0);
+        assert_int_equal(rounds.members, threads);
     }
     omp_set_num_threads(before);
 }
@@ -121,7 +136,35 @@ static void test_sleep(void **state)
                 usleep(pauses_us[i]);
         }
     assert_visited(&counted, works);
-    assert_int_equal(counted.members, 3 * works);
+    omp_set_num_threads(before);
+}
+
+/* A thread that is late, as one is whose core another process has. */
+static void be_late(void *context)
+{
+    atomic_int *members = context;
+    atomic_fetch_add(members, 1);
+    if (tl_team_thread() == 1)
+        usleep(50000);
+}
+
+/* After a stall the caller works alone, and the team comes back. */
+static void test_stall(void **state)
+{
+    (void)state;
+    int before = omp_get_max_threads();
+    atomic_int members = 0;
+    omp_set_num_threads(2);
+    for (int work = 0; work < MOST_WORKS && members != 2; work++) {
+        members = 0;
+        tl_team_run(VERTICES, be_late, &members);
+    }
+    assert_int_equal(members, 2);
+    struct counted counted = {0};
+    tl_team_run(VERTICES, visit, &counted);
+    assert_int_equal(counted.members, 1);
+    memset(&counted, 0, sizeof counted);
+    run_with_all(2, VERTICES, &counted);
     omp_set_num_threads(before);
 }
 
@@ -131,7 +174,6 @@ static void visit_within(void *context)
 {
     struct counted *counted = context;
     tl_team_run(VERTICES, visit, counted);
-    assert_int_equal(tl_team_size(VERTICES), 1);
 }
 
 /* Work that is begun within work is done by each thread alone, and its place in the team comes back. */
@@ -141,7 +183,10 @@ static void test_within(void **state)
     struct counted counted = {0};
     int before = omp_get_max_threads();
     omp_set_num_threads(2);
-    tl_team_run(VERTICES, visit_within, &counted);
+    for (int work = 0; work < MOST_WORKS && counted.members < 2; work++) {
+        memset(&counted, 0, sizeof counted);
+        tl_team_run(VERTICES, visit_within, &counted);
+    }
     assert_visited(&counted, 2);
     assert_int_equal(tl_team_thread(), 0);
     assert_int_equal(tl_team_range(COUNT, 1).to, COUNT);
@@ -175,6 +220,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ranges), cmocka_unit_test(test_small_cloth), cmocka_unit_test(test_barriers),
         cmocka_unit_test(test_sleep),  cmocka_unit_test(test_within),      cmocka_unit_test(test_two_callers),
+        cmocka_unit_test(test_stall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
