@@ -19,13 +19,13 @@
 
 /* Where a process that does not yield has the cores too, a thread of the team may have to wait for it at each
  * barrier for a time slice: a frame took 1 s that takes 66 ms alone. So whoever waits longer than PATIENCE at
- * a barrier reports a stall, and then so many works are done alone, twice as many after each stall, until
- * CALM_WORKS have passed without one. */
+ * a barrier reports a stall. Then works are done alone for FIRST_ALONE, and for twice as long after each
+ * further stall, until the team has worked for CALM without one. */
 #define PATIENCE_NS        1000000
-#define PATIENCE_VERTEX_NS 20 /* more for each vertex: threads of a large work end less evenly */
-#define FIRST_ALONE        256
-#define MOST_ALONE         16384
-#define CALM_WORKS         256
+#define PATIENCE_VERTEX_NS 50 /* more for each vertex: threads of a large work end less evenly */
+#define FIRST_ALONE_NS     10000000
+#define MOST_ALONE_NS      2000000000
+#define CALM_NS            50000000
 
 /* The present work is told by one number, so that threads that have no part in it need not read the rest,
  * which the next work may be changing: how many works there were before, and how many threads it has. */
@@ -43,12 +43,11 @@ static struct {
     pthread_mutex_t bed;              /* what sleepers wait on */
     pthread_cond_t woken;
     _Atomic unsigned sleepers;
-    _Atomic int64_t patience_ns; /* of the present work */
-    atomic_bool stalled;         /* in the present work */
-    size_t alone, next_alone;    /* works that are still to be done alone; after the next stall */
-    size_t calm;                 /* works since the last stall */
-} team = {.next_alone = FIRST_ALONE,
-
+    _Atomic int64_t patience_ns;           /* of the present work */
+    atomic_bool stalled;                   /* in the present work */
+    int64_t alone_until_ns, next_alone_ns; /* after the last stall; for how long after the next one */
+    int64_t calm_since_ns;
+} team = {.next_alone_ns = FIRST_ALONE_NS,
           .taken = PTHREAD_MUTEX_INITIALIZER,
           .bed = PTHREAD_MUTEX_INITIALIZER,
           .woken = PTHREAD_COND_INITIALIZER};
@@ -154,23 +153,14 @@ static size_t make_threads(size_t wanted)
     return team.made + 1 < wanted ? team.made + 1 : wanted;
 }
 
-/* Whether the caller, which has the team, is to do its work alone. */
-static bool works_alone(void)
-{
-    if (team.alone == 0)
-        return false;
-    team.alone--;
-    return true;
-}
-
+/* Decides after a work of the team how the next ones are done. */
 static void note_stall(void)
 {
     if (atomic_exchange(&team.stalled, false)) {
-        team.alone = team.next_alone;
-        team.next_alone = 2 * team.next_alone < MOST_ALONE ? 2 * team.next_alone : MOST_ALONE;
-        team.calm = 0;
-    } else if (++team.calm == CALM_WORKS)
-        team.next_alone = FIRST_ALONE;
+        team.alone_until_ns = team.calm_since_ns = now_ns() + team.next_alone_ns;
+        team.next_alone_ns = 2 * team.next_alone_ns < MOST_ALONE_NS ? 2 * team.next_alone_ns : MOST_ALONE_NS;
+    } else if (team.next_alone_ns > FIRST_ALONE_NS && now_ns() - team.calm_since_ns > CALM_NS)
+        team.next_alone_ns = FIRST_ALONE_NS;
 }
 
 static void begin(size_t threads, void (*work)(void *context), void *context)
@@ -198,7 +188,8 @@ void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context
 {
     size_t wanted = tl_team_size(vertex_count), threads = 1;
     bool has_team = wanted > 1 && pthread_mutex_trylock(&team.taken) == 0;
-    threads = has_team && !works_alone() ? make_threads(wanted) : 1;
+    bool alone = has_team && team.alone_until_ns > 0 && now_ns() < team.alone_until_ns;
+    threads = has_team && !alone ? make_threads(wanted) : 1;
     if (threads > 1) {
         team.patience_ns = PATIENCE_NS + PATIENCE_VERTEX_NS * (int64_t)vertex_count;
         begin(threads, work, context);
