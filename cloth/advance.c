@@ -7,6 +7,7 @@
 #include "cloth/drive/holds.h"
 #include "cloth/drive/wind.h"
 #include "cloth/measure.h"
+#include "cloth/mesh/denormals.h"
 #include "cloth/solvers/verlet.h"
 #include "cloth/solvers/xpbd.h"
 #include "cloth/timestep.h"

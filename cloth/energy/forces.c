@@ -266,7 +266,6 @@ static void evaluate(void *context)
     struct evaluation *to = context;
     const struct tl_pair_forces *pairs = &to->energy->pairs;
     const struct stretching k = {to->fabric->stretch_weft, to->fabric->stretch_warp, to->fabric->shear};
-    unsigned denormals = tl_denormals_off();
     tl_pair_forces_load_positions(pairs, to->x, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK));
     square_lengths(to->x, (const uint32_t(*)[2])pairs->edges, tl_team_range(pairs->edge_count, TL_BATCH),
                    pairs->squared);
@@ -287,7 +286,6 @@ static void evaluate(void *context)
     add_forces(pairs, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK), to->forces, to->then);
     if (to->wants_energy)
         add_energies(pairs);
-    tl_denormals_restore(denormals);
 }
 
 void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
@@ -301,12 +299,10 @@ static void evaluate_bending(void *context)
 {
     const struct evaluation *to = context;
     const struct tl_pair_forces *pairs = &to->energy->pairs;
-    unsigned denormals = tl_denormals_off();
     struct tl_range mine = tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK);
     tl_pair_forces_load_positions(pairs, to->x, mine);
     tl_team_barrier();
     add_bending(pairs, mine, to->forces, to->then);
-    tl_denormals_restore(denormals);
 }
 
 void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,

@@ -76,9 +76,4 @@ void tl_particles_finish(struct tl_particles *particles, double h);
 void tl_particles_damp(struct tl_particles *particles, const uint32_t (*edges)[2], size_t edge_count,
                        double share);
 
-/* Makes this thread flush denormals to zero, which here are rounding noise and cost up to 150 times a normal
- * operation. Returns the state that tl_denormals_restore takes. */
-unsigned tl_denormals_off(void);
-void tl_denormals_restore(unsigned state);
-
 #endif

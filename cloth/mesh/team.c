@@ -1,6 +1,6 @@
 #include "cloth/mesh/team.h"
 
-#include "cloth/mesh/particles.h"
+#include "cloth/mesh/denormals.h"
 
 #include <omp.h>
 #include <pthread.h>

@@ -1,5 +1,6 @@
 #include "cloth/solvers/implicit/factor.h"
 
+#include "cloth/mesh/denormals.h"
 #include "cloth/solvers/implicit/factor_shim.h"
 #include "config/memory.h"
 #include "config/simd.h"
