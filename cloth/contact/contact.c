@@ -456,12 +456,11 @@ void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_par
                        struct tl_particles *particles)
 {
     struct solving now = {surroundings_of(contacts->collider), contacts, params, particles};
-    const struct surroundings surroundings = now.surroundings;
-    if (!surroundings.collider)
+    if (!now.surroundings.collider)
         return;
     for (size_t i = 0; i < contacts->sample_count; i++)
         if (!is_sample_released(contacts, &contacts->samples[i]))
-            solve_sample(&surroundings, &contacts->samples[i],
+            solve_sample(&now.surroundings, &contacts->samples[i],
                          &contacts->caches[contacts->particle_count + i], params, particles);
     tl_team_run(particles->count, solve_particles, &now);
 }

@@ -4,6 +4,7 @@
 #include "config/memory.h"
 
 #include <stdlib.h>
+
 struct tl_particles tl_particles_create(size_t count)
 {
     return (struct tl_particles){.count = count,
