@@ -7,6 +7,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define MOST_THREADS 8
@@ -14,7 +15,7 @@
 #define COUNT        1003 /* elements: no multiple of anything */
 #define UNIT         8
 #define ROUNDS       500
-#define MOST_WORKS   1000000
+#define MOST_S       60 /* for which a team is waited for: beside other processes the caller works alone */
 
 struct counted {
     atomic_int visits[COUNT];
@@ -40,11 +41,19 @@ static void assert_visited(const struct counted *counted, int times)
         assert_int_equal(counted->visits[i], times);
 }
 
-/* Runs works until one has had so many threads: beside other processes the caller may work alone. */
+static double now_s(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Runs works until one has had so many threads. */
 static void run_with_all(int threads, size_t vertex_count, struct counted *counted)
 {
     int works = 0, before = 0;
-    for (; works < MOST_WORKS && counted->members - before != threads; works++) {
+    const double end_s = now_s() + MOST_S;
+    for (; now_s() < end_s && counted->members - before != threads; works++) {
         before = counted->members;
         tl_team_run(vertex_count, visit, counted);
         assert_true(counted->members - before == threads || counted->members - before == 1);
@@ -109,8 +118,9 @@ static void test_barriers(void **state)
     int before = omp_get_max_threads();
     for (int threads = 1; threads <= 4; threads++) {
         struct rounds rounds = {0};
+        const double end_s = now_s() + MOST_S;
         omp_set_num_threads(threads);
-        for (int work = 0, together = 0; work < MOST_WORKS && together < 5; work++) {
+        for (int together = 0; now_s() < end_s && together < 5;) {
             rounds.members = 0;
             tl_team_run(VERTICES, pass_on, &rounds);
             together += rounds.members == threads;
@@ -155,7 +165,7 @@ static void test_stall(void **state)
     int before = omp_get_max_threads();
     atomic_int members = 0;
     omp_set_num_threads(2);
-    for (int work = 0; work < MOST_WORKS && members != 2; work++) {
+    for (double end_s = now_s() + MOST_S; now_s() < end_s && members != 2;) {
         members = 0;
         tl_team_run(VERTICES, be_late, &members);
     }
@@ -183,7 +193,7 @@ static void test_within(void **state)
     struct counted counted = {0};
     int before = omp_get_max_threads();
     omp_set_num_threads(2);
-    for (int work = 0; work < MOST_WORKS && counted.members < 2; work++) {
+    for (double end_s = now_s() + MOST_S; now_s() < end_s && counted.members < 2;) {
         memset(&counted, 0, sizeof counted);
         tl_team_run(VERTICES, visit_within, &counted);
     }
