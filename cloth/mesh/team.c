@@ -13,14 +13,13 @@
 #define MOST_THREADS 64
 /* Looks at what is waited for, before the core is offered to others: about 5 us. */
 #define SPINS 100
-/* Offers of the core before a thread without work sleeps: about 0.2 ms if nobody takes it, which is longer
- * than most of what a substep does on one thread. */
+/* Offers of the core before a thread without work sleeps: about 0.2 ms if no other process uses them. */
 #define YIELDS 400
 
-/* Where a process that does not yield has the cores too, a thread of the team may have to wait for it at each
- * barrier for a time slice: a frame took 1 s that takes 66 ms alone. So whoever waits longer than PATIENCE at
- * a barrier reports a stall. Then works are done alone for FIRST_ALONE, and for twice as long after each
- * further stall, until the team has worked for CALM without one. */
+/* A process that does not yield may use the cores too. At each barrier, a thread of the team can then wait
+ * for a time slice: beside two such processes, frames of 66 ms on one thread needed 1 s on two. So a wait
+ * longer than PATIENCE is a stall. After it the caller works on one thread for FIRST_ALONE, and for twice as
+ * long after each further stall, until the team has worked for CALM without one. */
 #define PATIENCE_NS        1000000
 #define PATIENCE_VERTEX_NS 50 /* more for each vertex: threads of a large work end less evenly */
 #define FIRST_ALONE_NS     10000000
@@ -186,10 +185,10 @@ size_t tl_team_size(size_t vertex_count)
 
 void tl_team_run(size_t vertex_count, void (*work)(void *context), void *context)
 {
-    size_t wanted = tl_team_size(vertex_count), threads = 1;
+    size_t wanted = tl_team_size(vertex_count);
     bool has_team = wanted > 1 && pthread_mutex_trylock(&team.taken) == 0;
     bool alone = has_team && team.alone_until_ns > 0 && now_ns() < team.alone_until_ns;
-    threads = has_team && !alone ? make_threads(wanted) : 1;
+    size_t threads = has_team && !alone ? make_threads(wanted) : 1;
     if (threads > 1) {
         team.patience_ns = PATIENCE_NS + PATIENCE_VERTEX_NS * (int64_t)vertex_count;
         begin(threads, work, context);
