@@ -33,6 +33,7 @@ namespace
 {
 
 const float font_size = 15.0f;
+const ImGuiPopupFlags any_popup = ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel;
 
 /* Neutral greys: a coloured surround would bias the judgement of the cloth's colour. */
 void choose_style(float scale)
@@ -292,10 +293,20 @@ void tl_panel_destroy(tl_panel **panel)
     *panel = nullptr;
 }
 
-bool tl_panel_wants_pointer(const tl_panel *panel)
+/* ImGui's own WantCaptureMouse is where the pointer was in the last frame: in a slow one it has moved since. */
+bool tl_panel_wants_pointer(const tl_panel *panel, float x, float y)
 {
     (void)panel;
-    return ImGui::GetIO().WantCaptureMouse;
+    const ImGuiIO &io = ImGui::GetIO();
+    const bool is_held = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+    if (ImGui::IsPopupOpen(nullptr, any_popup) || (is_held && io.WantCaptureMouse))
+        return true;
+    const ImVec2 at(x / io.DisplayFramebufferScale.x, y / io.DisplayFramebufferScale.y);
+    for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows)
+        if (window->Active && !window->Hidden && !(window->Flags & ImGuiWindowFlags_NoMouseInputs) &&
+            window->Rect().Contains(at))
+            return true;
+    return false;
 }
 
 bool tl_panel_wants_keys(const tl_panel *panel)
@@ -311,7 +322,7 @@ void tl_panel_take(tl_panel *panel, const struct tl_window_event *event)
 bool tl_panel_close(tl_panel *panel)
 {
     (void)panel;
-    if (!ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+    if (!ImGui::IsPopupOpen(nullptr, any_popup))
         return false;
     ImGui::ClosePopupToLevel(0, true);
     return true;

@@ -118,7 +118,7 @@ bool tl_review_place_hide(struct tl_review *review)
 void tl_review_place_hover(struct tl_review *review, float x, float y)
 {
     review->placing.under = TL_GIZMO_NONE;
-    if (has_handles(review) && !tl_panel_wants_pointer(review->panel)) {
+    if (has_handles(review) && !tl_panel_wants_pointer(review->panel, x, y)) {
         const struct tl_gizmo gizmo = gizmo_of(review);
         review->placing.under = tl_gizmo_under(&gizmo, (vec2s){{x, y}});
     }

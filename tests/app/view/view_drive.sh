@@ -88,8 +88,14 @@ round() {
     press space "plays at"
     drag 1 450 400 380 420
     xdotool keydown ctrl; drag 1 440 480 560 440; xdotool keyup ctrl
-    logged "pulls on vertex" "$1"
+    logged "pulls on vertex" $((2 * $1 - 1))
     sleep 1
+    xdotool mousemove 1180 500 # into the panel, and back within one frame, as in a slow one: the press is the garment's
+    sleep 0.5
+    kill -STOP "$viewer"
+    xdotool keydown ctrl; drag 1 450 440 460 440; xdotool keyup ctrl
+    kill -CONT "$viewer"
+    logged "pulls on vertex" $((2 * $1))
     press space "paused at"
     shoot
     press period "view: frame"
