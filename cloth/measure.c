@@ -1,6 +1,6 @@
 #include "cloth/measure.h"
 
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 #include "cloth/timestep.h"
 #include "config/memory.h"
 

@@ -1,7 +1,7 @@
 /* Crossing triangles of the garment as it lies in its file. Those that touch one another are one finding. */
 #include "app/audit/audit_internal.h"
 #include "assets/connect/sets.h"
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "app/audit/audit_internal.h"
 #include "app/fit/sewn.h"
 #include "assets/connect/sets.h"
-#include "cloth/contact/near_tree.h"
+#include "cloth/apart/near_tree.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "app/drawn/board.h"
 #include "app/scene/session_internal.h"
 #include "app/scene/tuck.h"
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 #include "cloth/mesh/topology.h"
 #include "config/file.h"
 #include "config/interrupt.h"

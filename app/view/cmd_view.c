@@ -57,7 +57,8 @@ static bool panel_is_due(const struct tl_review *review)
     int width, height;
     tl_review_size(review, &width, &height);
     bool is_used = review->drag == TL_DRAG_WIPE || review->placing.shown || review->editing ||
-                   tl_panel_wants_pointer(review->panel, review->pointer_x, review->pointer_y) || tl_panel_wants_keys(review->panel) ||
+                   tl_panel_wants_pointer(review->panel, review->pointer_x, review->pointer_y) ||
+                   tl_panel_wants_keys(review->panel) ||
                    (review->drag == TL_DRAG_NONE && review->pointer_x >= (float)width);
     return tl_panel_is_due(tl_clock_s(), review->times.panel_s, is_used, review->is_budgeted);
 }

@@ -57,7 +57,8 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    if (review->drag != TL_DRAG_NONE || event->x >= (float)width || tl_panel_wants_pointer(review->panel, event->x, event->y))
+    if (review->drag != TL_DRAG_NONE || event->x >= (float)width ||
+        tl_panel_wants_pointer(review->panel, event->x, event->y))
         return;
     review->drag_button = event->button;
     review->pointer_x = event->x;

@@ -293,7 +293,8 @@ void tl_panel_destroy(tl_panel **panel)
     *panel = nullptr;
 }
 
-/* ImGui's own WantCaptureMouse is where the pointer was in the last frame: in a slow one it has moved since. */
+/* ImGui's own WantCaptureMouse is where the pointer was in the last frame: in a slow one it has moved since.
+ */
 bool tl_panel_wants_pointer(const tl_panel *panel, float x, float y)
 {
     (void)panel;

@@ -156,7 +156,8 @@ struct tl_panel_result {
 tl_panel *tl_panel_create(struct GLFWwindow *window, tl_gpu *gpu, float scale, tl_error *error);
 void tl_panel_destroy(tl_panel **panel);
 
-/* Whether a press at the pixel x, y of the window is the panel's, whatever it has seen of the pointer so far. */
+/* Whether a press at the pixel x, y of the window is the panel's, whatever it has seen of the pointer so far.
+ */
 bool tl_panel_wants_pointer(const tl_panel *panel, float x, float y);
 bool tl_panel_wants_keys(const tl_panel *panel);
 /* Queues an event of the window; every one must be passed. */

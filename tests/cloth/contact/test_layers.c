@@ -1,7 +1,7 @@
 /* Layers: the order of pieces; a belt that must not show through a shirt; folds that keep their distance.
  * Contact of the cloth with itself does not cross and keeps apart what lies on each other. */
 #include "assets/avatar.h"
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 #include "cloth/measure.h"
 #include "cloth/snapshot.h"
 #include "cloth/state.h"

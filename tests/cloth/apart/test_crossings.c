@@ -1,7 +1,7 @@
 /* The counter of crossing triangle pairs equals brute force over all pairs: on random triangles, on a
  * crumpled sheet whose triangles share corners, and on a real garment that comes crossed. */
 #include "assets/garment.h"
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 #include "config/memory.h"
 #include "tests/cloth/crossing_oracle.h"
 #include "tests/testing.h"

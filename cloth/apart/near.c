@@ -1,6 +1,6 @@
-#include "cloth/contact/near.h"
+#include "cloth/apart/near.h"
 
-#include "cloth/contact/closest.h"
+#include "cloth/apart/closest.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "cloth/contact/near_tree.h"
+#include "cloth/apart/near_tree.h"
 
 #include "config/memory.h"
 #include "config/simd.h"

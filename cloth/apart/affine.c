@@ -1,4 +1,4 @@
-#include "cloth/contact/affine.h"
+#include "cloth/apart/affine.h"
 
 /* Points of a fit. */
 #define SAMPLES 256

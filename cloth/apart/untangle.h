@@ -8,10 +8,10 @@
  *
  * Metres. Errors: none. Lifetime: a plain struct that owns its arrays; it starts as {0}. Threads: one call at
  * a time. */
-#ifndef TOILE_CLOTH_CONTACT_UNTANGLE_H
-#define TOILE_CLOTH_CONTACT_UNTANGLE_H
+#ifndef TOILE_CLOTH_APART_UNTANGLE_H
+#define TOILE_CLOTH_APART_UNTANGLE_H
 
-#include "cloth/contact/near.h"
+#include "cloth/apart/near.h"
 #include "cloth/mesh/particles.h"
 
 struct tl_untangle {

@@ -1,8 +1,8 @@
 /* Nearest points of a point and a triangle, and of two segments (Ericson, "Real-Time Collision Detection",
  * 2005, 5.1.5 and 5.1.9). Degenerate triangles and segments give the nearest of what is left of them.
  * Threads: pure. */
-#ifndef TOILE_CLOTH_CONTACT_CLOSEST_H
-#define TOILE_CLOTH_CONTACT_CLOSEST_H
+#ifndef TOILE_CLOTH_APART_CLOSEST_H
+#define TOILE_CLOTH_APART_CLOSEST_H
 
 #include "cloth/mesh/vec3d.h"
 #include "config/simd.h"

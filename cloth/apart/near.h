@@ -12,10 +12,10 @@
  * Vertices that an open seam joins count as one. Metres. Errors: none. Lifetime: a plain struct that owns its
  * arrays; the topology must outlive it. Threads: one call at a time; results do not depend on the number of
  * threads. */
-#ifndef TOILE_CLOTH_CONTACT_NEAR_H
-#define TOILE_CLOTH_CONTACT_NEAR_H
+#ifndef TOILE_CLOTH_APART_NEAR_H
+#define TOILE_CLOTH_APART_NEAR_H
 
-#include "cloth/contact/near_tree.h"
+#include "cloth/apart/near_tree.h"
 
 #include <stdbool.h>
 

@@ -6,8 +6,8 @@
  * that depend on the tree's shape only: pairs in the order of the tasks are the same at any number of
  * threads. Metres. Errors: none. Lifetime: plain structs that own their arrays. Threads: tasks of one tree
  * may run at the same time. */
-#ifndef TOILE_CLOTH_CONTACT_NEAR_TREE_H
-#define TOILE_CLOTH_CONTACT_NEAR_TREE_H
+#ifndef TOILE_CLOTH_APART_NEAR_TREE_H
+#define TOILE_CLOTH_APART_NEAR_TREE_H
 
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"

@@ -1,4 +1,4 @@
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 
 #include "config/memory.h"
 

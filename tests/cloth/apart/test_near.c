@@ -1,8 +1,8 @@
 /* Pairs that are near, and planes between them: the list of pairs equals brute force, the umbrella bound
  * holds, and no motion, however far, takes a pair past each other, while motion away from others is not cut.
  */
-#include "cloth/contact/closest.h"
-#include "cloth/contact/keep_apart.h"
+#include "cloth/apart/closest.h"
+#include "cloth/apart/keep_apart.h"
 #include "config/memory.h"
 #include "tests/cloth/crossing_oracle.h"
 #include "tests/testing.h"
@@ -325,6 +325,33 @@ static struct tl_particles particles_at(const struct scene *scene)
     return particles;
 }
 
+/* What is left of a way heeds the ball and all planes that the safe displacement heeds, and is all of it if
+ * it may be. */
+static void test_bounded(void **state)
+{
+    (void)state;
+    enum { PLANES = 12 };
+    uint32_t seed = 5;
+    size_t held = 0, partly = 0;
+    for (int k = 0; k < 20000; k++) {
+        const double radius = 1 + noise(&seed);
+        const vec3d safe = scattered(&seed, 1.1), d = scattered(&seed, 4);
+        struct tl_apart_plane planes[PLANES];
+        size_t count = (size_t)(noise(&seed) * (PLANES + 1));
+        for (size_t i = 0; i < count; i++) {
+            planes[i].normal = vec3d_unit_or(scattered(&seed, 1), (vec3d){1, 0, 0});
+            planes[i].room = vec3d_dot(planes[i].normal, safe) + 0.2 * noise(&seed) * noise(&seed);
+        }
+        bool stopped = false, may = tl_apart_allows(d, radius, planes, count);
+        vec3d kept = tl_apart_bounded(d, safe, radius, planes, count, &stopped);
+        assert_true(tl_apart_allows(kept, radius, planes, count));
+        assert_true(!may || vec3d_distance(kept, d) == 0);
+        held += stopped;
+        partly += vec3d_distance(kept, safe) > 1e-3;
+    }
+    assert_true(held > 5000 && partly > 5000);
+}
+
 /* Two triangles at random relations and distances from 10 um to 100 mm, with or without common motion: random
  * motions of up to a metre a step never make them cross, along the straight way either. */
 static void test_two_triangles(void **state)
@@ -414,6 +441,75 @@ static void test_shaken_sheet(void **state)
     release_scene(&scene);
 }
 
+/* ---- Plies that move on together ---- */
+
+/* Two flat sheets, `gap` apart. */
+static struct scene two_plies(double gap)
+{
+    struct scene sheet = crumpled(1, 0);
+    size_t count = sheet.topology.vertex_count, corners = 3 * sheet.topology.triangle_count;
+    vec3d *x = TL_NEW_ARRAY(vec3d, 2 * count);
+    uint32_t *indices = TL_NEW_ARRAY(uint32_t, 2 * corners);
+    for (size_t i = 0; i < count; i++) {
+        x[i] = sheet.x[i];
+        x[count + i] = vec3d_add(sheet.x[i], (vec3d){0, 0, gap});
+    }
+    for (size_t i = 0; i < corners; i++) {
+        indices[i] = sheet.topology.triangles[i / 3][i % 3];
+        indices[corners + i] = (uint32_t)count + indices[i];
+    }
+    struct scene scene = make_scene(indices, 2 * corners, x, 2 * count);
+    free(x);
+    free(indices);
+    release_scene(&sheet);
+    return scene;
+}
+
+/* A wave that runs through two plies moves both by more than their distance in a substep, differently from
+ * place to place: planes follow, so that nothing is held back, and windows are made for far fewer than all
+ * substeps. */
+static void test_wave(void **state)
+{
+    (void)state;
+    enum { STEPS = 100 };
+    const double gap = 4e-4, height = 4e-3, per_m = 10, per_s = 150;
+    struct scene scene = two_plies(gap);
+    const struct tl_apart_params params = params_of(&scene);
+    struct tl_apart apart = {0};
+    struct tl_particles particles = particles_at(&scene);
+    size_t count = particles.count;
+    double held_back = 0, fastest = 0;
+    tl_apart_prepare(&apart, &params, scene.classes, particles.x);
+    for (int step = 1; step <= STEPS; step++) {
+        memcpy(particles.previous, particles.x, count * sizeof(vec3d));
+        if (tl_apart_is_due(&apart, params.h))
+            tl_apart_renew(&apart, &params, &particles, false);
+        double t = per_s * step * params.h;
+        for (size_t i = 0; i < count; i++)
+            particles.x[i].z =
+                scene.x[i].z + height * (sin(per_m * scene.x[i].x + t) - sin(per_m * scene.x[i].x));
+        tl_apart_solve(&apart, &params, &particles);
+        vec3d *wanted = TL_NEW_ARRAY(vec3d, count);
+        memcpy(wanted, particles.x, count * sizeof(vec3d));
+        tl_apart_truncate(&apart, &params, particles.previous, &particles);
+        for (size_t i = 0; i < count; i++) {
+            held_back = fmax(held_back, vec3d_distance(wanted[i], particles.x[i]));
+            fastest = fmax(fastest, vec3d_distance(particles.x[i], particles.previous[i]));
+            particles.v[i] = vec3d_scale(vec3d_sub(particles.x[i], particles.previous[i]), 1 / params.h);
+        }
+        free(wanted);
+        assert_int_equal(oracle_crossings(&scene.topology, particles.x), 0);
+    }
+    printf("wave: %.0f um a substep, %.1f um held back, %zu windows in %d substeps\n", 1e6 * fastest,
+           1e6 * held_back, apart.windows, STEPS);
+    assert_true(fastest > gap);
+    assert_true(held_back < 2 * TL_APART_CUT_M);
+    assert_true(apart.windows < STEPS / 2);
+    tl_apart_release(&apart);
+    tl_particles_release(&particles);
+    release_scene(&scene);
+}
+
 /* A vertex alone in space goes where it likes once its window knows its speed. */
 static void test_free_ways(void **state)
 {
@@ -482,10 +578,11 @@ static void test_contact(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closest),       cmocka_unit_test(test_bounds),
-        cmocka_unit_test(test_list),          cmocka_unit_test(test_umbrella),
-        cmocka_unit_test(test_two_triangles), cmocka_unit_test(test_shaken_sheet),
-        cmocka_unit_test(test_free_ways),     cmocka_unit_test(test_contact),
+        cmocka_unit_test(test_closest),      cmocka_unit_test(test_bounds),
+        cmocka_unit_test(test_list),         cmocka_unit_test(test_umbrella),
+        cmocka_unit_test(test_bounded),      cmocka_unit_test(test_two_triangles),
+        cmocka_unit_test(test_shaken_sheet), cmocka_unit_test(test_wave),
+        cmocka_unit_test(test_free_ways),    cmocka_unit_test(test_contact),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

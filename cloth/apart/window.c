@@ -1,5 +1,5 @@
 /* Windows of keep_apart.h: the balls, planes and contacts that hold until the next one. */
-#include "cloth/contact/keep_apart.h"
+#include "cloth/apart/keep_apart.h"
 
 #include "cloth/mesh/team.h"
 #include "config/memory.h"
@@ -26,16 +26,10 @@
 #define COMMON_MOST 0.2
 /* Of lists: more stretch of the common motion since then asks for a new one. */
 #define LIST_STRETCH 1.1
+/* Planes that leave a vertex more room than its ball are no bound and not kept; but what they are exchanged
+ * for may be. Each vertex has room for so many more planes than it has, at first. */
+#define SPARE_PLANES 3
 
-/* Distance that a plane keeps on either side. Without it each window under pressure would halve the gap, down
- * to the rounding of drawn positions; features that are nearer come no nearer. */
-#define FLOOR_M     2e-5
-#define FLOOR_SHARE 0.004 /* at most, of the mesh's own size there */
-/* Share of the distance that is safe without a plane: a ball of it about each vertex. */
-#define UNPLANED_SHARE 0.45
-/* Features that are nearer have no direction from one to the other: they may come apart, or cross and be
- * found. */
-#define TOUCHING_M 1e-9
 /* Bounds of the distance that contact keeps, besides the thickness: of the mesh's own size there, and of the
  * distance as made. */
 #define KEPT_SHARE 0.25
@@ -59,8 +53,7 @@ static void widen_radii(struct tl_apart *apart, const vec3d *from, const vec3d *
 {
     size_t count = apart->near.topology->vertex_count;
     for (size_t i = 0; i < count; i++) {
-        apart->way[i] = vec3d_sub(tl_affine_undo(&apart->back, to[i]), from[i]);
-        double wanted = WIDE * vec3d_norm(apart->way[i]);
+        double wanted = WIDE * vec3d_distance(tl_affine_undo(&apart->back, to[i]), from[i]);
         apart->radius[i] = tl_max(apart->radius[i], tl_min(wanted, WIDEST_SHARE * apart->size[i]));
     }
 }
@@ -127,7 +120,7 @@ struct found {
 
 static void add_plane(struct found *found, uint32_t vertex, const struct tl_apart_plane *plane, double radius)
 {
-    if (plane->room + tl_min(plane->gain, 0) >= radius)
+    if (plane->room >= radius)
         return;
     if (found->plane_count == found->plane_capacity) {
         found->plane_capacity = 2 * found->plane_capacity + 256;
@@ -142,52 +135,23 @@ static void add_tight(struct found *found, const struct tl_near_pair *pair, doub
         found->tight_capacity = 2 * found->tight_capacity + 64;
         found->tight = tl_resize(found->tight, found->tight_capacity, sizeof *found->tight);
     }
-    struct tight_pair tight = {.radius = UNPLANED_SHARE * distance};
+    struct tight_pair tight = {.radius = TL_APART_UNPLANED_SHARE * distance};
     memcpy(tight.v, pair->v, sizeof tight.v);
     found->tight[found->tight_count++] = tight;
 }
 
-/* Heights of a pair's highest vertex of the first feature and lowest one of the second. */
-struct facing {
-    double below, above;
-};
-
-static struct facing facing_heights(const double heights[4], int second)
-{
-    struct facing facing = {-HUGE_VAL, HUGE_VAL};
-    for (int i = 0; i < second; i++)
-        facing.below = tl_max(facing.below, heights[i]);
-    for (int i = second; i < 4; i++)
-        facing.above = tl_min(facing.above, heights[i]);
-    return facing;
-}
-
-/* Puts the plane half way between the features, as the vertices themselves show it: so it separates them even
- * where the nearest points are rounded. At the substep's end it may be half way between where they want to
- * be. */
 static void add_planes(const struct tl_apart *apart, const struct tl_near_pair *pair, const vec3d *x,
                        vec3d normal, double distance, struct found *found)
 {
-    int second = tl_near_second(pair);
-    double heights[4], later[4];
-    for (int i = 0; i < 4; i++) {
-        heights[i] = vec3d_dot(normal, vec3d_sub(x[pair->v[i]], x[pair->v[0]]));
-        later[i] = heights[i] + vec3d_dot(normal, apart->way[pair->v[i]]);
-    }
-    const struct facing now = facing_heights(heights, second), then = facing_heights(later, second);
-    if (!(now.above - now.below > UNPLANED_SHARE * distance)) {
+    const vec3d at[4] = {x[pair->v[0]], x[pair->v[1]], x[pair->v[2]], x[pair->v[3]]};
+    struct tl_apart_plane planes[4];
+    if (!tl_apart_planes_of(pair, apart->size, at, at, normal, distance, planes)) {
         add_tight(found, pair, distance);
         return;
     }
-    double middle = (now.below + now.above) / 2, step = (then.below + then.above) / 2 - middle;
     for (int i = 0; i < 4; i++) {
-        double side = i < second ? 1 : -1;
-        double room = side * (middle - heights[i]) - tl_min(FLOOR_M, FLOOR_SHARE * apart->size[pair->v[i]]);
-        const struct tl_apart_plane plane = {.normal = vec3d_scale(normal, side),
-                                             .room = tl_max(room, 0),
-                                             .gain = side * step,
-                                             .pair = (uint32_t)(pair - apart->near.pairs)};
-        add_plane(found, pair->v[i], &plane, apart->radius[pair->v[i]]);
+        planes[i].pair = (uint32_t)(pair - apart->near.pairs);
+        add_plane(found, pair->v[i], &planes[i], apart->radius[pair->v[i]]);
     }
 }
 
@@ -231,7 +195,7 @@ static void look_at(const struct tl_apart *apart, const struct tl_apart_params *
         return;
     vec3d between = tl_near_closest(pair, x, contact.weights);
     double distance = vec3d_norm(between);
-    if (distance < TOUCHING_M) {
+    if (distance < TL_APART_TOUCHING_M) {
         found->touching = true;
         return;
     }
@@ -239,7 +203,7 @@ static void look_at(const struct tl_apart *apart, const struct tl_apart_params *
     if (distance > reach + params->thickness_m)
         return;
     vec3d normal = vec3d_unit_or(between, (vec3d){0});
-    if (distance <= reach + 2 * FLOOR_M)
+    if (distance <= reach + 2 * TL_APART_FLOOR_M)
         add_planes(apart, pair, x, normal, distance, found);
     memcpy(contact.v, pair->v, sizeof contact.v);
     for (int i = 0; i < second; i++)
@@ -266,34 +230,56 @@ static void look_at_range(const struct tl_apart *apart, const struct tl_apart_pa
 
 /* ---- Gathering ---- */
 
+/* Makes the array as large as what is in use, and `more`. */
+static void reserve_planes(struct tl_apart *apart, size_t more)
+{
+    if (apart->plane_end + more <= apart->plane_capacity)
+        return;
+    apart->plane_capacity = 2 * (apart->plane_end + more);
+    apart->planes = tl_resize(apart->planes, apart->plane_capacity, sizeof *apart->planes);
+}
+
+void tl_apart_make_room(struct tl_apart *apart, size_t vertex)
+{
+    const uint32_t count = apart->plane_count[vertex], room = 2 * count + SPARE_PLANES;
+    if (count < apart->plane_room[vertex])
+        return;
+    reserve_planes(apart, room);
+    memcpy(apart->planes + apart->plane_end, apart->planes + apart->plane_first[vertex],
+           count * sizeof *apart->planes);
+    apart->plane_first[vertex] = (uint32_t)apart->plane_end;
+    apart->plane_room[vertex] = room;
+    apart->plane_end += room;
+}
+
 /* Bounds balls where no plane separates, and sorts the planes by vertex, in the order of the list. */
 static void gather_planes(struct tl_apart *apart, const struct found *parts, size_t part_count)
 {
-    size_t count = apart->near.topology->vertex_count, total = 0;
-    uint32_t *first = apart->plane_first;
-    memset(first, 0, (count + 1) * sizeof *first);
+    size_t vertex_count = apart->near.topology->vertex_count;
+    uint32_t *first = apart->plane_first, *count = apart->plane_count;
+    memset(count, 0, vertex_count * sizeof *count);
     for (size_t part = 0; part < part_count; part++) {
-        total += parts[part].plane_count;
         for (size_t k = 0; k < parts[part].plane_count; k++)
-            first[parts[part].planes[k].vertex + 1]++;
+            count[parts[part].planes[k].vertex]++;
         for (size_t k = 0; k < parts[part].tight_count; k++)
             for (int i = 0; i < 4; i++) {
                 double *radius = &apart->radius[parts[part].tight[k].v[i]];
                 *radius = tl_min(*radius, parts[part].tight[k].radius);
             }
     }
-    for (size_t i = 0; i < count; i++)
-        first[i + 1] += first[i];
-    if (total > apart->plane_capacity) {
-        apart->plane_capacity = 2 * total;
-        apart->planes = tl_resize(apart->planes, apart->plane_capacity, sizeof *apart->planes);
+    apart->plane_end = 0;
+    for (size_t i = 0; i < vertex_count; i++) {
+        first[i] = (uint32_t)apart->plane_end;
+        apart->plane_room[i] = count[i] + SPARE_PLANES;
+        apart->plane_end += apart->plane_room[i];
     }
-    for (size_t part = part_count; part-- > 0;) /* backwards, so that first[] ends where it began */
-        for (size_t k = parts[part].plane_count; k-- > 0;)
-            apart->planes[--first[parts[part].planes[k].vertex + 1]] = parts[part].planes[k].plane;
-    for (size_t i = 0; i < count; i++)
-        first[i] = first[i + 1];
-    first[count] = (uint32_t)total;
+    reserve_planes(apart, 0);
+    memset(count, 0, vertex_count * sizeof *count);
+    for (size_t part = 0; part < part_count; part++)
+        for (size_t k = 0; k < parts[part].plane_count; k++) {
+            const struct found_plane *found = &parts[part].planes[k];
+            apart->planes[first[found->vertex] + count[found->vertex]++] = found->plane;
+        }
 }
 
 static void gather_contacts(struct tl_apart *apart, const struct found *parts, size_t part_count)
@@ -486,6 +472,18 @@ static void find_planes(struct tl_apart *apart, const struct tl_apart_params *pa
 
 /* ---- The window ---- */
 
+vec3d tl_apart_safe(const struct tl_apart *apart, const struct tl_apart_start *start, size_t vertex)
+{
+    return vec3d_sub(tl_affine_undo(&start->back, start->x[vertex]), apart->base[vertex]);
+}
+
+bool tl_apart_sinks(const struct tl_apart_params *params, size_t i, vec3d from, vec3d to)
+{
+    struct tl_contact_height above, at;
+    return params->body && tl_contacts_height(params->body, i, to, params->phase, &at) && at.height_m < 0 &&
+           tl_contacts_height(params->body, i, from, params->phase, &above) && at.height_m < above.height_m;
+}
+
 void tl_apart_set_time(struct tl_apart *apart, double time_s)
 {
     apart->time_s = time_s;
@@ -520,7 +518,6 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
         apart->velocity = (struct tl_affine){0};
     choose_radii(apart, x, params->h);
     tl_apart_set_time(apart, to ? params->h : 0);
-    memset(apart->way, 0, count * sizeof *apart->way);
     if (to)
         widen_radii(apart, x, to);
     double stretch = measure_list(apart, x);
@@ -533,7 +530,7 @@ static void make_window(struct tl_apart *apart, const struct tl_apart_params *pa
         apart->radius[i] = tl_min(apart->radius[i], (near->reach[i] - apart->off[i]) / stretch);
     find_planes(apart, params, x, stretch, still);
     apart->current = true;
-    apart->rim = apart->stopped = apart->spent = apart->late = false;
+    apart->rim = apart->stopped = apart->late = false;
     apart->substeps = to ? 1 : 0;
     apart->windows++;
 }

@@ -1,8 +1,8 @@
 /* Affine motions, fitted to the motion of many points. What is safe about separate features stays safe under
  * any invertible affine map of all of them, so that motion which all cloth shares need not count as motion.
  * Threads: pure. */
-#ifndef TOILE_CLOTH_CONTACT_AFFINE_H
-#define TOILE_CLOTH_CONTACT_AFFINE_H
+#ifndef TOILE_CLOTH_APART_AFFINE_H
+#define TOILE_CLOTH_APART_AFFINE_H
 
 #include "cloth/mesh/vec3d.h"
 

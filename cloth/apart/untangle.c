@@ -1,6 +1,6 @@
-#include "cloth/contact/untangle.h"
+#include "cloth/apart/untangle.h"
 
-#include "cloth/contact/crossings.h"
+#include "cloth/apart/crossings.h"
 #include "config/memory.h"
 
 #include <stdlib.h>

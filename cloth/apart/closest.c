@@ -1,4 +1,4 @@
-#include "cloth/contact/closest.h"
+#include "cloth/apart/closest.h"
 
 #include <float.h>
 

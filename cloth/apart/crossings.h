@@ -4,11 +4,11 @@
  *
  * The test is by signs of volumes in double precision; a touch without a passage does not count. Metres.
  * Errors: none. Threads: pure. */
-#ifndef TOILE_CLOTH_CONTACT_CROSSINGS_H
-#define TOILE_CLOTH_CONTACT_CROSSINGS_H
+#ifndef TOILE_CLOTH_APART_CROSSINGS_H
+#define TOILE_CLOTH_APART_CROSSINGS_H
 
 #include "assets/base/mesh.h"
-#include "cloth/contact/near_tree.h"
+#include "cloth/apart/near_tree.h"
 
 #include <stdbool.h>
 

@@ -26,22 +26,14 @@
  * tl_apart_carry, and after all other constraints tl_apart_truncate. Metres, seconds. Errors: none. Lifetime:
  * a plain struct that owns its arrays; it starts as {0}. The topology must outlive it. Threads: one call at a
  * time. */
-#ifndef TOILE_CLOTH_CONTACT_KEEP_APART_H
-#define TOILE_CLOTH_CONTACT_KEEP_APART_H
+#ifndef TOILE_CLOTH_APART_KEEP_APART_H
+#define TOILE_CLOTH_APART_KEEP_APART_H
 
-#include "cloth/contact/affine.h"
+#include "cloth/apart/affine.h"
+#include "cloth/apart/planes.h"
+#include "cloth/apart/untangle.h"
 #include "cloth/contact/contact.h"
-#include "cloth/contact/near.h"
-#include "cloth/contact/untangle.h"
 #include "cloth/mesh/particles.h"
-
-/* A vertex's displacement d from its base satisfies d.normal <= room. */
-struct tl_apart_plane {
-    vec3d normal;
-    double room;
-    double gain;   /* m, of room at the substep's end, if the plane moves on with its pair */
-    uint32_t pair; /* of the list; TL_NONE: a plane on the body */
-};
 
 /* The gap of a pair is normal . sum of weights[i] x[v[i]]; weights of the first feature are negative. */
 struct tl_apart_contact {
@@ -88,7 +80,6 @@ struct tl_apart {
     bool made;                 /* near is that of the topology */
     bool current;              /* there is a window */
     bool rim, stopped;         /* a vertex has come near its ball's rim; a plane has stopped one */
-    bool spent;                /* its planes have moved, and hold for the present substep only */
     bool late;                 /* it was made after a substep, for what that has left to do */
     int substeps;              /* of the window so far */
     double time_s;             /* of the window so far */
@@ -100,9 +91,12 @@ struct tl_apart {
     vec3d *speed;          /* [vertex] m/s, at the window's start */
     vec3d *base;           /* [vertex] m */
     double *radius;        /* [vertex] m, of the balls */
-    vec3d *way;            /* [vertex] m, from base to where the vertex wants to be; 0 unless widened */
     double *off;           /* [vertex] m, from the list's base, common motion taken out */
-    uint32_t *plane_first; /* [vertex + 1] */
+    bool *cut;             /* [vertex] of a truncation: left where it is, far past a plane */
+    uint32_t *plane_first; /* [vertex] of `planes` */
+    uint32_t *plane_count; /* [vertex] */
+    uint32_t *plane_room;  /* [vertex] at least plane_count */
+    size_t plane_end;      /* of `planes` in use */
     size_t plane_capacity;
     struct tl_apart_plane *planes;
     struct tl_apart_contacts contacts;
@@ -114,6 +108,26 @@ struct tl_apart {
     size_t windows, lists; /* made since creation */
 };
 void tl_apart_release(struct tl_apart *apart);
+
+/* Farther past a plane, m, a vertex is not moved back before planes have been exchanged, or made anew, to
+ * make sure that it must be: what is moved back loses its momentum. */
+#define TL_APART_CUT_M 5e-6
+
+/* Where all planes and balls hold: positions that the last truncation left, and the common motion until then.
+ */
+struct tl_apart_start {
+    const vec3d *x;
+    struct tl_affine_inverse back;
+};
+
+/* The vertex's displacement from its base there. */
+vec3d tl_apart_safe(const struct tl_apart *apart, const struct tl_apart_start *start, size_t vertex);
+
+/* Makes room for one more plane of a vertex, which may move its planes. */
+void tl_apart_make_room(struct tl_apart *apart, size_t vertex);
+
+/* Whether the way of vertex `i` ends in the body, and deeper than it began. */
+bool tl_apart_sinks(const struct tl_apart_params *params, size_t i, vec3d from, vec3d to);
 
 /* Drops what is known of the mesh, its places, or both: for cloth that was sewn, moved or restored. */
 void tl_apart_forget(struct tl_apart *apart);
@@ -154,11 +168,10 @@ void tl_apart_widen(struct tl_apart *apart, const struct tl_apart_params *params
 /* Sets the window's time, and its common motion's place at that time. */
 void tl_apart_set_time(struct tl_apart *apart, double time_s);
 
-/* Moves every vertex back that has passed a plane. Where vertices want to leave their balls, or far past a
- * plane, a new window is made first, about the positions `from` and as wide as the ways from there, so that
- * only what would meet on these ways is held back. Where vertices are far past a plane of that too, planes
- * move on with their pairs (keep_apart.c). `from` are particles->previous within a substep; after it, the
- * positions that the last truncation left.*/
+/* Moves every vertex back that has passed a plane. Where vertices want to leave their balls, a new window is
+ * made first, about the positions `from` and as wide as the ways from there, so that only what would meet on
+ * these ways is held back. Where they want far past a plane, planes are exchanged first (exchange.h).
+ * `from` are particles->previous within a substep; after it, the positions that the last truncation left. */
 void tl_apart_truncate(struct tl_apart *apart, const struct tl_apart_params *params, const vec3d *from,
                        struct tl_particles *particles);
 
