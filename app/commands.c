@@ -87,7 +87,8 @@ static const struct tl_command commands[] = {
      "bakes normal, offset, horizon and gloss maps, and prints their size and scale.",
      TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC | TL_FLAGS_JSON, tl_command_fabric},
     {"cache", "cache [--clear] [--json]",
-     "Lists the drapes and thumbnails that are kept for reuse, or removes them.",
+     "Lists the results that are kept for reuse (drapes, thumbnails, filtered environments), or removes "
+     "them.",
      TL_FLAGS_JSON | TL_FLAGS_CLEAR, tl_command_cache},
     {"info", "info FILE|fabrics|presets|garments|findings [--strict] [--json]",
      "Prints what a file holds, how it will be read, and what is wrong with it; or lists what is built in. "

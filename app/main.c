@@ -1,7 +1,7 @@
 /* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one
  * line. */
 #include "app/commands.h"
-#include "app/drape/cache.h"
+#include "config/cache/cache.h"
 #include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"

@@ -1,7 +1,7 @@
-/* toile cache: lists the cached drapes and thumbnails, or removes them. */
+/* toile cache: lists the results that are kept for reuse, or removes them. */
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
-#include "app/drape/cache.h"
+#include "config/cache/cache.h"
 #include "config/memory.h"
 
 #include <stdio.h>
@@ -45,7 +45,7 @@ static void print_table(const char *folder, const struct tl_cache_entry *entries
         printf("%-40s %8.2f MB   last used %s\n", entries[i].name, (double)entries[i].bytes / 1e6, used);
         bytes += (double)entries[i].bytes;
     }
-    printf("%zu drapes and thumbnails, %.2f MB of at most %.0f MB, in %s\n", count, bytes / 1e6,
+    printf("%zu results, %.2f MB of at most %.0f MB, in %s\n", count, bytes / 1e6,
            (double)TL_CACHE_LIMIT_BYTES / 1e6, folder);
 }
 
@@ -62,7 +62,7 @@ bool tl_command_cache(const struct tl_arguments *arguments, tl_error *error)
     if (arguments->json)
         print_json(folder, entries, count, removed);
     else if (arguments->clear)
-        printf("%zu drapes and thumbnails removed from %s\n", removed, folder);
+        printf("%zu results removed from %s\n", removed, folder);
     else
         print_table(folder, entries, count);
     free(entries);

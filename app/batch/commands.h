@@ -9,7 +9,7 @@
 bool tl_command_render(const struct tl_arguments *arguments, tl_error *error);
 /* Prints which jobs a frame runs, why, and what they cost in time and memory. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error);
-/* Lists the drapes and thumbnails that are kept, or removes them. */
+/* Lists the results that are kept, or removes them. */
 bool tl_command_cache(const struct tl_arguments *arguments, tl_error *error);
 /* Prints how far two images differ. */
 bool tl_command_compare(const struct tl_arguments *arguments, tl_error *error);

@@ -73,7 +73,7 @@ static const struct flag flags_known[] = {
     {"--set", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE | TL_FLAGS_FABRIC, FLAG_SET, 0, NULL, "TABLE.KEY=VALUE",
      "any option: `toile help options` lists them"},
     {"--no-cache", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_SWITCH, AT(no_cache), NULL, NULL,
-     "drape again, and do not keep the drape: `toile cache` lists those that are kept"},
+     "drape and filter again, and keep no results: `toile cache` lists those that are kept"},
     {"-o", TL_FLAGS_OUTPUT, FLAG_TEXT, AT(output), NULL, "FILE", "file or folder for the result"},
     {"--frame", TL_FLAGS_FRAME | TL_FLAGS_CAPTURE, FLAG_FRAME, 0, NULL, "N",
      "still image of the animation's frame N; 0 is the start, settled or as authored"},

@@ -1,8 +1,8 @@
 #include "app/drape/drape.h"
 
-#include "app/drape/cache.h"
 #include "app/drape/version.h"
 #include "cloth/snapshot.h"
+#include "config/cache/cache.h"
 #include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"

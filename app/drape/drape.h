@@ -1,6 +1,6 @@
 /* The drape of a garment: a cloth that has settled on its wearer, or starts as authored, and has followed it
  * into the first pose of its clip, with its start marked. A drape that was made before, by any process, is
- * taken from the cache (app/drape/cache.h) and steps on as a new one would, to the bit.
+ * taken from the cache (config/cache/cache.h) and steps on as a new one would, to the bit.
  *
  * Threads: one drape at a time per collider; settling uses all. */
 #ifndef TOILE_APP_DRAPE_DRAPE_H

@@ -110,8 +110,7 @@ void tl_manual_print(const struct tl_manual *manual, FILE *out)
     print_options(manual, out);
     print_status(out);
     fputs(".SH FILES\n", out);
-    print_item("~/.cache/toile", "", "drapes and thumbnails that are kept for reuse ($XDG_CACHE_HOME/toile)",
-               out);
+    print_item("~/.cache/toile", "", "results that are kept for reuse ($XDG_CACHE_HOME/toile)", out);
     print_item("~/.local/state/toile", "", "the window's state and its journal ($XDG_STATE_HOME/toile)", out);
 }
 

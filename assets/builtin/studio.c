@@ -3,6 +3,7 @@
 #include "config/memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum {
     STUDIO_WIDTH = 512,
@@ -77,21 +78,41 @@ static vec3s studio_radiance(vec3s direction, const struct tl_studio_axes *axes)
     return radiance;
 }
 
+/* Sine and cosine of the samples' azimuths, by column, and of their polar angles, by row. */
+struct sample_angles {
+    struct {
+        float sine, cosine;
+    } azimuth[STUDIO_WIDTH * SUBSAMPLES], polar[STUDIO_HEIGHT * SUBSAMPLES];
+};
+
 /* The convention of environment.h, inverted: u in [0, 1) from the left edge, v in [0, 1] from the top. */
-static vec3s latlong_direction(float u, float v)
+static struct sample_angles *sample_angles(void)
 {
-    float azimuth = 2 * (float)M_PI * (u - 0.5f), polar = (float)M_PI * v;
-    return (vec3s){{sinf(azimuth) * sinf(polar), cosf(polar), -cosf(azimuth) * sinf(polar)}};
+    struct sample_angles *angles = TL_NEW(struct sample_angles);
+    for (int i = 0; i < STUDIO_WIDTH * SUBSAMPLES; i++) {
+        float u = ((float)(i / SUBSAMPLES) + ((float)(i % SUBSAMPLES) + 0.5f) / SUBSAMPLES) / STUDIO_WIDTH;
+        float azimuth = 2 * (float)M_PI * (u - 0.5f);
+        angles->azimuth[i].sine = sinf(azimuth);
+        angles->azimuth[i].cosine = cosf(azimuth);
+    }
+    for (int i = 0; i < STUDIO_HEIGHT * SUBSAMPLES; i++) {
+        float v = ((float)(i / SUBSAMPLES) + ((float)(i % SUBSAMPLES) + 0.5f) / SUBSAMPLES) / STUDIO_HEIGHT;
+        float polar = (float)M_PI * v;
+        angles->polar[i].sine = sinf(polar);
+        angles->polar[i].cosine = cosf(polar);
+    }
+    return angles;
 }
 
-static vec3s studio_texel(int x, int y, const struct tl_studio_axes *axes)
+static vec3s studio_texel(int x, int y, const struct sample_angles *angles, const struct tl_studio_axes *axes)
 {
     vec3s sum = glms_vec3_zero();
-    for (int j = 0; j < SUBSAMPLES; j++) {
-        for (int i = 0; i < SUBSAMPLES; i++) {
-            float u = ((float)x + ((float)i + 0.5f) / SUBSAMPLES) / STUDIO_WIDTH;
-            float v = ((float)y + ((float)j + 0.5f) / SUBSAMPLES) / STUDIO_HEIGHT;
-            sum = glms_vec3_add(sum, studio_radiance(latlong_direction(u, v), axes));
+    for (int row = y * SUBSAMPLES; row < (y + 1) * SUBSAMPLES; row++) {
+        for (int column = x * SUBSAMPLES; column < (x + 1) * SUBSAMPLES; column++) {
+            const float across = angles->polar[row].sine;
+            const vec3s direction = {{angles->azimuth[column].sine * across, angles->polar[row].cosine,
+                                      -angles->azimuth[column].cosine * across}};
+            sum = glms_vec3_add(sum, studio_radiance(direction, axes));
         }
     }
     return glms_vec3_scale(sum, 1.0f / (SUBSAMPLES * SUBSAMPLES));
@@ -106,14 +127,14 @@ static float peak_of(const tl_image *image)
     return peak;
 }
 
-static tl_image studio_image(const struct tl_studio_axes *axes)
+static tl_image studio_image(const struct sample_angles *angles, const struct tl_studio_axes *axes)
 {
     tl_image image = tl_image_create(STUDIO_WIDTH, STUDIO_HEIGHT, 3, TL_IMAGE_F32);
     float *texels = tl_image_floats(&image);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < STUDIO_HEIGHT; y++) {
         for (int x = 0; x < STUDIO_WIDTH; x++) {
-            vec3s texel = studio_texel(x, y, axes);
+            vec3s texel = studio_texel(x, y, angles, axes);
             for (int c = 0; c < 3; c++)
                 texels[((size_t)y * STUDIO_WIDTH + (size_t)x) * 3 + (size_t)c] = texel.raw[c];
         }
@@ -126,10 +147,12 @@ tl_environment tl_environment_studio(void)
     struct tl_studio_axes axes[TL_COUNT(tl_studio_lights)];
     for (size_t i = 0; i < tl_studio_light_count; i++)
         axes[i] = tl_studio_light_axes(&tl_studio_lights[i]);
+    struct sample_angles *angles = sample_angles();
     tl_environment environment = {.name = tl_copy_string("studio"),
                                   .layout = TL_ENV_LATLONG,
-                                  .image = studio_image(axes),
-                                  .backdrop = studio_image(NULL)};
+                                  .image = studio_image(angles, axes),
+                                  .backdrop = studio_image(angles, NULL)};
+    free(angles);
     environment.peak = peak_of(&environment.image);
     return environment;
 }

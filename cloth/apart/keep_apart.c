@@ -8,11 +8,13 @@
 #include <string.h>
 
 /* A vertex beyond this share of its ball's radius asks for a window, but not within RIM_SUBSTEPS of the last;
- * one that a plane has stopped asks too, but not within STOPPED_SUBSTEPS: the next plane may leave more room.
- */
+ * one that a plane has stopped asks too, but not within STOPPED_SUBSTEPS, unless these take more than
+ * STOPPED_S: the next plane may leave more room, but contacts of long substeps are soon those of another
+ * place. */
 #define RIM_SHARE        0.8
 #define RIM_SUBSTEPS     2
 #define STOPPED_SUBSTEPS 5
+#define STOPPED_S        5e-3
 /* m/s, at which depth from before a substep is removed; at most this many of the mesh's own sizes in a
  * second. */
 #define PUSH_SPEED 0.3
@@ -89,7 +91,8 @@ void tl_apart_prepare(struct tl_apart *apart, const struct tl_apart_params *para
 bool tl_apart_is_due(const struct tl_apart *apart, double h)
 {
     return !apart->current || apart->late || (apart->rim && apart->substeps >= RIM_SUBSTEPS) ||
-           (apart->stopped && apart->substeps >= STOPPED_SUBSTEPS) || apart->time_s + h > apart->longest_s;
+           (apart->stopped && (apart->substeps >= STOPPED_SUBSTEPS || apart->time_s >= STOPPED_S)) ||
+           apart->time_s + h > apart->longest_s;
 }
 
 /* ---- Contacts ---- */

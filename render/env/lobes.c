@@ -1,9 +1,11 @@
 #include "render/env/lobes.h"
 
+#include "config/cache/cache.h"
 #include "config/memory.h"
 #include "render/env/emitters.h"
 #include "render/env/exponent.h"
 #include "render/env/lobes_fetch.h"
+#include "render/env/version.h"
 
 #include <assert.h>
 #include <math.h>
@@ -154,11 +156,16 @@ static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, floa
     return map;
 }
 
+/* Of the map of the environment itself: as many texels as the cube has. */
+static int side_for_cube(const tl_cube *cube)
+{
+    return whole_tiles(sqrtf(6) * (float)cube->size);
+}
+
 /* The map of the environment itself: the mean radiance over every texel. */
 static struct tl_lobe_map sample_area(const tl_cube *cube)
 {
-    /* as many texels as the cube has */
-    struct tl_lobe_map map = create_map(whole_tiles(sqrtf(6) * (float)cube->size));
+    struct tl_lobe_map map = create_map(side_for_cube(cube));
     float step = 2 / (float)(map.side * AREA_SAMPLES);
 #pragma omp parallel for
     for (int y = 0; y < map.side; y++) {
@@ -193,19 +200,63 @@ static tl_emitter *collect_all(const tl_cube *cube)
     return texels;
 }
 
+/* ---- Maps that are kept between runs ---- */
+
+static size_t map_bytes(const struct tl_lobe_map *map)
+{
+    size_t side = (size_t)map->side + 2;
+    return map->side > 0 ? 4 * side * side * sizeof(float) : 0;
+}
+
+static struct tl_cache_key key_of(const tl_cube *cube)
+{
+    struct tl_cache_key key = tl_cache_key_begin();
+    size_t size = (size_t)cube->size;
+    tl_cache_key_add(&key, TL_LOBES_VERSION, sizeof TL_LOBES_VERSION);
+    tl_cache_key_add(&key, &size, sizeof size);
+    tl_cache_key_add(&key, cube->texels, 3 * 6 * size * size * sizeof *cube->texels);
+    return key;
+}
+
+static bool load_map(struct tl_cache_key key, int index, int side, struct tl_lobe_map *map)
+{
+    void *data;
+    size_t size;
+    tl_cache_key_add(&key, &index, sizeof index);
+    if (!tl_cache_load(&key, &data, &size))
+        return false;
+    *map = (struct tl_lobe_map){side, data};
+    if (size == map_bytes(map))
+        return true;
+    free(data);
+    return false;
+}
+
+static void keep_map(struct tl_cache_key key, int index, const struct tl_lobe_map *map)
+{
+    tl_cache_key_add(&key, &index, sizeof index);
+    tl_cache_store(&key, map->texels, map_bytes(map));
+}
+
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
 {
-    uint32_t missing = needed & ~lobes->made;
+    const uint32_t missing = needed & ~lobes->made;
+    const bool is_kept = tl_cache_is_used() && missing;
+    const struct tl_cache_key key = is_kept ? key_of(cube) : tl_cache_key_begin();
+    tl_emitter *texels = NULL;
+    for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
+        struct tl_lobe_map *map = &lobes->maps[i];
+        const bool is_itself = i == TL_EXPONENT_COUNT;
+        const int side = is_itself ? side_for_cube(cube) : side_for(tl_exponent(i));
+        if (!(missing & 1u << i) || (is_kept && load_map(key, i, side, map)))
+            continue;
+        if (!is_itself && !texels)
+            texels = collect_all(cube);
+        *map = is_itself ? sample_area(cube) : convolve(texels, cube->size, tl_exponent(i));
+        if (is_kept)
+            keep_map(key, i, map);
+    }
     lobes->made |= missing;
-    if (missing & 1u << TL_EXPONENT_COUNT)
-        lobes->maps[TL_EXPONENT_COUNT] = sample_area(cube);
-    missing &= (1u << TL_EXPONENT_COUNT) - 1;
-    if (!missing)
-        return;
-    tl_emitter *texels = collect_all(cube);
-    for (int i = 0; i < TL_EXPONENT_COUNT; i++)
-        if (missing & 1u << i)
-            lobes->maps[i] = convolve(texels, cube->size, tl_exponent(i));
     free(texels);
 }
 
@@ -238,11 +289,10 @@ struct tl_lobes tl_lobes_copy(const struct tl_lobes *lobes)
 {
     struct tl_lobes copy = {.made = lobes->made};
     for (size_t i = 0; i < TL_COUNT(copy.maps); i++) {
-        size_t side = (size_t)lobes->maps[i].side + 2;
         if (lobes->maps[i].side == 0)
             continue;
         copy.maps[i] = create_map(lobes->maps[i].side);
-        memcpy(copy.maps[i].texels, lobes->maps[i].texels, 4 * side * side * sizeof(float));
+        memcpy(copy.maps[i].texels, lobes->maps[i].texels, map_bytes(&lobes->maps[i]));
     }
     return copy;
 }
@@ -285,9 +335,8 @@ vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_ex
 
 size_t tl_lobes_bytes(const struct tl_lobes *lobes)
 {
-    size_t texels = 0;
+    size_t bytes = 0;
     for (size_t i = 0; i < TL_COUNT(lobes->maps); i++)
-        if (lobes->maps[i].side)
-            texels += (size_t)(lobes->maps[i].side + 2) * (size_t)(lobes->maps[i].side + 2);
-    return texels * 4 * sizeof(float);
+        bytes += map_bytes(&lobes->maps[i]);
+    return bytes;
 }

@@ -1,5 +1,6 @@
 /* The whole environment convolved exactly with cosine lobes: E(d, s) = integral of L(w) K_s(d, w) dw [DESIGN
- * 4], for the exponents that a frame needs. Pure; results do not depend on the number of threads.
+ * 4], for the exponents that a frame needs. Pure, but for the cache of files (config/cache/cache.h), in which
+ * slow results are kept between runs; results do not depend on it, nor on the number of threads.
  *
  * One octahedral map per exponent, its side following the width of the lobe, with a border of one texel, so
  * that a bilinear fetch needs no special case at seams. */
@@ -37,7 +38,8 @@ struct tl_lobes {
     struct tl_lobe_map maps[TL_EXPONENT_COUNT + 1];
 };
 
-/* Computes the maps of `needed` that do not exist yet. Call tl_lobes_release when the cube changes. */
+/* Computes the maps of `needed` that do not exist yet, or takes them from the cache, if one is used. Call
+ * tl_lobes_release when the cube changes. */
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed);
 void tl_lobes_release(struct tl_lobes *lobes);
 /* Releases all maps except those of `which`. */

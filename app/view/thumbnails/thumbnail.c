@@ -1,9 +1,9 @@
 #include "app/view/thumbnails/thumbnail.h"
 
-#include "app/drape/cache.h"
 #include "app/scene/moving_light.h"
 #include "app/scene/session.h"
 #include "app/settings/settings.h"
+#include "config/cache/cache.h"
 #include "config/interrupt.h"
 #include "config/memory.h"
 #include "render/present/tone_map.h"

@@ -1,5 +1,5 @@
 /* One small picture of what a name stands for: a fabric on a sphere in the studio, drawn by the reference
- * renderer on the CPU and kept in the cache of drapes (app/drape/cache.h), or an environment's map,
+ * renderer on the CPU and kept in the cache of drapes (config/cache/cache.h), or an environment's map,
  * tone-mapped as the view's background.
  *
  * No GL. Errors: those of tl_session_create and tl_reference_draw; of tl_moving_light_open. Lifetime: the

@@ -2,8 +2,8 @@
  * hand that pulls, after a reset; and what a drape depends on makes another one. */
 #include "tests/testing.h"
 
-#include "app/drape/cache.h"
 #include "app/scene/session.h"
+#include "config/cache/cache.h"
 #include "config/memory.h"
 
 #include <string.h>

@@ -2,10 +2,10 @@
  * for byte, and of a list that opens, closes and opens again. */
 #include "tests/testing.h"
 
-#include "app/drape/cache.h"
 #include "app/settings/settings.h"
 #include "app/view/thumbnails/thumbnail.h"
 #include "app/view/thumbnails/thumbnails.h"
+#include "config/cache/cache.h"
 
 #include <string.h>
 #include <unistd.h>

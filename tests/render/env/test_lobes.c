@@ -3,10 +3,15 @@
 #include "render/pem/lobe.h"
 #include "render/pem/lobe_error.h"
 
+#include "config/cache/cache.h"
+#include "config/memory.h"
 #include "tests/testing.h"
 
+#include <fcntl.h>
 #include <omp.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define ALL 0xffffffffu
 
@@ -255,6 +260,72 @@ static void a_black_sky_is_black(void **state)
     tl_cube_release(&cube);
 }
 
+/* ---- Maps that are kept between runs ---- */
+
+static bool are_equal(const struct tl_lobes *a, const struct tl_lobes *b)
+{
+    bool equal = a->made == b->made && tl_lobes_bytes(a) == tl_lobes_bytes(b);
+    for (size_t i = 0; i < TL_COUNT(a->maps) && equal; i++) {
+        size_t side = (size_t)a->maps[i].side + 2;
+        equal = a->maps[i].side == b->maps[i].side &&
+                (a->maps[i].side == 0 ||
+                 memcmp(a->maps[i].texels, b->maps[i].texels, 4 * side * side * sizeof(float)) == 0);
+    }
+    return equal;
+}
+
+/* Makes the maps of a cube, and counts the files in the cache, and those among them that were used since
+ * 1970. */
+static struct tl_lobes make_kept(const tl_cube *cube, const char *folder, size_t *files, size_t *used)
+{
+    struct tl_lobes lobes = {0};
+    tl_lobes_make(&lobes, cube, 1u << 0 | 1u << 5 | 1u << TL_EXPONENT_COUNT);
+    struct tl_cache_entry *entries = tl_cache_list(folder, files);
+    *used = 0;
+    for (size_t i = 0; i < *files; i++) {
+        const struct timespec long_ago[2] = {{0}, {0}};
+        char *path = tl_format("%s/%s", folder, entries[i].name);
+        *used += entries[i].used.tv_sec > 0;
+        utimensat(AT_FDCWD, path, long_ago, 0);
+        free(path);
+    }
+    free(entries);
+    return lobes;
+}
+
+/* Maps from the cache are those that are computed, to the bit; another environment has its own. */
+static void kept_maps_are_the_same(void **state)
+{
+    (void)state;
+    const char *folder = TOILE_SCRATCH_DIR "/lobes";
+    size_t files, used;
+    tl_cube cube = noise_cube(16);
+    struct tl_lobes plain = make_kept(&cube, folder, &files, &used);
+    tl_cache_use(folder, 1 << 24);
+    tl_cache_clear(folder);
+    struct tl_lobes first = make_kept(&cube, folder, &files, &used);
+    assert_int_equal(files, 3);
+    assert_int_equal(used, 3);
+    struct tl_lobes second = make_kept(&cube, folder, &files, &used);
+    assert_int_equal(files, 3);
+    assert_int_equal(used, 3); /* they were read */
+    assert_true(are_equal(&plain, &first));
+    assert_true(are_equal(&plain, &second));
+    cube.texels[1535] += 1;
+    struct tl_lobes other = make_kept(&cube, folder, &files, &used);
+    assert_int_equal(files, 6);
+    assert_int_equal(used, 3);
+    assert_false(are_equal(&plain, &other));
+    tl_cache_clear(folder);
+    tl_cache_use(NULL, 0);
+    rmdir(folder);
+    tl_lobes_release(&plain);
+    tl_lobes_release(&first);
+    tl_lobes_release(&second);
+    tl_lobes_release(&other);
+    tl_cube_release(&cube);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -262,6 +333,7 @@ int main(void)
         cmocka_unit_test(no_seam_below_the_horizon), cmocka_unit_test(the_environment_itself_keeps_its_light),
         cmocka_unit_test(threads_change_no_bit),     cmocka_unit_test(results_are_finite),
         cmocka_unit_test(a_black_sky_is_black),      cmocka_unit_test(a_lamp_sets_where_its_horizon_is),
+        cmocka_unit_test(kept_maps_are_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,7 +2,7 @@
  * one another; the least recently used files go first; a folder that cannot be written is no error. */
 #include "tests/testing.h"
 
-#include "app/drape/cache.h"
+#include "config/cache/cache.h"
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"

@@ -1,4 +1,4 @@
-#include "app/drape/cache.h"
+#include "config/cache/cache.h"
 
 #include "config/file.h"
 #include "config/hash.h"
@@ -53,7 +53,7 @@ void tl_cache_key_add(struct tl_cache_key *key, const void *bytes, size_t size)
 {
     for (int i = 0; i < 2; i++) {
         key->words[i] = tl_hash(key->words[i], &size, sizeof size);
-        key->words[i] = tl_hash(key->words[i], bytes, size);
+        key->words[i] = tl_hash_words(key->words[i], bytes, size);
     }
 }
 
@@ -79,7 +79,7 @@ static bool is_intact(const struct tl_cache_key *key, const char *file, size_t s
     memcpy(&header, file, sizeof header);
     return memcmp(header.magic, MAGIC, sizeof header.magic) == 0 && header.key.words[0] == key->words[0] &&
            header.key.words[1] == key->words[1] && header.size == size - sizeof header &&
-           header.checksum == tl_hash(TL_HASH_START, file + sizeof header, size - sizeof header);
+           header.checksum == tl_hash_words(TL_HASH_START, file + sizeof header, size - sizeof header);
 }
 
 /* Through one descriptor, so that a file that is replaced meanwhile is read whole, as it was. NULL: it cannot
@@ -191,7 +191,8 @@ void tl_cache_store(const struct tl_cache_key *key, const void *data, size_t siz
 {
     if (!used.folder || size > used.limit_bytes)
         return;
-    struct drape_header header = {.key = *key, .size = size, .checksum = tl_hash(TL_HASH_START, data, size)};
+    struct drape_header header = {
+        .key = *key, .size = size, .checksum = tl_hash_words(TL_HASH_START, data, size)};
     memcpy(header.magic, MAGIC, sizeof header.magic);
     char *path = path_of(key);
     struct tl_writer writer = {0};

@@ -7,15 +7,15 @@
  *
  * Lifetime: strings and data that are returned are the caller's, to free. Threads: tl_cache_use before others
  * begin; the rest on any thread. */
-#ifndef TOILE_APP_DRAPE_CACHE_H
-#define TOILE_APP_DRAPE_CACHE_H
+#ifndef TOILE_CONFIG_CACHE_CACHE_H
+#define TOILE_CONFIG_CACHE_CACHE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <time.h>
 
-#define TL_CACHE_LIMIT_BYTES ((uint64_t)512000000)
+#define TL_CACHE_LIMIT_BYTES ((uint64_t)1000000000)
 
 /* $XDG_CACHE_HOME/toile/drapes, or ~/.cache/toile/drapes; NULL when the environment names neither. */
 char *tl_cache_folder(void);
