@@ -252,7 +252,10 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
             continue;
         if (!is_itself && !texels)
             texels = collect_all(cube);
-        *map = is_itself ? sample_area(cube) : convolve(texels, cube->size, tl_exponent(i));
+        if (is_itself)
+            *map = sample_area(cube);
+        else
+            *map = convolve(texels, cube->size, tl_exponent(i));
         if (is_kept)
             keep_map(key, i, map);
     }
