@@ -15,7 +15,8 @@
 
 /* Exchanges planes so that the vertices that apart->cut marks can go where they want, `x`, as far as their
  * pairs leave them place; moves them, and other vertices of these pairs, to where they then can be. `start`
- * is where all planes hold. Returns whether a vertex was moved into the body. Threads: one call at a time. */
+ * is where all planes hold. Returns whether a vertex was moved into the body. Metres. Errors: none. Threads:
+ * one call at a time. */
 bool tl_apart_exchange(struct tl_apart *apart, const struct tl_apart_params *params,
                        const struct tl_apart_start *start, vec3d *x);
 

@@ -19,6 +19,7 @@
  * second. */
 #define PUSH_SPEED 0.3
 #define PUSH_SIZES 100
+
 void tl_apart_release(struct tl_apart *apart)
 {
     tl_near_release(&apart->near);

@@ -77,22 +77,22 @@ struct tl_apart_params {
 
 struct tl_apart {
     struct tl_near near;
-    bool made;                 /* near is that of the topology */
-    bool current;              /* there is a window */
-    bool rim, stopped;         /* a vertex has come near its ball's rim; a plane has stopped one */
-    bool late;                 /* it was made after a substep, for what that has left to do */
-    int substeps;              /* of the window so far */
-    double time_s;             /* of the window so far */
-    double longest_s;          /* that the common motion may be continued */
+    bool made;         /* near is that of the topology */
+    bool current;      /* there is a window */
+    bool rim, stopped; /* a vertex has come near its ball's rim; a plane has stopped one */
+    bool late;         /* made after a substep, or with planes on the body: the next one needs another */
+    int substeps;      /* of the window so far */
+    double time_s;     /* of the window so far */
+    double longest_s;  /* that the common motion may be continued */
     struct tl_affine velocity; /* common motion */
     struct tl_affine moved;    /* the same over time_s */
     struct tl_affine_inverse back;
-    double *size;          /* [vertex] m, mean side of its triangles at rest */
-    vec3d *speed;          /* [vertex] m/s, at the window's start */
-    vec3d *base;           /* [vertex] m */
-    double *radius;        /* [vertex] m, of the balls */
-    double *off;           /* [vertex] m, from the list's base, common motion taken out */
-    bool *cut;             /* [vertex] of a truncation: left where it is, far past a plane */
+    double *size;   /* [vertex] m, mean side of its triangles at rest */
+    vec3d *speed;   /* [vertex] m/s, at the window's start */
+    vec3d *base;    /* [vertex] m */
+    double *radius; /* [vertex] m, of the balls */
+    double *off;    /* [vertex] m, from the list's base, common motion taken out */
+    bool *cut;      /* [vertex] of a truncation: left where it is, outside its ball or far past a plane */
     uint32_t *plane_first; /* [vertex] of `planes` */
     uint32_t *plane_count; /* [vertex] */
     uint32_t *plane_room;  /* [vertex] at least plane_count */
@@ -109,8 +109,8 @@ struct tl_apart {
 };
 void tl_apart_release(struct tl_apart *apart);
 
-/* Farther past a plane, m, a vertex is not moved back before planes have been exchanged, or made anew, to
- * make sure that it must be: what is moved back loses its momentum. */
+/* Farther past a plane, m, a vertex is not moved back before an exchange of planes, or another window, has
+ * made sure that it must be: what is moved back loses its momentum. */
 #define TL_APART_CUT_M 5e-6
 
 /* Where all planes and balls hold: positions that the last truncation left, and the common motion until then.

@@ -9,7 +9,7 @@
 struct tl_apart_plane {
     vec3d normal;
     double room;
-    double gain;   /* m, of room at the substep's end, if the plane moves on with its pair */
+    double gain;   /* m, what moving on with its pair adds to room; within an exchange it is part of room */
     uint32_t pair; /* of the list; TL_NONE: a plane on the body */
     uint8_t stage; /* of its exchange (exchange.h) */
 };

@@ -29,7 +29,7 @@ static const struct {
      "light.composition=difference "
      "--set light.regions=24 --set light.pem_size=32 --set light.map_size=256 --set light.jitter=false"},
     {"body", "--garment none --avatar figure"}, /* only the camera moves */
-    {"filtered", "--no-cache"}, /* what is kept was made without the fault */
+    {"filtered", "--no-cache"},                 /* what is kept was made without the fault */
     {"cloth", "--no-cache --set cloth.edge_m=0.05"},
     {"folds", "--no-cache --garment skirt --set cloth.edge_m=0.03"},
     {"glossy", "--fabric none --set material.use_file=false --set material.specular=[0.5,0.5,0.5] --set "
