@@ -2,11 +2,17 @@
 
 #include "config/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Normals that differ by more than half a right angle are those of a hard edge. */
 #define HARD_COSINE 0.707f
+
+/* Cloth that is nearer to a body than this is kept off it, by so much: a body that bends by 40 mm rises by
+ * 0.3 mm between vertices that are 10 mm apart. */
+#define REACH_M 0.01f
+#define CLEAR_M 0.001f
 
 /* The side of a triangle that faces a corner, by its vertices. */
 struct drawn_side {
@@ -131,23 +137,67 @@ static void take_uvs(const tl_mesh *mesh, struct tl_smoothed *out)
     }
 }
 
-/* Moves the vertices with the garment's positions. */
-static void follow(struct tl_smoothed *smoothed, const vec3s *positions, vec3s *out)
+/* The share of a point's way `moved` from where the cloth is, `flat`, that it may go as far as one end of its
+ * edge knows: towards a body to CLEAR_M above it, and no farther where the cloth itself is lower. */
+static float share_clear(vec3s flat, vec3s moved, vec3s end, const struct tl_clearance *clearance)
+{
+    float above = clearance->height_m + glms_vec3_dot(glms_vec3_sub(flat, end), clearance->up);
+    float down = -glms_vec3_dot(moved, clearance->up), room = fmaxf(above - CLEAR_M, 0);
+    float length = glms_vec3_norm(moved);
+    float share = clearance->height_m < REACH_M && down > room ? room / fmaxf(down, 1e-12f) : 1;
+    return length > clearance->room_m ? fminf(share, clearance->room_m / length) : share;
+}
+
+/* The smooth surface is inside of what bulges: it would sink into a body that the cloth lies on, and through
+ * cloth that lies on it. */
+static void stay_clear(struct tl_smoothed *smoothed)
+{
+    const vec3s *coarse = smoothed->coarse;
+    size_t source_count = smoothed->weights.source_count;
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < smoothed->weights.vertex_count; i++) {
+        uint32_t own[2] = {(uint32_t)i, (uint32_t)i};
+        const uint32_t *ends = i < source_count ? own : smoothed->weights.ends[i - source_count];
+        vec3s flat = glms_vec3_lerp(coarse[ends[0]], coarse[ends[1]], 0.5f);
+        vec3s moved = glms_vec3_sub(smoothed->fine[i], flat);
+        float share = 1;
+        for (int k = 0; k < 2; k++)
+            share = fminf(share, share_clear(flat, moved, coarse[ends[k]], &smoothed->clearances[ends[k]]));
+        smoothed->fine[i] = glms_vec3_add(flat, glms_vec3_scale(moved, share));
+    }
+}
+
+/* Smooths the garment's positions at its welded vertices. */
+static void smooth(struct tl_smoothed *smoothed, const vec3s *positions)
 {
     for (size_t i = 0; i < smoothed->weights.source_count; i++)
         smoothed->coarse[i] = positions[smoothed->of_weld[i]];
     tl_smooth_apply(&smoothed->weights, smoothed->coarse, smoothed->fine);
+}
+
+static void give_positions(const struct tl_smoothed *smoothed, vec3s *out)
+{
     for (size_t i = 0; i < smoothed->model.mesh.vertex_count; i++)
         out[i] = smoothed->fine[smoothed->weld[i]];
 }
 
-void tl_smoothed_make(const tl_garment *garment, const uint32_t *weld, const tl_borders *borders,
-                      struct tl_smoothed *out)
+static void follow(struct tl_smoothed *smoothed, const struct tl_smoothed_cloth *worn, const vec3s *positions)
+{
+    smooth(smoothed, positions);
+    tl_cloth_clearances(worn->cloth, worn->collider, smoothed->weights.source_count, smoothed->clearances);
+    stay_clear(smoothed);
+    give_positions(smoothed, smoothed->moving.positions);
+    tl_moving_update(&smoothed->moving);
+}
+
+void tl_smoothed_make(const tl_garment *garment, const struct tl_smoothed_cloth *worn,
+                      const tl_borders *borders, struct tl_smoothed *out)
 {
     const tl_mesh *mesh = &garment->model.mesh;
+    const uint32_t *weld = tl_cloth_weld(worn->cloth);
     size_t triangle_count = mesh->index_count / 3, welded = 0;
     *out = (struct tl_smoothed){.source_count = mesh->vertex_count};
-    if (4 * mesh->index_count > TL_LIMIT_MESH_INDICES)
+    if (triangle_count > TL_SMOOTHED_TRIANGLES)
         return;
     for (size_t i = 0; i < mesh->vertex_count; i++)
         welded = weld[i] >= welded ? weld[i] + (size_t)1 : welded;
@@ -163,11 +213,13 @@ void tl_smoothed_make(const tl_garment *garment, const uint32_t *weld, const tl_
     for (size_t i = mesh->vertex_count; i-- > 0;) /* the first vertex at each place */
         out->of_weld[weld[i]] = (uint32_t)i;
     out->coarse = TL_NEW_ARRAY(vec3s, welded);
+    out->clearances = TL_NEW_ARRAY(struct tl_clearance, welded);
     out->fine = TL_NEW_ARRAY(vec3s, out->weights.vertex_count);
     split_mesh(mesh, weld, out);
     take_uvs(mesh, out);
     out->model.mesh.positions = TL_NEW_ARRAY(vec3s, out->model.mesh.vertex_count);
-    follow(out, mesh->positions, out->model.mesh.positions);
+    smooth(out, mesh->positions);
+    give_positions(out, out->model.mesh.positions);
     out->parts = TL_NEW_ARRAY(struct tl_mesh_part, mesh->part_count);
     tl_moving_create(&out->moving, &out->model, out->weld);
     out->moving.borders = split_borders(borders);
@@ -182,6 +234,7 @@ void tl_smoothed_release(struct tl_smoothed *smoothed)
     free(smoothed->weld);
     free(smoothed->ends);
     free(smoothed->coarse);
+    free(smoothed->clearances);
     free(smoothed->fine);
     free(smoothed->strains);
     free(smoothed->crossed);
@@ -209,14 +262,13 @@ static void take_values(struct tl_smoothed *smoothed, const tl_surface *garment,
     out->crossed = garment->crossed ? smoothed->crossed : NULL;
 }
 
-tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const tl_surface *garment)
+tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const struct tl_smoothed_cloth *worn,
+                               const tl_surface *garment)
 {
     if (smoothed->model.mesh.vertex_count == 0)
         return *garment;
-    if (smoothed->revision != garment->motion_revision) {
-        follow(smoothed, garment->positions, smoothed->moving.positions);
-        tl_moving_update(&smoothed->moving);
-    }
+    if (smoothed->revision != garment->motion_revision)
+        follow(smoothed, worn, garment->positions);
     smoothed->revision = garment->motion_revision;
     tl_surface out = *garment;
     take_values(smoothed, garment, &out);
@@ -226,6 +278,8 @@ tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const tl_surface *g
         smoothed->parts[i].index_count *= 4;
     }
     out.vertex_count = smoothed->model.mesh.vertex_count;
+    out.ends = (const uint32_t(*)[2])smoothed->ends;
+    out.end_count = out.vertex_count - smoothed->source_count;
     out.positions = smoothed->moving.positions;
     out.normals = smoothed->moving.normals;
     out.tangents = smoothed->moving.tangents;

@@ -7,29 +7,41 @@
 
 #include "app/drawn/moving.h"
 #include "assets/smooth/smooth.h"
+#include "cloth/clearance.h"
 
 struct tl_smoothed {
     tl_model model; /* its mesh: the file's vertices first, then one on each edge */
     struct tl_moving moving;
-    struct tl_smooth weights;   /* of welded vertices */
-    uint32_t *of_weld;          /* [weights.source_count] a vertex of the garment at each */
-    uint32_t *weld;             /* [model.mesh.vertex_count] */
-    uint32_t (*ends)[2];        /* vertices of the garment: those of each new vertex's edge */
-    size_t source_count;        /* the garment's vertices */
-    vec3s *coarse, *fine;       /* welded positions */
-    vec3s *strains;             /* of all vertices */
-    bool *crossed;              /* of all triangles */
-    struct tl_mesh_part *parts; /* as many as the mesh has */
-    uint64_t revision;          /* of the motion that it shows */
+    struct tl_smooth weights;        /* of welded vertices */
+    uint32_t *of_weld;               /* [weights.source_count] a vertex of the garment at each */
+    uint32_t *weld;                  /* [model.mesh.vertex_count] */
+    uint32_t (*ends)[2];             /* vertices of the garment: those of each new vertex's edge */
+    size_t source_count;             /* the garment's vertices */
+    vec3s *coarse, *fine;            /* welded positions */
+    struct tl_clearance *clearances; /* [weights.source_count] */
+    vec3s *strains;                  /* of all vertices */
+    bool *crossed;                   /* of all triangles */
+    struct tl_mesh_part *parts;      /* as many as the mesh has */
+    uint64_t revision;               /* of the motion that it shows */
 };
 
-/* `weld` [vertex_count]: as in tl_moving_create. Leaves `out` empty, its model without a mesh, where four
- * times the triangles are more than a mesh may have. */
-void tl_smoothed_make(const tl_garment *garment, const uint32_t *weld, const tl_borders *borders,
-                      struct tl_smoothed *out);
+/* The cloth's mesh is fine enough from here on. */
+#define TL_SMOOTHED_TRIANGLES 40000
+
+/* The garment's cloth, and what it lies on. Borrowed. */
+struct tl_smoothed_cloth {
+    const tl_cloth *cloth;
+    const tl_collider *collider;
+};
+
+/* Leaves `out` empty, its model without a mesh, for a garment of more than
+ * TL_SMOOTHED_TRIANGLES. */
+void tl_smoothed_make(const tl_garment *garment, const struct tl_smoothed_cloth *worn,
+                      const tl_borders *borders, struct tl_smoothed *out);
 void tl_smoothed_release(struct tl_smoothed *smoothed); /* frees and zeroes */
 
 /* The surface that shows `garment`, the garment's own, whose arrays it borrows where they stay. */
-tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const tl_surface *garment);
+tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const struct tl_smoothed_cloth *worn,
+                               const tl_surface *garment);
 
 #endif

@@ -25,16 +25,16 @@ static const tl_surface *find_surface(const tl_frame *frame, const char *name)
 }
 
 /* The hem's vertex nearest to the eye: the lowest ones within 2 cm are the hem. */
-static uint32_t hem_vertex(const tl_surface *garment, vec3s eye)
+static uint32_t hem_vertex(const vec3s *positions, size_t count, vec3s eye)
 {
     const float hem_m = 0.02f;
     float lowest = INFINITY, nearest = INFINITY;
     uint32_t best = 0;
-    for (size_t i = 0; i < garment->vertex_count; i++)
-        lowest = fminf(lowest, garment->positions[i].y);
-    for (size_t i = 0; i < garment->vertex_count; i++) {
-        float distance = glms_vec3_distance(garment->positions[i], eye);
-        if (garment->positions[i].y < lowest + hem_m && distance < nearest) {
+    for (size_t i = 0; i < count; i++)
+        lowest = fminf(lowest, positions[i].y);
+    for (size_t i = 0; i < count; i++) {
+        float distance = glms_vec3_distance(positions[i], eye);
+        if (positions[i].y < lowest + hem_m && distance < nearest) {
             nearest = distance;
             best = (uint32_t)i;
         }
@@ -43,28 +43,32 @@ static uint32_t hem_vertex(const tl_surface *garment, vec3s eye)
 }
 
 /* The longest side of its bounding box. */
-static float size_of(const tl_surface *garment)
+static float size_of(const vec3s *positions, size_t count)
 {
-    vec3s box[2] = {garment->positions[0], garment->positions[0]};
-    for (size_t i = 1; i < garment->vertex_count; i++) {
-        box[0] = glms_vec3_minv(box[0], garment->positions[i]);
-        box[1] = glms_vec3_maxv(box[1], garment->positions[i]);
+    vec3s box[2] = {positions[0], positions[0]};
+    for (size_t i = 1; i < count; i++) {
+        box[0] = glms_vec3_minv(box[0], positions[i]);
+        box[1] = glms_vec3_maxv(box[1], positions[i]);
     }
     return glms_vec3_max(glms_vec3_sub(box[1], box[0]));
 }
 
 void tl_motion_begin(struct tl_motion *motion, tl_session *session)
 {
-    tl_frame frame = tl_session_frame(session);
-    const tl_surface *garment = find_surface(&frame, TL_SURFACE_GARMENT);
+    const tl_model *garment = tl_session_models(session).garment;
     *motion = (struct tl_motion){.session = session};
     motion->pulls = garment && tl_session_cloth(session) && !tl_session_plays_clip(session);
     if (!motion->pulls)
         return;
-    motion->vertex = hem_vertex(garment, frame.camera.eye);
-    motion->swing_m = fminf(SWING_M, SWING_SHARE * size_of(garment));
-    motion->home = garment->positions[motion->vertex];
-    vec3s towards = glms_vec3_sub(frame.camera.target, frame.camera.eye);
+    const struct tl_camera camera = tl_session_frame(session).camera;
+    size_t count = garment->mesh.vertex_count;
+    vec3s *positions = TL_NEW_ARRAY(vec3s, count); /* of the cloth; it may be drawn smoother */
+    tl_cloth_positions(tl_session_cloth(session), positions);
+    motion->vertex = hem_vertex(positions, count, camera.eye);
+    motion->swing_m = fminf(SWING_M, SWING_SHARE * size_of(positions, count));
+    motion->home = positions[motion->vertex];
+    free(positions);
+    vec3s towards = glms_vec3_sub(camera.target, camera.eye);
     motion->across = glms_vec3_normalize((vec3s){{-towards.z, 0, towards.x}});
 }
 

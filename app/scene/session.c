@@ -498,15 +498,17 @@ static struct tl_framing framing_with_board(tl_session *session)
                              TL_CAMERA_BODY);
 }
 
-/* The garment as it is drawn. What is played back, or is no cloth, is drawn as its file has it. */
+/* The garment as it is drawn. What is played back, is no cloth or has not moved yet is drawn as its file has
+ * it. */
 static tl_surface smoothed(tl_session *session, const tl_surface *garment)
 {
     struct tl_smoothed *smooth = &session->smoothed;
-    if (!session->settings.scene.smooth || !session->cloth)
+    if (!session->settings.scene.smooth || !session->cloth || garment->has_own_normals)
         return *garment;
+    const struct tl_smoothed_cloth worn = {session->cloth, session->collider};
     if (smooth->source_count == 0)
-        tl_smoothed_make(session->garment, tl_cloth_weld(session->cloth), &session->dress.borders, smooth);
-    return tl_smoothed_surface(smooth, garment);
+        tl_smoothed_make(session->garment, &worn, &session->dress.borders, smooth);
+    return tl_smoothed_surface(smooth, &worn, garment);
 }
 
 /* The garment comes last. */

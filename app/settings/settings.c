@@ -32,7 +32,7 @@ static const char *const colourways_names[] = {OWN, "dress", "skirt", "trousers"
 
 #define TL_SCENE_DEFAULTS                                                                                    \
     .garment = "dress", .avatar = "auto", .motion = "none", .environment = "studio", .environment_rate = 30, \
-    .colourways = OWN, .preset = "review", .scale = 1
+    .colourways = OWN, .preset = "review", .scale = 1, .smooth = true
 
 static const struct tl_option scene_rows[] = {
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, garment,
@@ -84,8 +84,8 @@ static const struct tl_option scene_rows[] = {
                    "colour both"),
     TL_OPTION_BOOL(
         struct tl_scene_params, smooth, TL_AFFECTS_MATERIALS,
-        "draws cloth as a smooth surface, each triangle as four; creases stay at seams and hard edges; "
-        "four times the work of light at vertices; files, measures and contacts have the mesh itself"),
+        "draws cloth of up to 40,000 triangles as a smooth surface, each triangle as four; creases stay at "
+        "seams and hard edges; files, measures and contacts have the mesh itself"),
     TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
                            "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
                            "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),

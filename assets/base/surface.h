@@ -14,6 +14,9 @@ struct tl_borders;
 typedef struct tl_surface {
     const char *name; /* TL_SURFACE_GARMENT, "avatar", "ground" */
     size_t vertex_count;
+    const uint32_t (*ends)[2]; /* of the last `end_count` vertices, each on an edge between two of the others,
+                                  which take the mean of what is kept at these; NULL: none */
+    size_t end_count;
     const vec3s *positions; /* metres, world */
     const vec3s *normals;   /* unit; towards the outside */
     bool has_own_normals;   /* they are a file's, or of other positions: no means of the faces */

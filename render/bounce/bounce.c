@@ -9,11 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rays of a vertex in an update; in motion one in SHARES of the wanted vertices is traced in each. At rest
- * every vertex has ROUNDS updates. */
-#define RAYS   16
-#define SHARES 8
-#define ROUNDS 4
+/* Rays of a vertex in an update; in motion one in SHARES of the vertices that the camera sees is traced in
+ * each, and one in HIT_SHARES of those that only rays have hit. At rest every vertex has ROUNDS updates. */
+#define RAYS       16
+#define SHARES     8
+#define HIT_SHARES 32
+#define ROUNDS     4
 /* Updates of a new scene before its first: until what rays hit is known itself. */
 #define FIRST_UPDATES 4
 /* A vertex that was neither seen nor hit for so many updates is traced no more. */
@@ -103,6 +104,7 @@ static void free_vertices(struct tl_bounce *bounce)
     free(bounce->sent);
     free(bounce->rounds);
     free(bounce->wanted);
+    free(bounce->seen);
     free(bounce->weights);
 }
 
@@ -129,6 +131,7 @@ static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_reque
     bounce->sent = TL_NEW_ARRAY(vec3s, count);
     bounce->rounds = TL_NEW_ARRAY(uint16_t, count);
     bounce->wanted = TL_NEW_ARRAY(uint32_t, count);
+    bounce->seen = TL_NEW_ARRAY(uint32_t, count);
     bounce->weights = TL_NEW_ARRAY(float, count);
     bounce->update = 0;
     follow_materials(bounce, ranges);
@@ -160,24 +163,51 @@ static void follow_sky(struct tl_bounce *bounce, const struct tl_bounce_request 
 
 /* ---- What is wanted ---- */
 
-/* What lets light through is lit from both sides. */
-static void want(struct tl_bounce *bounce, size_t surface, const uint32_t corners[3], bool back)
+/* The vertices that are traced for one: itself, or the ends of the edge that it lies on. */
+static void probes_of(const tl_surface *surface, uint32_t vertex, uint32_t out[2])
 {
-    for (int k = 0; k < 3; k++) { /* threads may want one vertex at once: they write the same */
-        const size_t vertex = bounce->first_vertex[surface] + corners[k];
-        __atomic_store_n(&bounce->wanted[2 * vertex + back], bounce->update, __ATOMIC_RELAXED);
-        if (glms_vec3_max(bounce->transmissions[vertex]) > 0)
-            __atomic_store_n(&bounce->wanted[2 * vertex + !back], bounce->update, __ATOMIC_RELAXED);
+    const size_t own = surface->vertex_count - surface->end_count;
+    out[0] = vertex < own ? vertex : surface->ends[vertex - own][0];
+    out[1] = vertex < own ? vertex : surface->ends[vertex - own][1];
+}
+
+/* What lets light through is lit from both sides. */
+static void want_vertex(struct tl_bounce *bounce, size_t vertex, bool back)
+{
+    /* Threads may want one vertex at once: they write the same. */
+    __atomic_store_n(&bounce->wanted[2 * vertex + back], bounce->update, __ATOMIC_RELAXED);
+    if (glms_vec3_max(bounce->transmissions[vertex]) > 0)
+        __atomic_store_n(&bounce->wanted[2 * vertex + !back], bounce->update, __ATOMIC_RELAXED);
+}
+
+static void want(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, size_t surface,
+                 const uint32_t corners[3], bool back)
+{
+    for (int k = 0; k < 3; k++) {
+        uint32_t probes[2];
+        probes_of(ranges->surfaces[surface], corners[k], probes);
+        want_vertex(bounce, bounce->first_vertex[surface] + probes[0], back);
+        want_vertex(bounce, bounce->first_vertex[surface] + probes[1], back);
     }
 }
 
+/* What the camera sees. */
 static void want_triangle(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                           uint32_t triangle)
 {
     uint32_t corners[3];
     size_t surface;
+    bool back = triangle & TL_SAMPLE_BACK;
     tl_triangle_find(ranges, triangle & ~TL_SAMPLE_BACK, corners, &surface);
-    want(bounce, surface, corners, triangle & TL_SAMPLE_BACK);
+    want(bounce, ranges, surface, corners, back);
+    for (int k = 0; k < 3; k++) {
+        uint32_t probes[2];
+        const size_t first = bounce->first_vertex[surface];
+        probes_of(ranges->surfaces[surface], corners[k], probes);
+        bounce->seen[2 * (first + corners[k]) + back] = bounce->update;
+        bounce->seen[2 * (first + probes[0]) + back] = bounce->update;
+        bounce->seen[2 * (first + probes[1]) + back] = bounce->update;
+    }
 }
 
 static void want_seen(struct tl_bounce *bounce, const struct tl_bounce_request *request)
@@ -275,14 +305,14 @@ static struct met meet(struct tl_bounce *bounce, const struct tl_bounce_request 
     if (hit.surface != TL_TRACE_NONE) {
         const uint32_t *corners = request->ranges->surfaces[hit.surface]->indices + 3 * (size_t)hit.triangle;
         const float shares[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-        want(bounce, hit.surface, corners, hit.back);
+        want(bounce, request->ranges, hit.surface, corners, hit.back);
         met.is_known = sent_from(bounce, hit.surface, corners, hit.back, shares, &met.sent);
         met.cover = 1 - bounce->openness[bounce->first_vertex[hit.surface] + corners[0]];
         met.beyond_m = hit.distance_m + tl_trace_offset(request->trace);
     } else if (tl_ground_meet(request->ground, origin, direction, &point, &triangle, weights)) {
         const size_t last = request->ranges->surface_count - 1;
         const uint32_t *corners = request->ground->indices + 3 * (size_t)triangle;
-        want(bounce, last, corners, false);
+        want(bounce, request->ranges, last, corners, false);
         met.is_known = sent_from(bounce, last, corners, false, weights, &met.sent);
         met.cover = tl_ground_cover(request->ground, point.x, point.z);
     }
@@ -408,8 +438,10 @@ static bool is_due(const struct tl_bounce *bounce, const struct tl_bounce_reques
         return false;
     if (bounce->rounds[at] == 0)
         return true;
+    bool is_hit_only = bounce->seen[at] == 0 || bounce->update - bounce->seen[at] > FORGET;
+    uint32_t shares = request->moved && is_hit_only ? HIT_SHARES : SHARES;
     return (request->moved || bounce->rounds[at] < ROUNDS) &&
-           (request->at_once || (at / 2 + bounce->update) % SHARES == 0);
+           (request->at_once || (at / 2 + bounce->update) % shares == 0);
 }
 
 /* Lists the vertices that are traced in this update. */
@@ -440,26 +472,38 @@ static void lend(struct tl_bounce *bounce, size_t to, size_t from)
     bounce->weights[to] += 1;
 }
 
+/* Lends the corners of all triangles on one side to each other; in motion only to what the camera sees. */
+static void lend_all(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, size_t side,
+                     bool seen_only)
+{
+    for (size_t at = side; at < 2 * bounce->vertex_count; at += 2)
+        lend(bounce, at, at);
+    for (size_t s = 0; s < bounce->surface_count; s++) {
+        const tl_surface *surface = ranges->surfaces[s];
+        const size_t first = bounce->first_vertex[s];
+        for (size_t i = 0; i < surface->index_count; i++) {
+            const size_t next = i - i % 3 + (i + 1) % 3;
+            const size_t a = 2 * (first + surface->indices[i]) + side;
+            const size_t b = 2 * (first + surface->indices[next]) + side;
+            if (seen_only && bounce->seen[a] != bounce->update && bounce->seen[b] != bounce->update)
+                continue;
+            lend(bounce, a, b);
+            lend(bounce, b, a);
+        }
+    }
+}
+
 /* Means of each vertex and its neighbours: bounced light varies slowly, the noise of sixteen rays does not.
  */
-static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
+static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, bool seen_only)
 {
     const size_t count = 2 * bounce->vertex_count;
     memset(bounce->shown, 0, count * sizeof *bounce->shown);
     memset(bounce->weights, 0, count * sizeof *bounce->weights);
-    for (size_t at = 0; at < count; at++)
-        lend(bounce, at, at);
-    for (size_t s = 0; s < bounce->surface_count; s++) {
-        const tl_surface *surface = ranges->surfaces[s];
-        for (size_t i = 0; i + 2 < surface->index_count; i += 3)
-            for (size_t k = 0; k < 6; k++) {
-                size_t first = bounce->first_vertex[s], side = k / 3;
-                size_t a = 2 * (first + surface->indices[i + k % 3]) + side;
-                size_t b = 2 * (first + surface->indices[i + (k + 1) % 3]) + side;
-                lend(bounce, a, b);
-                lend(bounce, b, a);
-            }
-    }
+#pragma omp parallel for
+    for (size_t side = 0; side < 2; side++)
+        lend_all(bounce, ranges, side, seen_only);
+#pragma omp parallel for
     for (size_t at = 0; at < count; at++) {
         struct tl_bounced mean = {0};
         if (bounce->weights[at] > 0)
@@ -472,6 +516,27 @@ static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ra
 static vec3s received(const struct tl_bounce *bounce, const struct tl_bounce_request *request, size_t at)
 {
     return request->all ? glms_vec3_add(bounce->direct[at], bounce->found[at].arrives) : bounce->direct[at];
+}
+
+/* What lies on an edge between two vertices has the mean of what is known at them. */
+static void fill_edges(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
+{
+    for (size_t s = 0; s < bounce->surface_count; s++) {
+        const tl_surface *surface = ranges->surfaces[s];
+        const size_t first = bounce->first_vertex[s], own = surface->vertex_count - surface->end_count;
+        for (size_t i = 0; i < 2 * surface->end_count; i++) {
+            const size_t at = 2 * (first + own) + i, side = i % 2;
+            const size_t a = 2 * (first + surface->ends[i / 2][0]) + side;
+            const size_t b = 2 * (first + surface->ends[i / 2][1]) + side;
+            const float of_a = bounce->rounds[a] == 0 ? 0 : bounce->rounds[b] == 0 ? 1 : 0.5f;
+            bounce->rounds[at] =
+                bounce->rounds[a] > bounce->rounds[b] ? bounce->rounds[a] : bounce->rounds[b];
+            bounce->found[at] = (struct tl_bounced){0};
+            add_bounced(&bounce->found[at], &bounce->found[a], of_a);
+            add_bounced(&bounce->found[at], &bounce->found[b], 1 - of_a);
+            bounce->sent[at] = glms_vec3_lerp(bounce->sent[b], bounce->sent[a], of_a);
+        }
+    }
 }
 
 /* The light that vertices send on from now on. */
@@ -499,8 +564,10 @@ static void update(struct tl_bounce *bounce, const struct tl_bounce_request *req
     for (size_t i = 0; i < count; i++)
         trace_vertex(bounce, request, due[i].surface, due[i].vertex, due[i].back);
     send(bounce, request, due, count);
-    if (count > 0)
-        smooth(bounce, request->ranges);
+    if (count > 0) {
+        fill_edges(bounce, request->ranges);
+        smooth(bounce, request->ranges, request->moved);
+    }
     free(due);
 }
 
@@ -526,7 +593,7 @@ size_t tl_bounce_bytes(const struct tl_bounce *bounce)
 {
     return 2 * bounce->vertex_count *
                (4 * sizeof(vec3s) + sizeof(vec3s) / 2 + sizeof(float) / 2 + 2 * sizeof(struct tl_bounced) +
-                sizeof(uint16_t) + sizeof(uint32_t) + sizeof(float)) +
+                sizeof(uint16_t) + 2 * sizeof(uint32_t) + sizeof(float)) +
            (bounce->first_vertex ? (bounce->surface_count + 1) * sizeof(size_t) : 0);
 }
 

@@ -12,7 +12,8 @@
  * with a coarse L: exact where nothing is hidden (the ratio of render/light/compose.h, of one region a ray).
  *
  * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
- * is traced in each update, in directions that are fixed to the surface, so that nothing flickers; at rest
+ * is traced in each update, a smaller one of those that are hit only: what sixteen rays meet is a mean, and
+ * may lag. Directions are fixed to the surface, so that nothing flickers; at rest
  * further directions are averaged in until all have had their rounds. Rays pass open cloth as they do in the
  * reference, and a surface that transmits sends on what its other side received. A vertex that parts of
  * different materials share has the material of the last of them.
@@ -46,11 +47,12 @@ struct tl_bounce {
     vec3s *transmissions;     /* [vertex_count]: from either side to the other */
     float *openness;          /* [vertex_count] */
     struct tl_bounced *found; /* ...: mean of the vertex's own rays */
-    struct tl_bounced *shown; /* ...: mean with its neighbours' */
+    struct tl_bounced *shown; /* ...: mean with its neighbours', in motion of what is seen */
     vec3s *direct;            /* ...: E / pi of the environment, suns and lamps */
     vec3s *sent;              /* ...: radiance, as of the last update */
     uint16_t *rounds;         /* ...: in `found`; 0: nothing is known */
     uint32_t *wanted;         /* ...: update in which it was last seen or hit; 0: never */
+    uint32_t *seen;           /* ...: update in which the camera last saw it; 0: never */
     float *weights;           /* ...: of the neighbours, while `shown` is made */
     uint64_t sky_revision;    /* of what `sky` was made from */
     tl_cube sky;              /* coarse */

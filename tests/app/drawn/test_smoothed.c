@@ -1,7 +1,8 @@
-/* A dress drawn smoothly beside the same dress as it is simulated: closed seams, the same pattern, nowhere
- * far from the cloth, and no deeper in the body. */
+/* Garments drawn smoothly beside the same garments as they are simulated: closed seams, the same pattern,
+ * nowhere far from the cloth, no deeper in the body, and through itself nowhere. */
 #include "app/scene/session.h"
 #include "app/settings/settings.h"
+#include "cloth/apart/crossings.h"
 #include "cloth/contact/collider.h"
 #include "config/memory.h"
 #include "tests/testing.h"
@@ -80,15 +81,37 @@ static double uv_area(const tl_surface *surface)
     return sum;
 }
 
+static size_t count_crossing(const tl_surface *surface)
+{
+    tl_mesh mesh = {.vertex_count = surface->vertex_count, .index_count = surface->index_count};
+    struct tl_near_pairs pairs = {0};
+    mesh.indices = TL_NEW_ARRAY(uint32_t, surface->index_count);
+    memcpy(mesh.indices, surface->indices, surface->index_count * sizeof *mesh.indices);
+    tl_crossings_of_mesh(&mesh, surface->positions, &pairs);
+    size_t count = pairs.count;
+    tl_near_pairs_release(&pairs);
+    free(mesh.indices);
+    return count;
+}
+
+static tl_session *open_session(struct tl_settings *settings, const char *const *assignments, size_t count)
+{
+    tl_error error = {0};
+    assert_ok(tl_settings_load(settings, &(struct tl_settings_source){NULL, assignments, count}, &error),
+              error);
+    tl_session *session = tl_session_create(settings, &error);
+    assert_ok(session != NULL, error);
+    return session;
+}
+
 static void a_dress_is_drawn_smoothly(void **state)
 {
     (void)state;
-    const char *const assignments[] = {"cloth.edge_m=0.03", "cloth.settle_s=3", "scene.environment=white"};
+    const char *const assignments[] = {"cloth.edge_m=0.03", "cloth.settle_s=3", "scene.environment=white",
+                                       "scene.smooth=false"};
     tl_error error = {0};
     struct tl_settings *settings = TL_NEW(struct tl_settings);
-    assert_ok(tl_settings_load(settings, &(struct tl_settings_source){NULL, assignments, 3}, &error), error);
-    tl_session *session = tl_session_create(settings, &error);
-    assert_ok(session != NULL, error);
+    tl_session *session = open_session(settings, assignments, TL_COUNT(assignments));
     tl_collider *body = tl_collider_create(&tl_session_models(session).avatar->mesh, false, &error);
     assert_ok(body != NULL, error);
 
@@ -138,8 +161,53 @@ static void a_dress_is_drawn_smoothly(void **state)
     free(settings);
 }
 
+/* The shoulders of the form are rounder than the shirt's triangles: Loop's surface is 0.4 mm inside of them.
+ */
+static void a_shirt_stays_off_the_form(void **state)
+{
+    (void)state;
+    const char *const assignments[] = {"scene.garment=shirt", "scene.environment=white"};
+    tl_error error = {0};
+    struct tl_settings *settings = TL_NEW(struct tl_settings);
+    tl_session *session = open_session(settings, assignments, TL_COUNT(assignments));
+    tl_collider *body = tl_collider_create(&tl_session_models(session).avatar->mesh, false, &error);
+    assert_ok(body != NULL, error);
+    for (int frame = 0; frame < 3; frame++) {
+        tl_surface shirt = garment_of(session);
+        double deepest;
+        assert_int_equal(count_inside(&shirt, body, &deepest), 0);
+        assert_int_equal(count_crossing(&shirt), 0);
+        assert_ok(tl_session_advance(session, &error), error);
+    }
+    tl_collider_destroy(&body);
+    tl_session_destroy(&session);
+    free(settings);
+}
+
+/* A skirt between the hands and the thighs of a man who walks is folded upon itself: of Loop's surface up to
+ * 29 pairs of triangles cross. */
+static void folds_do_not_cross(void **state)
+{
+    (void)state;
+    char avatar[TL_STRING_SIZE];
+    snprintf(avatar, sizeof avatar, "scene.avatar=%s", test_data("avatars/CesiumMan.glb"));
+    const char *const assignments[] = {"scene.garment=skirt", "scene.environment=white", avatar};
+    tl_error error = {0};
+    struct tl_settings *settings = TL_NEW(struct tl_settings);
+    tl_session *session = open_session(settings, assignments, TL_COUNT(assignments));
+    for (int frame = 0; frame < 8; frame++) {
+        tl_surface skirt = garment_of(session);
+        assert_int_equal(count_crossing(&skirt), 0);
+        assert_ok(tl_session_advance(session, &error), error);
+    }
+    tl_session_destroy(&session);
+    free(settings);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_dress_is_drawn_smoothly)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_dress_is_drawn_smoothly),
+                                       cmocka_unit_test(a_shirt_stays_off_the_form),
+                                       cmocka_unit_test(folds_do_not_cross)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

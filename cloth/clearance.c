@@ -1,0 +1,78 @@
+#include "cloth/clearance.h"
+
+#include "cloth/state.h"
+#include "config/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define HEIGHT_REACH_M 0.04 /* as far as contact looks */
+
+/* The height of a particle for which contact has not asked yet, as in a drape that was kept. */
+static bool query_height(const tl_collider *collider, vec3d x, struct tl_contact_height *out)
+{
+    struct tl_contact contact;
+    if (!tl_collider_query(collider, (const double[3]){x.x, x.y, x.z}, HEIGHT_REACH_M, &contact))
+        return false;
+    const double *normal = contact.normal;
+    *out = (struct tl_contact_height){{normal[0], normal[1], normal[2]}, contact.distance_m};
+    return true;
+}
+
+static void measure_heights(const tl_cloth *cloth, const tl_collider *collider, size_t count,
+                            struct tl_clearance *out)
+{
+    const struct tl_contacts *contacts = &cloth->contacts;
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < count; i++) {
+        struct tl_contact_height at;
+        vec3d x = cloth->particles.x[i];
+        bool is_known = contacts->collider && contacts->caches[i].query_phase <= 1;
+        bool is_near = is_known ? tl_contacts_height(contacts, i, x, 1, &at) : query_height(collider, x, &at);
+        out[i].up = is_near ? vec3d_to_float(at.up) : (vec3s){{0, 1, 0}};
+        out[i].height_m = is_near ? (float)at.height_m : INFINITY;
+    }
+}
+
+/* Pairs that are not listed leave each vertex what is left of its reach, and half of the margin. */
+static void take_pairs(const struct tl_near *near, const double *off, const vec3d *x, size_t count,
+                       struct tl_clearance *out)
+{
+    for (size_t i = 0; i < count; i++)
+        out[i].room_m = (float)(near->margin / 2 + fmax(near->reach[i] - (off ? off[i] : 0), 0));
+    for (size_t i = 0; i < near->pair_count; i++) {
+        const struct tl_near_pair *pair = &near->pairs[i];
+        double weights[4];
+        float room = 0.5f * (float)vec3d_norm(tl_near_closest(pair, x, weights));
+        for (int k = 0; k < 4; k++)
+            out[pair->v[k]].room_m = fminf(out[pair->v[k]].room_m, room);
+    }
+}
+
+/* What the cloth keeps when it moves is not there before it has. */
+static void list_pairs(const tl_cloth *cloth, size_t count, struct tl_clearance *out)
+{
+    uint32_t *class_of = TL_NEW_ARRAY(uint32_t, count);
+    for (size_t i = 0; i < count; i++)
+        class_of[i] = (uint32_t)i;
+    struct tl_near near = tl_near_create(&cloth->topology, class_of, cloth->particles.x);
+    for (size_t i = 0; i < count; i++)
+        near.reach[i] = 0.002;
+    near.margin = 0.001;
+    tl_near_list(&near, cloth->particles.x);
+    take_pairs(&near, NULL, cloth->particles.x, count, out);
+    tl_near_release(&near);
+    free(class_of);
+}
+
+void tl_cloth_clearances(const tl_cloth *cloth, const tl_collider *collider, size_t count,
+                         struct tl_clearance *out)
+{
+    const struct tl_apart *apart = &cloth->apart;
+    measure_heights(cloth, collider, count, out);
+    if (apart->made && apart->near.listed)
+        take_pairs(&apart->near, apart->off, cloth->particles.x, count, out);
+    else
+        list_pairs(cloth, count, out);
+}
