@@ -10,7 +10,7 @@
 static struct tl_settings settings_of(const char *garment, const char *avatar, const char *drape)
 {
     char *assignments[] = {tl_format("scene.garment=%s", garment), tl_format("scene.avatar=%s", avatar),
-                           tl_format("scene.drape=%s", drape), "cloth.settle_s=0.1"};
+                           tl_format("scene.drape=%s", drape), "cloth.settle_s=0.1", "scene.smooth=false"};
     const struct tl_settings_source source = {NULL, (const char *const *)assignments, TL_COUNT(assignments)};
     struct tl_settings settings;
     tl_error error = {0};

@@ -17,11 +17,11 @@ enum { FRAMES = 5 };
 static tl_session *create(const char *const *extra, size_t extra_count)
 {
     const char *assignments[16] = {"scene.garment=skirt", "cloth.edge_m=0.08", "cloth.settle_s=0.3",
-                                   "cloth.substeps=8"};
+                                   "cloth.substeps=8", "scene.smooth=false"};
     for (size_t i = 0; i < extra_count; i++)
-        assignments[4 + i] = extra[i];
+        assignments[5 + i] = extra[i];
     const struct tl_settings_source source = {.assignments = assignments,
-                                              .assignment_count = 4 + extra_count};
+                                              .assignment_count = 5 + extra_count};
     struct tl_settings settings;
     tl_error error = {0};
     assert_ok(tl_settings_load(&settings, &source, &error), error);

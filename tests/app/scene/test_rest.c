@@ -8,14 +8,15 @@
 
 #include <string.h>
 
-enum { FABRIC, EDGE, SETTLE, GARMENT, AVATAR, REST, ASSIGNMENTS };
+enum { FABRIC, EDGE, SETTLE, SMOOTH, GARMENT, AVATAR, REST, ASSIGNMENTS };
 
 static tl_session *open_session(const char *garment, const char *avatar, const char *rest)
 {
     char *assignments[ASSIGNMENTS] = {
-        [FABRIC] = tl_copy_string("scene.fabric=satin"), [EDGE] = tl_copy_string("cloth.edge_m=0.04"),
-        [SETTLE] = tl_copy_string("cloth.settle_s=10"),  [GARMENT] = tl_format("scene.garment=%s", garment),
-        [AVATAR] = tl_format("scene.avatar=%s", avatar), [REST] = tl_format("cloth.rest=%s", rest),
+        [FABRIC] = tl_copy_string("scene.fabric=satin"),    [EDGE] = tl_copy_string("cloth.edge_m=0.04"),
+        [SETTLE] = tl_copy_string("cloth.settle_s=10"),     [SMOOTH] = tl_copy_string("scene.smooth=false"),
+        [GARMENT] = tl_format("scene.garment=%s", garment), [AVATAR] = tl_format("scene.avatar=%s", avatar),
+        [REST] = tl_format("cloth.rest=%s", rest),
     };
     const struct tl_settings_source source = {NULL, (const char *const *)assignments, ASSIGNMENTS};
     struct tl_settings settings;

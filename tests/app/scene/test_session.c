@@ -179,6 +179,7 @@ static void the_pattern_hangs_beside_the_garment(void **state)
     float near =
         glms_vec3_distance(tl_session_frame(session).camera.eye, tl_session_frame(session).camera.target);
     settings.scene.pattern = true;
+    settings.scene.smooth = false; /* its mesh, to compare */
     settings.image.view = TL_VIEW_STRAIN_WEFT;
     assert_true(tl_session_has_pattern(session));
     assert_ok(tl_session_apply(session, &settings, &error), error);
