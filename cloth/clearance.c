@@ -5,9 +5,11 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define HEIGHT_REACH_M 0.04 /* as far as contact looks */
+/* Most that rooms are told apart by: 2.5 mm, of the dress's 20 mm edges enough for nine vertices in ten. */
+#define LIST_REACH_M  0.002
+#define LIST_MARGIN_M 0.001
 
 /* The height of a particle for which contact has not asked yet, as in a drape that was kept. */
 static bool query_height(const tl_collider *collider, vec3d x, struct tl_contact_height *out)
@@ -35,7 +37,8 @@ static void measure_heights(const tl_cloth *cloth, const tl_collider *collider, 
     }
 }
 
-/* Pairs that are not listed leave each vertex what is left of its reach, and half of the margin. */
+/* Pairs that are not listed leave each vertex what is left of its reach, and half of the margin. `off`
+ * [count]: m that it has moved since the list was made; NULL: not at all. */
 static void take_pairs(const struct tl_near *near, const double *off, const vec3d *x, size_t count,
                        struct tl_clearance *out)
 {
@@ -50,7 +53,7 @@ static void take_pairs(const struct tl_near *near, const double *off, const vec3
     }
 }
 
-/* What the cloth keeps when it moves is not there before it has. */
+/* The list that contact keeps is not there before the cloth has moved, nor while it is untangled. */
 static void list_pairs(const tl_cloth *cloth, size_t count, struct tl_clearance *out)
 {
     uint32_t *class_of = TL_NEW_ARRAY(uint32_t, count);
@@ -58,21 +61,29 @@ static void list_pairs(const tl_cloth *cloth, size_t count, struct tl_clearance 
         class_of[i] = (uint32_t)i;
     struct tl_near near = tl_near_create(&cloth->topology, class_of, cloth->particles.x);
     for (size_t i = 0; i < count; i++)
-        near.reach[i] = 0.002;
-    near.margin = 0.001;
+        near.reach[i] = LIST_REACH_M;
+    near.margin = LIST_MARGIN_M;
     tl_near_list(&near, cloth->particles.x);
     take_pairs(&near, NULL, cloth->particles.x, count, out);
     tl_near_release(&near);
     free(class_of);
 }
 
-void tl_cloth_clearances(const tl_cloth *cloth, const tl_collider *collider, size_t count,
-                         struct tl_clearance *out)
+static void measure_rooms(const tl_cloth *cloth, size_t count, struct tl_clearance *out)
 {
     const struct tl_apart *apart = &cloth->apart;
-    measure_heights(cloth, collider, count, out);
     if (apart->made && apart->near.listed)
         take_pairs(&apart->near, apart->off, cloth->particles.x, count, out);
-    else
+    else if (cloth->params.self_contact)
         list_pairs(cloth, count, out);
+    else
+        for (size_t i = 0; i < count; i++)
+            out[i].room_m = INFINITY;
+}
+
+void tl_cloth_clearances(const tl_cloth *cloth, const tl_collider *collider, struct tl_clearance *out)
+{
+    const size_t count = cloth->particles.count;
+    measure_heights(cloth, collider, count, out);
+    measure_rooms(cloth, count, out);
 }

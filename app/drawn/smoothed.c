@@ -184,7 +184,7 @@ static void give_positions(const struct tl_smoothed *smoothed, vec3s *out)
 static void follow(struct tl_smoothed *smoothed, const struct tl_smoothed_cloth *worn, const vec3s *positions)
 {
     smooth(smoothed, positions);
-    tl_cloth_clearances(worn->cloth, worn->collider, smoothed->weights.source_count, smoothed->clearances);
+    tl_cloth_clearances(worn->cloth, worn->collider, smoothed->clearances);
     stay_clear(smoothed);
     give_positions(smoothed, smoothed->moving.positions);
     tl_moving_update(&smoothed->moving);
@@ -240,6 +240,13 @@ void tl_smoothed_release(struct tl_smoothed *smoothed)
     free(smoothed->crossed);
     free(smoothed->parts);
     *smoothed = (struct tl_smoothed){0};
+}
+
+bool tl_smoothed_fits(const struct tl_smoothed *smoothed, const tl_cloth *cloth)
+{
+    const size_t bytes = smoothed->source_count * sizeof *smoothed->weld;
+    return smoothed->source_count > 0 &&
+           (!smoothed->weld || memcmp(smoothed->weld, tl_cloth_weld(cloth), bytes) == 0);
 }
 
 /* A new vertex has the mean of the strains of its edge's ends, a triangle what its parent has. */

@@ -40,6 +40,9 @@ void tl_smoothed_make(const tl_garment *garment, const struct tl_smoothed_cloth 
                       const tl_borders *borders, struct tl_smoothed *out);
 void tl_smoothed_release(struct tl_smoothed *smoothed); /* frees and zeroes */
 
+/* False after seams have closed, or before it was made: it must be made again, and has the same vertices. */
+bool tl_smoothed_fits(const struct tl_smoothed *smoothed, const tl_cloth *cloth);
+
 /* The surface that shows `garment`, the garment's own, whose arrays it borrows where they stay. */
 tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const struct tl_smoothed_cloth *worn,
                                const tl_surface *garment);

@@ -506,8 +506,10 @@ static tl_surface smoothed(tl_session *session, const tl_surface *garment)
     if (!session->settings.scene.smooth || !session->cloth || garment->has_own_normals)
         return *garment;
     const struct tl_smoothed_cloth worn = {session->cloth, session->collider};
-    if (smooth->source_count == 0)
+    if (!tl_smoothed_fits(smooth, worn.cloth)) {
+        tl_smoothed_release(smooth);
         tl_smoothed_make(session->garment, &worn, &session->dress.borders, smooth);
+    }
     return tl_smoothed_surface(smooth, &worn, garment);
 }
 
