@@ -8,9 +8,12 @@
 
 #include "tests/testing.h"
 
+#include <stdlib.h>
+
 void test_shape_release(struct test_shape *shape)
 {
     tl_mesh_release(&shape->mesh);
+    free(shape->ends);
     *shape = (struct test_shape){0};
 }
 
@@ -20,6 +23,8 @@ void test_shape_refresh(struct test_shape *shape)
     revision++;
     shape->surface = tl_surface_of_mesh("shape", &shape->mesh, &shape->material);
     shape->surface.topology_revision = shape->surface.motion_revision = revision;
+    shape->surface.ends = (const uint32_t(*)[2])shape->ends;
+    shape->surface.end_count = shape->end_count;
 }
 
 /* A grid of (columns + 1) x (rows + 1) vertices, to be placed by the caller; u = column / columns, v = row /
@@ -102,6 +107,40 @@ struct test_shape test_sheet(float height, float half, float amplitude, float wa
         mesh.tangents[i] = tangent_of(glms_vec3_normalize((vec3s){{1, dx, 0}}));
     }
     return finish(mesh);
+}
+
+void test_shape_split(struct test_shape *shape, int cells)
+{
+    tl_mesh *mesh = &shape->mesh, old = *mesh;
+    size_t count = mesh->vertex_count, side = (size_t)cells + 1, own = 0, end = 0;
+    uint32_t *numbers = TL_NEW_ARRAY(uint32_t, count);
+    size_t own_count = (size_t)(cells / 2 + 1) * (size_t)(cells / 2 + 1);
+    for (size_t i = 0; i < count; i++)
+        numbers[i] = (uint32_t)(i % side % 2 == 0 && i / side % 2 == 0 ? own++ : own_count + end++);
+    shape->end_count = end;
+    shape->ends = tl_alloc(end, sizeof *shape->ends);
+    mesh->positions = TL_NEW_ARRAY(vec3s, count);
+    mesh->normals = TL_NEW_ARRAY(vec3s, count);
+    mesh->uvs = TL_NEW_ARRAY(vec2s, count);
+    mesh->tangents = TL_NEW_ARRAY(vec4s, count);
+    for (size_t i = 0; i < count; i++) {
+        bool along = i % side % 2 == 1, down = i / side % 2 == 1;
+        size_t step = along && down ? side - 1 : along ? 1 : side; /* the diagonal of grid() */
+        if (along || down) {
+            shape->ends[numbers[i] - own_count][0] = numbers[i - step];
+            shape->ends[numbers[i] - own_count][1] = numbers[i + step];
+        }
+        mesh->positions[numbers[i]] = old.positions[i];
+        mesh->normals[numbers[i]] = old.normals[i];
+        mesh->uvs[numbers[i]] = old.uvs[i];
+        mesh->tangents[numbers[i]] = old.tangents[i];
+    }
+    for (size_t i = 0; i < mesh->index_count; i++)
+        mesh->indices[i] = numbers[mesh->indices[i]];
+    old.indices = NULL;
+    old.parts = NULL;
+    tl_mesh_release(&old);
+    free(numbers);
 }
 
 static uint64_t environment_count; /* the revision of the newest one: addresses are used again */

@@ -10,6 +10,8 @@ struct test_shape {
     tl_surface surface; /* points into this struct's arrays */
     tl_mesh mesh;
     tl_material material;
+    uint32_t (*ends)[2]; /* [end_count], as a surface has them; NULL: none */
+    size_t end_count;
 };
 void test_shape_release(struct test_shape *shape);
 /* Rebuilds `surface` after `mesh` or `material` was edited in place or the struct was moved; new revisions.
@@ -22,6 +24,9 @@ struct test_shape test_sphere(vec3s centre, float radius, int segments);
 struct test_shape test_square(vec3s centre, vec3s right, vec3s normal, float half, int cells);
 /* A draped sheet: y = height + amplitude sin(k x) cos(k z) over a square. */
 struct test_shape test_sheet(float height, float half, float amplitude, float waves, int cells);
+/* Numbers the vertices of a sheet or square of so many cells, an even number, as those of cloth that is drawn
+ * smoothly: one in four is its own, the others follow and lie on edges between two of these. */
+void test_shape_split(struct test_shape *shape, int cells);
 
 /* Radiance as a function of direction; a few that several tests share. */
 typedef vec3s test_radiance(vec3s direction);

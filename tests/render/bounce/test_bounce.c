@@ -145,6 +145,17 @@ static void test_sheer(void **state)
     check(*state, fold_scene(test_daylight, make_sheer), "sheer", TL_BOUNCE_ALL, true, MATT);
 }
 
+/* Cloth that is drawn smoothly keeps its light at its own vertices; the others have the mean of theirs. */
+static void test_split(void **state)
+{
+    struct test_scene *scene = fold_scene(test_daylight, make_matt);
+    test_shape_split(&scene->shapes[0], 48);
+    check(*state, scene, "split", TL_BOUNCE_ALL, true, MATT);
+    scene = fold_scene(test_daylight, make_sheer);
+    test_shape_split(&scene->shapes[0], 48);
+    check(*state, scene, "split", TL_BOUNCE_ALL, true, MATT);
+}
+
 static void test_shining_wall(void **state)
 {
     struct test_scene *scene = fold_scene(test_black, make_matt);
@@ -196,8 +207,9 @@ static void test_ground(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sky),  cmocka_unit_test(test_sheer),       cmocka_unit_test(test_shining_wall),
-        cmocka_unit_test(test_lamp), cmocka_unit_test(test_buried_lamp), cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_sky),   cmocka_unit_test(test_sheer),       cmocka_unit_test(test_shining_wall),
+        cmocka_unit_test(test_lamp),  cmocka_unit_test(test_buried_lamp), cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_split),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
