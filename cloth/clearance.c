@@ -6,32 +6,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define HEIGHT_REACH_M 0.04 /* as far as contact looks */
 /* Most that rooms are told apart by: 2.5 mm, of the dress's 20 mm edges enough for nine vertices in ten. */
 #define LIST_REACH_M  0.002
 #define LIST_MARGIN_M 0.001
 
-/* The height of a particle for which contact has not asked yet, as in a drape that was kept. */
-static bool query_height(const tl_collider *collider, vec3d x, struct tl_contact_height *out)
-{
-    struct tl_contact contact;
-    if (!tl_collider_query(collider, (const double[3]){x.x, x.y, x.z}, HEIGHT_REACH_M, &contact))
-        return false;
-    const double *normal = contact.normal;
-    *out = (struct tl_contact_height){{normal[0], normal[1], normal[2]}, contact.distance_m};
-    return true;
-}
-
 static void measure_heights(const tl_cloth *cloth, const tl_collider *collider, size_t count,
                             struct tl_clearance *out)
 {
-    const struct tl_contacts *contacts = &cloth->contacts;
+    const struct tl_contacts *contacts = &cloth->contacts; /* not filled in a drape that was kept */
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < count; i++) {
         struct tl_contact_height at;
         vec3d x = cloth->particles.x[i];
         bool is_known = contacts->collider && contacts->caches[i].query_phase <= 1;
-        bool is_near = is_known ? tl_contacts_height(contacts, i, x, 1, &at) : query_height(collider, x, &at);
+        bool is_near = is_known ? tl_contacts_height(contacts, i, x, 1, &at)
+                                : tl_contacts_height_asked(collider, x, &at);
         out[i].up = is_near ? vec3d_to_float(at.up) : (vec3s){{0, 1, 0}};
         out[i].height_m = is_near ? (float)at.height_m : INFINITY;
     }

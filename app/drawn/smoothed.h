@@ -34,8 +34,7 @@ struct tl_smoothed_cloth {
     const tl_collider *collider;
 };
 
-/* Leaves `out` empty, its model without a mesh, for a garment of more than
- * TL_SMOOTHED_TRIANGLES. */
+/* Leaves `out` empty, its model without a mesh, for a garment of more than TL_SMOOTHED_TRIANGLES. */
 void tl_smoothed_make(const tl_garment *garment, const struct tl_smoothed_cloth *worn,
                       const tl_borders *borders, struct tl_smoothed *out);
 void tl_smoothed_release(struct tl_smoothed *smoothed); /* frees and zeroes */

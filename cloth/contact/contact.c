@@ -399,6 +399,14 @@ static void solve_sample(const struct surroundings *surroundings, const struct t
         tl_contact_sample_push(sample, vec3d_scale(push, 1 / inverse), particles->w, particles->x);
 }
 
+/* Takes the ground where it is nearer. False if nothing is near. */
+static bool take_ground(bool ground, vec3d x, struct tl_contact_height *out)
+{
+    if (ground && x.y < tl_min(out->height_m, REACH_M))
+        *out = (struct tl_contact_height){{0, 1, 0}, x.y};
+    return out->height_m < HUGE_VAL;
+}
+
 bool tl_contacts_height(const struct tl_contacts *contacts, size_t particle, vec3d x, double phase,
                         struct tl_contact_height *out)
 {
@@ -407,9 +415,17 @@ bool tl_contacts_height(const struct tl_contacts *contacts, size_t particle, vec
     *out = (struct tl_contact_height){.height_m = HUGE_VAL};
     if (surroundings.collider && cache->near)
         *out = (struct tl_contact_height){cache->normal, distance_to(cache, x, phase)};
-    if (surroundings.ground && x.y < tl_min(out->height_m, REACH_M))
-        *out = (struct tl_contact_height){{0, 1, 0}, x.y};
-    return out->height_m < HUGE_VAL;
+    return take_ground(surroundings.ground, x, out);
+}
+
+bool tl_contacts_height_asked(const tl_collider *collider, vec3d x, struct tl_contact_height *out)
+{
+    struct tl_contact contact;
+    *out = (struct tl_contact_height){.height_m = HUGE_VAL};
+    if (tl_collider_query(collider, (const double[3]){x.x, x.y, x.z}, REACH_M, &contact))
+        *out = (struct tl_contact_height){{contact.normal[0], contact.normal[1], contact.normal[2]},
+                                          contact.distance_m};
+    return take_ground(tl_collider_has_ground(collider), x, out);
 }
 
 /* What is solved for, on the team. */

@@ -94,6 +94,8 @@ struct tl_contact_height {
 };
 bool tl_contacts_height(const struct tl_contacts *contacts, size_t particle, vec3d x, double phase,
                         struct tl_contact_height *out);
+/* The same of any point, by a query: for particles whose caches are not filled yet. */
+bool tl_contacts_height_asked(const tl_collider *collider, vec3d x, struct tl_contact_height *out);
 
 /* Moves particles and probes out of the collider and applies friction to their displacement. Call it after
  * the other constraints of the substep: they could push particles back inside. */

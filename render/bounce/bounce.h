@@ -13,10 +13,10 @@
  *
  * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
  * is traced in each update, a smaller one of those that are hit only: what sixteen rays meet is a mean, and
- * may lag. Directions are fixed to the surface, so that nothing flickers; at rest
- * further directions are averaged in until all have had their rounds. Rays pass open cloth as they do in the
- * reference, and a surface that transmits sends on what its other side received. A vertex that parts of
- * different materials share has the material of the last of them.
+ * may lag. Directions are fixed to the surface, so that nothing flickers; at rest further directions are
+ * averaged in until all have had their rounds. Rays pass open cloth as they do in the reference, and a
+ * surface that transmits sends on what its other side received. A vertex that parts of different materials
+ * share has the material of the last of them.
  *
  * World space, metres; linear radiance, Rec. 709. Errors: none. Lifetime: a plain struct that starts as {0}
  * and owns its arrays. Threads: one call at a time; OpenMP inside; results do not depend on the number of
