@@ -126,6 +126,22 @@ static tl_borders split_borders(const tl_borders *borders)
     return fine;
 }
 
+/* Light is computed at the garment's own vertices. */
+static void make_light_mesh(struct tl_smoothed *out)
+{
+    const tl_mesh *fine = &out->model.mesh;
+    out->light_mesh = tl_light_mesh_make(fine->vertex_count);
+    for (size_t i = 0; i < fine->vertex_count; i++) {
+        const uint32_t own[2] = {(uint32_t)i, (uint32_t)i};
+        const uint32_t *ends = i < out->source_count ? own : out->ends[i - out->source_count];
+        uint32_t *from = out->light_mesh.from[i];
+        float *shares = out->light_mesh.shares[i];
+        from[0] = ends[0], from[1] = from[2] = ends[1];
+        shares[0] = shares[1] = 0.5f;
+    }
+    tl_light_mesh_number(&out->light_mesh, fine->indices, fine->index_count);
+}
+
 static void take_uvs(const tl_mesh *mesh, struct tl_smoothed *out)
 {
     tl_mesh *fine = &out->model.mesh;
@@ -216,6 +232,7 @@ void tl_smoothed_make(const tl_garment *garment, const struct tl_smoothed_cloth 
     out->clearances = TL_NEW_ARRAY(struct tl_clearance, welded);
     out->fine = TL_NEW_ARRAY(vec3s, out->weights.vertex_count);
     split_mesh(mesh, weld, out);
+    make_light_mesh(out);
     take_uvs(mesh, out);
     out->model.mesh.positions = TL_NEW_ARRAY(vec3s, out->model.mesh.vertex_count);
     smooth(out, mesh->positions);
@@ -233,6 +250,7 @@ void tl_smoothed_release(struct tl_smoothed *smoothed)
     free(smoothed->of_weld);
     free(smoothed->weld);
     free(smoothed->ends);
+    tl_light_mesh_release(&smoothed->light_mesh);
     free(smoothed->coarse);
     free(smoothed->clearances);
     free(smoothed->fine);
@@ -285,8 +303,7 @@ tl_surface tl_smoothed_surface(struct tl_smoothed *smoothed, const struct tl_smo
         smoothed->parts[i].index_count *= 4;
     }
     out.vertex_count = smoothed->model.mesh.vertex_count;
-    out.ends = (const uint32_t(*)[2])smoothed->ends;
-    out.end_count = out.vertex_count - smoothed->source_count;
+    out.light_mesh = &smoothed->light_mesh;
     out.positions = smoothed->moving.positions;
     out.normals = smoothed->moving.normals;
     out.tangents = smoothed->moving.tangents;

@@ -16,6 +16,7 @@ struct tl_smoothed {
     uint32_t *of_weld;               /* [weights.source_count] a vertex of the garment at each */
     uint32_t *weld;                  /* [model.mesh.vertex_count] */
     uint32_t (*ends)[2];             /* vertices of the garment: those of each new vertex's edge */
+    struct tl_light_mesh light_mesh; /* the garment's vertices, and means of two on its edges */
     size_t source_count;             /* the garment's vertices */
     vec3s *coarse, *fine;            /* welded positions */
     struct tl_clearance *clearances; /* [weights.source_count] */

@@ -1,5 +1,9 @@
 #include "assets/base/surface.h"
 
+#include "config/memory.h"
+
+#include <stdlib.h>
+
 tl_surface tl_surface_of_mesh(const char *name, const tl_mesh *mesh, const tl_material *materials)
 {
     return (tl_surface){
@@ -15,4 +19,25 @@ tl_surface tl_surface_of_mesh(const char *name, const tl_mesh *mesh, const tl_ma
         .parts = mesh->parts,
         .materials = materials,
     };
+}
+
+struct tl_light_mesh tl_light_mesh_make(size_t vertex_count)
+{
+    return (struct tl_light_mesh){.from = tl_alloc(vertex_count, sizeof(uint32_t[3])),
+                                  .shares = tl_alloc(vertex_count, sizeof(float[3])),
+                                  .corners = TL_NEW_ARRAY(uint32_t, vertex_count)};
+}
+
+void tl_light_mesh_number(struct tl_light_mesh *light_mesh, const uint32_t *indices, size_t index_count)
+{
+    for (size_t i = 0; i < index_count; i++)
+        light_mesh->corners[indices[i]] = (uint32_t)i;
+}
+
+void tl_light_mesh_release(struct tl_light_mesh *light_mesh)
+{
+    free(light_mesh->from);
+    free(light_mesh->shares);
+    free(light_mesh->corners);
+    *light_mesh = (struct tl_light_mesh){0};
 }

@@ -11,12 +11,17 @@
 
 struct tl_borders;
 
+/* Where light is computed on a surface that is drawn finer than light varies: at some of its vertices, from
+ * which the others take means. Vertices of one place need not be one vertex. */
+struct tl_light_mesh {
+    uint32_t (*from)[3]; /* [vertex_count]; of a vertex with light of its own, three times that vertex */
+    float (*shares)[3];  /* [vertex_count] of the three; their sum is 1 */
+    uint32_t *corners;   /* [vertex_count] an index that names it, of those with light of their own */
+};
+
 typedef struct tl_surface {
     const char *name; /* TL_SURFACE_GARMENT, "avatar", "ground" */
     size_t vertex_count;
-    const uint32_t (*ends)[2]; /* of the last `end_count` vertices, each on an edge between two of the others,
-                                  which take the mean of what is kept at these; NULL: none */
-    size_t end_count;
     const vec3s *positions; /* metres, world */
     const vec3s *normals;   /* unit; towards the outside */
     bool has_own_normals;   /* they are a file's, or of other positions: no means of the faces */
@@ -31,6 +36,7 @@ typedef struct tl_surface {
     size_t part_count;
     const struct tl_mesh_part *parts;
     const tl_material *materials;
+    const struct tl_light_mesh *light_mesh; /* NULL: light is computed at all vertices */
     const struct tl_borders *borders; /* of its pieces (assets/borders); NULL: no construction is drawn */
     uint64_t topology_revision;       /* changes when anything but positions, normals and tangents does */
     uint64_t motion_revision;         /* changes when positions do */
@@ -38,5 +44,22 @@ typedef struct tl_surface {
 
 /* A view of a mesh that does not move: its own parts, no strains, revisions 0. */
 tl_surface tl_surface_of_mesh(const char *name, const tl_mesh *mesh, const tl_material *materials);
+
+/* Whether light is computed at a vertex. */
+static inline bool tl_has_own_light(const tl_surface *surface, uint32_t vertex)
+{
+    return !surface->light_mesh || surface->light_mesh->from[vertex][0] == vertex;
+}
+
+/* The vertices from which a vertex takes its light: three, or only `vertex` itself, which is returned. */
+static inline const uint32_t *tl_light_from(const tl_surface *surface, const uint32_t *vertex)
+{
+    return tl_has_own_light(surface, *vertex) ? vertex : surface->light_mesh->from[*vertex];
+}
+
+/* Numbers the corners of a light mesh whose `from` is filled. */
+void tl_light_mesh_number(struct tl_light_mesh *light_mesh, const uint32_t *indices, size_t index_count);
+struct tl_light_mesh tl_light_mesh_make(size_t vertex_count); /* empty arrays */
+void tl_light_mesh_release(struct tl_light_mesh *light_mesh); /* frees and zeroes */
 
 #endif

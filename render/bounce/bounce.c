@@ -163,14 +163,6 @@ static void follow_sky(struct tl_bounce *bounce, const struct tl_bounce_request 
 
 /* ---- What is wanted ---- */
 
-/* The vertices that are traced for one: itself, or the ends of the edge that it lies on. */
-static void probes_of(const tl_surface *surface, uint32_t vertex, uint32_t out[2])
-{
-    const size_t own = surface->vertex_count - surface->end_count;
-    out[0] = vertex < own ? vertex : surface->ends[vertex - own][0];
-    out[1] = vertex < own ? vertex : surface->ends[vertex - own][1];
-}
-
 /* What lets light through is lit from both sides. */
 static void want_vertex(struct tl_bounce *bounce, size_t vertex, bool back)
 {
@@ -183,11 +175,11 @@ static void want_vertex(struct tl_bounce *bounce, size_t vertex, bool back)
 static void want(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, size_t surface,
                  const uint32_t corners[3], bool back)
 {
+    const size_t first = bounce->first_vertex[surface];
     for (int k = 0; k < 3; k++) {
-        uint32_t probes[2];
-        probes_of(ranges->surfaces[surface], corners[k], probes);
-        want_vertex(bounce, bounce->first_vertex[surface] + probes[0], back);
-        want_vertex(bounce, bounce->first_vertex[surface] + probes[1], back);
+        const uint32_t *from = tl_light_from(ranges->surfaces[surface], &corners[k]);
+        for (int j = 0; j < (from == &corners[k] ? 1 : 3); j++)
+            want_vertex(bounce, first + from[j], back);
     }
 }
 
@@ -201,12 +193,11 @@ static void want_triangle(struct tl_bounce *bounce, const struct tl_triangle_ran
     tl_triangle_find(ranges, triangle & ~TL_SAMPLE_BACK, corners, &surface);
     want(bounce, ranges, surface, corners, back);
     for (int k = 0; k < 3; k++) {
-        uint32_t probes[2];
         const size_t first = bounce->first_vertex[surface];
-        probes_of(ranges->surfaces[surface], corners[k], probes);
+        const uint32_t *from = tl_light_from(ranges->surfaces[surface], &corners[k]);
         bounce->seen[2 * (first + corners[k]) + back] = bounce->update;
-        bounce->seen[2 * (first + probes[0]) + back] = bounce->update;
-        bounce->seen[2 * (first + probes[1]) + back] = bounce->update;
+        for (int j = 0; j < (from == &corners[k] ? 1 : 3); j++)
+            bounce->seen[2 * (first + from[j]) + back] = bounce->update;
     }
 }
 
@@ -472,7 +463,19 @@ static void lend(struct tl_bounce *bounce, size_t to, size_t from)
     bounce->weights[to] += 1;
 }
 
-/* Lends the corners of all triangles on one side to each other; in motion only to what the camera sees. */
+/* Lends three vertices to each other; in motion only to what the camera sees. */
+static void lend_three(struct tl_bounce *bounce, const uint32_t vertices[3], size_t first, bool seen_only)
+{
+    for (int k = 0; k < 3; k++) {
+        const size_t a = first + 2 * (size_t)vertices[k], b = first + 2 * (size_t)vertices[(k + 1) % 3];
+        if (a == b || (seen_only && bounce->seen[a] != bounce->update && bounce->seen[b] != bounce->update))
+            continue;
+        lend(bounce, a, b);
+        lend(bounce, b, a);
+    }
+}
+
+/* Neighbours are the corners of a triangle, or the vertices that one takes its light from. */
 static void lend_all(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, size_t side,
                      bool seen_only)
 {
@@ -480,16 +483,13 @@ static void lend_all(struct tl_bounce *bounce, const struct tl_triangle_ranges *
         lend(bounce, at, at);
     for (size_t s = 0; s < bounce->surface_count; s++) {
         const tl_surface *surface = ranges->surfaces[s];
-        const size_t first = bounce->first_vertex[s];
-        for (size_t i = 0; i < surface->index_count; i++) {
-            const size_t next = i - i % 3 + (i + 1) % 3;
-            const size_t a = 2 * (first + surface->indices[i]) + side;
-            const size_t b = 2 * (first + surface->indices[next]) + side;
-            if (seen_only && bounce->seen[a] != bounce->update && bounce->seen[b] != bounce->update)
-                continue;
-            lend(bounce, a, b);
-            lend(bounce, b, a);
-        }
+        const struct tl_light_mesh *mesh = surface->light_mesh;
+        const size_t first = 2 * bounce->first_vertex[s] + side;
+        for (size_t v = 0; mesh && v < surface->vertex_count; v++)
+            if (mesh->from[v][0] != v)
+                lend_three(bounce, mesh->from[v], first, seen_only);
+        for (size_t i = 0; !mesh && i < surface->index_count; i += 3)
+            lend_three(bounce, surface->indices + i, first, seen_only);
     }
 }
 
@@ -518,24 +518,38 @@ static vec3s received(const struct tl_bounce *bounce, const struct tl_bounce_req
     return request->all ? glms_vec3_add(bounce->direct[at], bounce->found[at].arrives) : bounce->direct[at];
 }
 
-/* What lies on an edge between two vertices has the mean of what is known at them. */
-static void fill_edges(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
+/* A vertex without light of its own has the mean of those from which it takes it, as far as theirs is known.
+ */
+static void take_mean(struct tl_bounce *bounce, const struct tl_light_mesh *mesh, size_t vertex, size_t first)
+{
+    const size_t at = first + 2 * vertex;
+    float known = 0;
+    bounce->rounds[at] = 0;
+    bounce->shown[at] = (struct tl_bounced){0};
+    bounce->sent[at] = (vec3s){{0, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        const size_t from = first + 2 * (size_t)mesh->from[vertex][k];
+        known += bounce->rounds[from] > 0 ? mesh->shares[vertex][k] : 0;
+    }
+    for (int k = 0; k < 3 && known > 0; k++) {
+        const size_t from = first + 2 * (size_t)mesh->from[vertex][k];
+        const float share = bounce->rounds[from] > 0 ? mesh->shares[vertex][k] / known : 0;
+        bounce->rounds[at] =
+            bounce->rounds[at] > bounce->rounds[from] ? bounce->rounds[at] : bounce->rounds[from];
+        add_bounced(&bounce->shown[at], &bounce->shown[from], share);
+        bounce->sent[at] = glms_vec3_muladds(bounce->sent[from], share, bounce->sent[at]);
+    }
+}
+
+static void fill_light_meshes(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
 {
     for (size_t s = 0; s < bounce->surface_count; s++) {
-        const tl_surface *surface = ranges->surfaces[s];
-        const size_t first = bounce->first_vertex[s], own = surface->vertex_count - surface->end_count;
-        for (size_t i = 0; i < 2 * surface->end_count; i++) {
-            const size_t at = 2 * (first + own) + i, side = i % 2;
-            const size_t a = 2 * (first + surface->ends[i / 2][0]) + side;
-            const size_t b = 2 * (first + surface->ends[i / 2][1]) + side;
-            const float of_a = bounce->rounds[a] == 0 ? 0 : bounce->rounds[b] == 0 ? 1 : 0.5f;
-            bounce->rounds[at] =
-                bounce->rounds[a] > bounce->rounds[b] ? bounce->rounds[a] : bounce->rounds[b];
-            bounce->found[at] = (struct tl_bounced){0};
-            add_bounced(&bounce->found[at], &bounce->found[a], of_a);
-            add_bounced(&bounce->found[at], &bounce->found[b], 1 - of_a);
-            bounce->sent[at] = glms_vec3_lerp(bounce->sent[b], bounce->sent[a], of_a);
-        }
+        const struct tl_light_mesh *mesh = ranges->surfaces[s]->light_mesh;
+        const size_t count = mesh ? ranges->surfaces[s]->vertex_count : 0;
+#pragma omp parallel for schedule(static)
+        for (size_t v = 0; v < count; v++)
+            for (size_t side = 0; side < 2 && mesh->from[v][0] != v; side++)
+                take_mean(bounce, mesh, v, 2 * bounce->first_vertex[s] + side);
     }
 }
 
@@ -565,8 +579,8 @@ static void update(struct tl_bounce *bounce, const struct tl_bounce_request *req
         trace_vertex(bounce, request, due[i].surface, due[i].vertex, due[i].back);
     send(bounce, request, due, count);
     if (count > 0) {
-        fill_edges(bounce, request->ranges);
         smooth(bounce, request->ranges, request->moved);
+        fill_light_meshes(bounce, request->ranges);
     }
     free(due);
 }

@@ -128,7 +128,34 @@ static void place_samples(struct tl_vertex_ratios *ratios, const struct tl_ratio
     lanes->look.count = 0;
 }
 
-/* Corners that triangles share are listed once, for the first of these. */
+/* Lists the place of a vertex that is seen; false when it was listed already, or made in the last update and
+ * is not due. */
+static bool list_place(struct tl_vertex_ratios *ratios, size_t place, bool all)
+{
+    uint32_t before = ratios->stamps[place];
+    ratios->stamps[place] = ratios->update;
+    bool is_known = !all && before != 0 && before + 1 == ratios->update;
+    return before != ratios->update && (!is_known || (place / 2 + ratios->update) % 2 != 0);
+}
+
+/* Lists a vertex as a corner of a triangle of its surface. `at`: the number of the index that names it. */
+static void list_corner(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request,
+                        struct corner_lanes *lanes, size_t surface_index, size_t at, bool back)
+{
+    const tl_surface *surface = request->ranges->surfaces[surface_index];
+    const struct tl_shade_part *part =
+        &request->materials
+             ->parts[tl_shade_part_at(request->materials, surface, surface_index, (uint32_t)(at / 3))];
+    if (lanes->look.part != part || lanes->look.count == TL_LANES)
+        place_samples(ratios, request, lanes);
+    lanes->look.part = part;
+    reserve(ratios, ratios->count + TL_LANES);
+    const uint32_t seen = request->ranges->first[surface_index] + (uint32_t)(at / 3);
+    add_corner(lanes, request, seen | (back ? TL_SAMPLE_BACK : 0), surface_index, surface,
+               surface->indices[at], (int)(at % 3));
+}
+
+/* Vertices that triangles share are listed once, for the first of these. */
 static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
     bool all = ratios->update == 0 || ratios->light_revision != request->light_revision;
@@ -136,29 +163,76 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
     ratios->count = 0;
     ratios->update++;
     struct corner_lanes lanes = {0};
+    const bool sparse = tl_points_are_sparse(request->points);
     for (size_t i = 0; i < request->ids->seen_count; i++) {
-        uint32_t corners[3], seen = request->ids->seen[i];
+        const uint32_t seen = request->ids->seen[i], back = seen & TL_SAMPLE_BACK ? 1u : 0u;
+        uint32_t corners[3];
         size_t index;
         const tl_surface *surface =
             tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
-        const struct tl_shade_part *part = &request->materials->parts[tl_shade_part_at(
-            request->materials, surface, index, (seen & ~TL_SAMPLE_BACK) - request->ranges->first[index])];
-        if (lanes.look.part != part || lanes.look.count + 3 > TL_LANES)
-            place_samples(ratios, request, &lanes);
-        lanes.look.part = part;
-        reserve(ratios, ratios->count + TL_LANES);
-        for (int k = 0; k < 3; k++) {
-            size_t place = 2 * (ratios->first_vertex[index] + corners[k]) + (seen & TL_SAMPLE_BACK ? 1 : 0);
-            uint32_t before = ratios->stamps[place];
-            ratios->stamps[place] = ratios->update;
-            bool is_known = !all && before != 0 && before + 1 == ratios->update;
-            if (before == ratios->update || (is_known && (place / 2 + ratios->update) % 2 == 0))
+        const size_t first = 2 * ratios->first_vertex[index] + back;
+        const size_t triangle = (seen & ~TL_SAMPLE_BACK) - request->ranges->first[index];
+        for (size_t k = 0; k < 3; k++) {
+            if (!sparse || tl_has_own_light(surface, corners[k])) {
+                if (list_place(ratios, first + 2 * (size_t)corners[k], all))
+                    list_corner(ratios, request, &lanes, index, 3 * triangle + k, back);
                 continue;
-            add_corner(&lanes, request, seen, index, surface, corners[k], k);
+            }
+            const uint32_t *from = surface->light_mesh->from[corners[k]];
+            for (int j = 0; j < 3; j++)
+                if (list_place(ratios, first + 2 * (size_t)from[j], all))
+                    list_corner(ratios, request, &lanes, index, surface->light_mesh->corners[from[j]], back);
         }
     }
     place_samples(ratios, request, &lanes);
     ratios->samples.count = ratios->samples.primary_count = ratios->count;
+}
+
+/* A vertex without light of its own has the mean of those from which it takes it. What is covered there has
+ * a share only where all is: it is dark under what lies on it. */
+static void take_mean(struct tl_vertex_ratios *ratios, const struct tl_light_mesh *mesh, uint32_t vertex,
+                      size_t first)
+{
+    const size_t place = first + 2 * (size_t)vertex;
+    struct tl_vertex_ratio mean = {0};
+    float shares[3], sum = 0, fuzz[3] = {0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        const struct tl_vertex_ratio *from = &ratios->items[first + 2 * (size_t)mesh->from[vertex][k]];
+        shares[k] = mesh->shares[vertex][k] * (1 - from->glossy[3]);
+        sum += shares[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        const size_t from = first + 2 * (size_t)mesh->from[vertex][k];
+        const float share = sum > 0 ? shares[k] / sum : mesh->shares[vertex][k];
+        for (int c = 0; c < 3; c++) {
+            mean.diffuse[c] += share * ratios->items[from].diffuse[c];
+            mean.glossy[c] += share * ratios->items[from].glossy[c];
+            fuzz[c] += ratios->fuzz ? share * ratios->fuzz[from][c] : 0;
+        }
+    }
+    mean.glossy[3] = sum > 0 ? 0.0f : 1.0f;
+    ratios->items[place] = mean;
+    if (ratios->fuzz)
+        memcpy(ratios->fuzz[place], fuzz, sizeof fuzz);
+}
+
+static void fill_seen(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
+{
+    for (size_t i = 0; i < request->ids->seen_count; i++) {
+        const uint32_t seen = request->ids->seen[i], back = seen & TL_SAMPLE_BACK ? 1u : 0u;
+        uint32_t corners[3];
+        size_t index;
+        const tl_surface *surface =
+            tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
+        const size_t first = 2 * ratios->first_vertex[index] + back;
+        for (int k = 0; k < 3; k++) {
+            uint32_t *stamp = &ratios->stamps[first + 2 * (size_t)corners[k]];
+            if (tl_has_own_light(surface, corners[k]) || *stamp == ratios->update)
+                continue;
+            *stamp = ratios->update;
+            take_mean(ratios, surface->light_mesh, corners[k], first);
+        }
+    }
 }
 
 void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
@@ -189,6 +263,8 @@ void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_requ
             fuzz[3] = 0;
         }
     }
+    if (tl_points_are_sparse(request->points))
+        fill_seen(ratios, request);
 }
 
 void tl_ratios_release(struct tl_vertex_ratios *ratios)

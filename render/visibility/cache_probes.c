@@ -11,6 +11,7 @@
 #define SAME_NORMAL 0.9f /* cosine */
 
 struct order {
+    bool follows; /* takes its light from others */
     uint64_t key;
     uint32_t vertex;
 };
@@ -40,6 +41,8 @@ static uint64_t key_of(vec3s position, vec3s normal, const struct tl_box *box, f
 static int compare_keys(const void *a, const void *b)
 {
     const struct order *x = a, *y = b;
+    if (x->follows != y->follows)
+        return x->follows ? 1 : -1;
     if (x->key != y->key)
         return x->key < y->key ? -1 : 1;
     return x->vertex < y->vertex ? -1 : x->vertex > y->vertex;
@@ -52,8 +55,9 @@ static struct order *sort_vertices(const tl_surface *surface)
     vec3s extent = glms_vec3_sub(box.upper, box.lower);
     float size = fmaxf(fmaxf(extent.x, extent.y), fmaxf(extent.z, 1e-9f));
     for (size_t v = 0; v < surface->vertex_count; v++)
-        order[v] =
-            (struct order){key_of(surface->positions[v], surface->normals[v], &box, size), (uint32_t)v};
+        order[v] = (struct order){.follows = !tl_has_own_light(surface, (uint32_t)v),
+                                  .key = key_of(surface->positions[v], surface->normals[v], &box, size),
+                                  .vertex = (uint32_t)v};
     qsort(order, surface->vertex_count, sizeof *order, compare_keys);
     return order;
 }
@@ -73,7 +77,9 @@ static uint32_t *find_representatives(const tl_surface *surface, const struct or
     for (size_t i = 0; i < surface->vertex_count; i++) {
         uint32_t vertex = order[i].vertex;
         representative[vertex] = vertex;
-        for (size_t k = i; k > 0 && i - k < TL_CLUSTER && order[k - 1].key == order[i].key; k--)
+        for (size_t k = i; k > 0 && i - k < TL_CLUSTER && order[k - 1].key == order[i].key &&
+                           order[k - 1].follows == order[i].follows;
+             k--)
             if (are_one(surface, order[k - 1].vertex, vertex))
                 representative[vertex] = representative[order[k - 1].vertex];
     }
@@ -101,7 +107,7 @@ static void add_side(struct tl_cache_probes *probes, size_t *capacity, const str
         probe.vertex = order[i].vertex;
         if (representative[probe.vertex] != probe.vertex)
             continue;
-        if (lane == TL_CLUSTER) {
+        if (lane == TL_CLUSTER || (i > 0 && order[i].follows && !order[i - 1].follows)) {
             start_cluster(probes, capacity);
             lane = 0;
         }

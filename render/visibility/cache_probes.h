@@ -1,6 +1,7 @@
 /* The probes at which visibility is kept: every vertex of every surface, seen from either side, in clusters
  * of sixteen neighbours that face much the same way, so that their rays run together. Vertices at one place
- * that share a normal (seams of the mesh) are one probe. Made once for a topology. Pure. */
+ * that share a normal (seams of the mesh) are one probe. Vertices with light of their own are in clusters of
+ * their own. Made once for a topology. Pure. */
 #ifndef TOILE_RENDER_VISIBILITY_CACHE_PROBES_H
 #define TOILE_RENDER_VISIBILITY_CACHE_PROBES_H
 

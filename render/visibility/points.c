@@ -26,7 +26,7 @@ struct tl_points {
     float yaw;
     struct tl_regions regions; /* directions only: those that the values belong to */
     uint32_t frame;            /* counts updates, from 1 */
-    uint32_t motion;           /* counts moving frames, from 1 */
+    uint32_t motion;           /* counts moving frames, from 2 */
     uint32_t rest;             /* the last frame in which nothing moved; 0: none */
 
     struct tl_cache_probes probes;
@@ -48,6 +48,7 @@ struct tl_points {
     struct tl_taps *taps;
     size_t sample_count, sample_capacity;
     bool are_for_samples; /* the last update; with no sample covered, too */
+    bool is_sparse;       /* the last update */
     size_t ray_count;
     /* At rest: of the points of the slots, each region has been looked at; has had its rounds; and all else.
      */
@@ -60,7 +61,9 @@ struct tl_points {
 
 tl_points *tl_points_create(void)
 {
-    return TL_NEW(tl_points);
+    tl_points *points = TL_NEW(tl_points);
+    points->motion = 1; /* what was traced in no motion is from before */
+    return points;
 }
 
 static void forget_values(tl_points *points)
@@ -201,7 +204,8 @@ static void follow_changes(tl_points *points, const struct tl_points_request *re
     memcpy(points->regions.items, request->regions->items,
            (size_t)request->regions->count * sizeof *request->regions->items);
     points->frame++;
-    points->motion += request->moved || points->motion == 0;
+    points->motion += request->moved;
+    points->is_sparse = request->moved && !request->samples && !request->whole_rounds;
     /* Images at rest that are shifted by parts of a pixel see a few triangles more or less: what one of them
      * sees has its rounds in all. */
     if (request->samples || request->moved || request->only_camera || points->carried)
@@ -226,16 +230,21 @@ static void mark_sample(tl_points *points, const struct tl_points_request *reque
     taps->point[3] = taps->point[0];
 }
 
+/* The corners of the triangles, or the vertices from which these take their light. */
 static void mark_triangles(tl_points *points, const struct tl_points_request *request)
 {
     points->sample_count = 0;
     for (size_t i = 0; i < request->seen_count; i++) {
         uint32_t corners[3];
         size_t surface;
-        tl_triangle_find(request->ranges, request->seen[i] & ~TL_SAMPLE_BACK, corners, &surface);
-        for (int k = 0; k < 3; k++)
-            points->seen[tl_cache_probe_at(&points->probes, surface, corners[k],
-                                           request->seen[i] & TL_SAMPLE_BACK)] = points->frame;
+        const tl_surface *shape =
+            tl_triangle_find(request->ranges, request->seen[i] & ~TL_SAMPLE_BACK, corners, &surface);
+        for (int k = 0; k < 3; k++) {
+            const uint32_t *from = points->is_sparse ? tl_light_from(shape, &corners[k]) : &corners[k];
+            for (int j = 0; j < (from == &corners[k] ? 1 : 3); j++)
+                points->seen[tl_cache_probe_at(&points->probes, surface, from[j],
+                                               request->seen[i] & TL_SAMPLE_BACK)] = points->frame;
+        }
     }
 }
 
@@ -369,6 +378,54 @@ static struct tl_cluster open_cluster(tl_points *points, size_t number, const st
         if (cluster.members >> i & 1)
             cluster.fresh |= (uint32_t)begin_point(points, first + i) << i;
     return cluster;
+}
+
+/* Whether a point was traced in the last frame that moved. */
+static bool is_traced(const tl_points *points, uint32_t point)
+{
+    return points->traced[point] == points->motion;
+}
+
+/* A vertex that took its light from others while the surface moved begins to rest with the mean of what they
+ * see. Without it all regions of all such vertices were due in the first frame at rest. */
+static void begin_with_mean(tl_points *points, const struct tl_points_request *request, size_t number)
+{
+    const struct tl_cache_probe *probe = &points->probes.items[number];
+    const tl_surface *surface = request->ranges->surfaces[probe->surface];
+    const uint32_t point = tl_points_of_vertex(points, probe->surface, probe->vertex, probe->back);
+    const uint32_t *from = surface->light_mesh->from[probe->vertex];
+    uint32_t sources[3];
+    for (int k = 0; k < 3; k++) {
+        const uint32_t source = tl_cache_probe_at(&points->probes, probe->surface, from[k], probe->back);
+        if (points->slots[source / TL_CLUSTER] == NO_SLOT)
+            return;
+        sources[k] = points->slots[source / TL_CLUSTER] * TL_CLUSTER + source % TL_CLUSTER;
+        if (!is_traced(points, sources[k]))
+            return;
+    }
+    for (size_t i = 0; i < points->stride; i++) {
+        float mean = 0.5f;
+        for (int k = 0; k < 3; k++)
+            mean += surface->light_mesh->shares[probe->vertex][k] *
+                    (float)points->values[sources[k] * points->stride + i];
+        points->values[point * points->stride + i] = (uint16_t)fminf(fmaxf(mean, 0), UINT16_MAX);
+    }
+    points->traced[point] = points->motion - 1;
+}
+
+static void begin_with_means(tl_points *points, const struct tl_points_request *request)
+{
+    for (size_t i = 0; !request->moved && i < points->active_count; i++) {
+        const size_t first = points->active[i] * (size_t)TL_CLUSTER;
+        const uint32_t members = visible_members(points, points->active[i]);
+        const struct tl_cache_probe *probe = &points->probes.items[first];
+        if (tl_has_own_light(request->ranges->surfaces[probe->surface], probe->vertex))
+            continue;
+        for (size_t k = 0; k < TL_CLUSTER; k++)
+            if (members >> k & 1 &&
+                !is_traced(points, points->slots[points->active[i]] * TL_CLUSTER + (uint32_t)k))
+                begin_with_mean(points, request, first + k);
+    }
 }
 
 static void trace_clusters(tl_points *points, const struct tl_refresh *refresh)
@@ -543,6 +600,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
         mark_triangles(points, request);
     activate_clusters(points, request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
     resolve_taps(points);
+    begin_with_means(points, request);
     trace_all(points, request);
 }
 
@@ -569,6 +627,11 @@ const struct tl_taps *tl_points_taps(const tl_points *points)
 bool tl_points_are_for_samples(const tl_points *points)
 {
     return points->are_for_samples;
+}
+
+bool tl_points_are_sparse(const tl_points *points)
+{
+    return points->is_sparse;
 }
 
 uint32_t tl_points_of_vertex(const tl_points *points, size_t surface, uint32_t vertex, bool back)

@@ -30,6 +30,9 @@ uint32_t tl_points_age(const tl_points *points, uint32_t point, int region);
  * taps name: then tl_points_taps is NULL. */
 bool tl_points_are_for_samples(const tl_points *points);
 const struct tl_taps *tl_points_taps(const tl_points *points);
+/* Whether the last update was for triangles in motion: then vertices without light of their own (struct
+ * tl_light_mesh) have no points. */
+bool tl_points_are_sparse(const tl_points *points);
 /* The point of a vertex of a triangle that was seen in the last update, from the side that was seen; and
  * whether something lies close above it, so that its values do not hold for neighbours that are not covered.
  */

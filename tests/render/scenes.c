@@ -13,7 +13,7 @@
 void test_shape_release(struct test_shape *shape)
 {
     tl_mesh_release(&shape->mesh);
-    free(shape->ends);
+    tl_light_mesh_release(&shape->light_mesh);
     *shape = (struct test_shape){0};
 }
 
@@ -23,8 +23,7 @@ void test_shape_refresh(struct test_shape *shape)
     revision++;
     shape->surface = tl_surface_of_mesh("shape", &shape->mesh, &shape->material);
     shape->surface.topology_revision = shape->surface.motion_revision = revision;
-    shape->surface.ends = (const uint32_t(*)[2])shape->ends;
-    shape->surface.end_count = shape->end_count;
+    shape->surface.light_mesh = shape->light_mesh.from ? &shape->light_mesh : NULL;
 }
 
 /* A grid of (columns + 1) x (rows + 1) vertices, to be placed by the caller; u = column / columns, v = row /
@@ -117,19 +116,18 @@ void test_shape_split(struct test_shape *shape, int cells)
     size_t own_count = (size_t)(cells / 2 + 1) * (size_t)(cells / 2 + 1);
     for (size_t i = 0; i < count; i++)
         numbers[i] = (uint32_t)(i % side % 2 == 0 && i / side % 2 == 0 ? own++ : own_count + end++);
-    shape->end_count = end;
-    shape->ends = tl_alloc(end, sizeof *shape->ends);
+    shape->light_mesh = tl_light_mesh_make(count);
     mesh->positions = TL_NEW_ARRAY(vec3s, count);
     mesh->normals = TL_NEW_ARRAY(vec3s, count);
     mesh->uvs = TL_NEW_ARRAY(vec2s, count);
     mesh->tangents = TL_NEW_ARRAY(vec4s, count);
     for (size_t i = 0; i < count; i++) {
         bool along = i % side % 2 == 1, down = i / side % 2 == 1;
-        size_t step = along && down ? side - 1 : along ? 1 : side; /* the diagonal of grid() */
-        if (along || down) {
-            shape->ends[numbers[i] - own_count][0] = numbers[i - step];
-            shape->ends[numbers[i] - own_count][1] = numbers[i + step];
-        }
+        size_t step = along && down ? side - 1 : along ? 1 : down ? side : 0; /* the diagonal of grid() */
+        uint32_t *from = shape->light_mesh.from[numbers[i]];
+        float *shares = shape->light_mesh.shares[numbers[i]];
+        from[0] = numbers[i - step], from[1] = from[2] = numbers[i + step];
+        shares[0] = shares[1] = 0.5f;
         mesh->positions[numbers[i]] = old.positions[i];
         mesh->normals[numbers[i]] = old.normals[i];
         mesh->uvs[numbers[i]] = old.uvs[i];
@@ -137,6 +135,7 @@ void test_shape_split(struct test_shape *shape, int cells)
     }
     for (size_t i = 0; i < mesh->index_count; i++)
         mesh->indices[i] = numbers[mesh->indices[i]];
+    tl_light_mesh_number(&shape->light_mesh, mesh->indices, mesh->index_count);
     old.indices = NULL;
     old.parts = NULL;
     tl_mesh_release(&old);

@@ -10,8 +10,7 @@ struct test_shape {
     tl_surface surface; /* points into this struct's arrays */
     tl_mesh mesh;
     tl_material material;
-    uint32_t (*ends)[2]; /* [end_count], as a surface has them; NULL: none */
-    size_t end_count;
+    struct tl_light_mesh light_mesh; /* empty: light is computed at all vertices */
 };
 void test_shape_release(struct test_shape *shape);
 /* Rebuilds `surface` after `mesh` or `material` was edited in place or the struct was moved; new revisions.

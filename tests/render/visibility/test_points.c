@@ -441,6 +441,60 @@ static void motion_replaces(void **state)
     stage_close(&new);
 }
 
+/* The sheet is drawn with four vertices for each that has light of its own. In motion only the latter are
+ * looked from; where the motion ends, the others begin with means of them, so that this frame takes no more
+ * rays than another at rest with as many points. */
+static void others_follow_in_motion(void **state)
+{
+    enum {
+        CELLS = 20,
+        OWN = (CELLS / 2 + 1) * (CELLS / 2 + 1),
+        ALL = (CELLS + 1) * (CELLS + 1),
+        REGIONS = 24
+    };
+    (void)state;
+    struct stage stage;
+    uint32_t seen[2 * CELLS * CELLS];
+    stage_open(&stage, REGIONS);
+    test_shape_split(&stage.sheet, CELLS);
+    test_shape_refresh(&stage.sheet);
+    move_sheet(&stage, 0);
+    refresh_scene(&stage);
+    for (uint32_t i = 0; i < TL_COUNT(seen); i++)
+        seen[i] = i;
+    stage.request.samples = NULL;
+    stage.request.seen = seen;
+    stage.request.seen_count = TL_COUNT(seen);
+    stage.params.refresh = 1;
+    for (int i = 0; i < 2 * REGIONS; i++)
+        step(&stage, true);
+    assert_true(tl_points_are_sparse(stage.points));
+    assert_int_equal(tl_points_visible(stage.points), OWN);
+    size_t stride, first_rays;
+    step(&stage, false);
+    first_rays = tl_points_report(stage.points).rays;
+    assert_false(tl_points_are_sparse(stage.points));
+    assert_int_equal(tl_points_visible(stage.points), ALL);
+    const uint16_t *values = tl_points_values(stage.points, &stride);
+    const struct tl_light_mesh *mesh = &stage.sheet.light_mesh;
+    double difference = 0, spread = 0;
+    for (uint32_t v = OWN; v < ALL; v++)
+        for (size_t i = 0; i < REGIONS; i++) {
+            uint32_t at[3] = {tl_points_of_vertex(stage.points, 0, v, false),
+                              tl_points_of_vertex(stage.points, 0, mesh->from[v][0], false),
+                              tl_points_of_vertex(stage.points, 0, mesh->from[v][1], false)};
+            double mean = (values[at[1] * stride + i] + values[at[2] * stride + i]) / 2.0;
+            difference += fabs(values[at[0] * stride + i] - mean);
+            spread += abs(values[at[1] * stride + i] - values[at[2] * stride + i]);
+        }
+    assert_true(difference < 0.25 * spread); /* a few regions of each were traced in that frame */
+    step(&stage, false);
+    assert_true(first_rays < 1.5 * (double)tl_points_report(stage.points).rays);
+    print_message("means differ by %.3f of what their ends do; %zu rays, then %zu\n", difference / spread,
+                  first_rays, tl_points_report(stage.points).rays);
+    stage_close(&stage);
+}
+
 /* The environment turns by a right angle: carried over, values are far nearer to the truth than before,
  * though hardly a ray has been traced; and other regions of the same sky take them over. */
 static void values_follow_a_turn_and_new_regions(void **state)
@@ -719,6 +773,7 @@ int main(void)
         cmocka_unit_test(rest_is_spread_over_frames),
         cmocka_unit_test(late_points_get_their_rounds),
         cmocka_unit_test(motion_replaces),
+        cmocka_unit_test(others_follow_in_motion),
         cmocka_unit_test(values_follow_a_turn_and_new_regions),
         cmocka_unit_test(suns_have_their_penumbrae),
         cmocka_unit_test(repair_finds_and_mends_the_worst),
