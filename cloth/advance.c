@@ -587,6 +587,7 @@ static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error)
 {
+    cloth->cage_is_current = false;
     if (cloth->params.self_contact)
         prepare_apart(cloth);
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
@@ -622,11 +623,4 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
         tl_apart_forget(&cloth->apart);
     }
     return good;
-}
-
-bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
-{
-    const struct tl_advance_params advance = {
-        .clock = true, .contact_budget = 2, .min_slip_speed = TL_MIN_SLIP_SPEED};
-    return tl_cloth_advance(cloth, collider, &advance, error);
 }

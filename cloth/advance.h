@@ -1,4 +1,5 @@
-/* One frame of simulated time, for tl_cloth_step and tl_cloth_settle. Threads: one at a time per cloth. */
+/* One frame of simulated time, for tl_cloth_step (caged.c) and tl_cloth_settle. Threads: one at a time per
+ * cloth. */
 #ifndef TOILE_CLOTH_ADVANCE_H
 #define TOILE_CLOTH_ADVANCE_H
 

@@ -56,7 +56,7 @@ void tl_cloth_set_constants(tl_cloth *cloth)
                                 cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
     tl_layers_forget(&cloth->layers);
     tl_apart_forget(&cloth->apart);
-    cloth->undriven = false;
+    cloth->undriven = cloth->cage_is_current = false;
 }
 
 void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)
@@ -182,6 +182,9 @@ void tl_cloth_release_state(tl_cloth *cloth)
     cloth->forces = NULL;
     cloth->external = NULL;
     cloth->good_x = cloth->good_v = NULL;
+    if (cloth->cage)
+        cloth->destroy_cage(&cloth->cage);
+    cloth->has_no_cage = false;
 }
 
 void tl_cloth_join(tl_cloth *cloth, const uint32_t *joined, size_t joined_count)

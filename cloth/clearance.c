@@ -10,6 +10,20 @@
 #define LIST_REACH_M  0.002
 #define LIST_MARGIN_M 0.001
 
+/* Cloth that is nearer to a body than this is kept off it, by so much: a body that bends by 40 mm rises by
+ * 0.3 mm between vertices that are 10 mm apart. */
+#define REACH_M 0.01f
+#define CLEAR_M 0.001f
+
+float tl_clearance_share(const struct tl_clearance *clearance, vec3s end, vec3s flat, vec3s moved)
+{
+    float above = clearance->height_m + glms_vec3_dot(glms_vec3_sub(flat, end), clearance->up);
+    float down = -glms_vec3_dot(moved, clearance->up), room = fmaxf(above - CLEAR_M, 0);
+    float length = glms_vec3_norm(moved);
+    float share = clearance->height_m < REACH_M && down > room ? room / fmaxf(down, 1e-12f) : 1;
+    return length > clearance->room_m ? fminf(share, clearance->room_m / length) : share;
+}
+
 static void measure_heights(const tl_cloth *cloth, const tl_collider *collider, size_t count,
                             struct tl_clearance *out)
 {

@@ -13,6 +13,11 @@ struct tl_clearance {
                        INFINITY: nothing keeps the cloth from crossing itself */
 };
 
+/* The share of the way `moved` that a point `flat` of the cloth may go, as far as one of the vertices around
+ * it knows, which is at `end`: towards a body to 1 mm above it, and no farther where the cloth itself is
+ * lower; and no farther than its room. */
+float tl_clearance_share(const struct tl_clearance *clearance, vec3s end, vec3s flat, vec3s moved);
+
 /* Writes out[v] of each physics vertex v (tl_cloth_weld), with the `collider` of the last frame or of
  * settling. Takes 0.5 ms for 3,000 vertices that have moved, 12 ms before they have. Errors: none. */
 void tl_cloth_clearances(const tl_cloth *cloth, const tl_collider *collider, struct tl_clearance *out);

@@ -126,6 +126,7 @@ static void reset_history(tl_cloth *cloth)
         cloth->contacts.pinched[cloth->topology.weld[i]] |= cloth->start_pinched[i];
     tl_layers_forget(&cloth->layers);
     tl_apart_forget(&cloth->apart);
+    cloth->cage_is_current = false;
 }
 
 /* Stored by render vertex: seams that close later renumber the physics vertices, but not these. */

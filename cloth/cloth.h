@@ -53,6 +53,7 @@ struct tl_cloth_params {
     double settle_s;      /* longest simulated time of settling before the first frame */
     double settle_speed;  /* m/s: the cloth is settled when no vertex moves faster over a frame */
     bool cages;           /* settling begins on coarser versions of a fine cloth: cloth/coarser.h */
+    int caged_above;      /* cloth of more vertices is moved by a cage: cloth/caged.c; 0: none is */
     float edge_m;         /* target edge length of built-in garments */
     int rest;             /* enum tl_rest_choice: of garments from files */
     float longest_edge_m; /* longer edges of garments from files are halved; 0: never */
@@ -161,6 +162,19 @@ void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
  * when seams close: while settling, or in a step if something held them apart until then. Lifetime: owned by
  * the cloth, valid until the next call that is not const. */
 const uint32_t *tl_cloth_weld(const tl_cloth *cloth);
+
+/* Makes the cage of a heavy cloth now, not in its first step: 120,000 vertices take some seconds. */
+void tl_cloth_make_cage(tl_cloth *cloth);
+
+/* Where a cloth that is moved by a cage lies on it. */
+struct tl_cage_places {
+    uint32_t (*from)[3]; /* [mesh.vertex_count] render vertices: the corners of the triangle on which each
+                            lies; of one that is a corner, or at the place of one, three times that */
+    float (*shares)[3];  /* [mesh.vertex_count] of them; their sum is 1 */
+};
+/* Fills `out`, or only asks with NULL. Returns a number that changes with the cage; 0, and fills nothing,
+ * where no cage is made. */
+uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out);
 
 /* Measures the state; penetration only against a collider that is not NULL. Takes longer than a substep. */
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider);

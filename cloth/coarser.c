@@ -2,6 +2,7 @@
 
 #include "assets/halfmesh/halfmesh.h"
 #include "cloth/build.h"
+#include "cloth/clearance.h"
 #include "cloth/mesh/rigid.h"
 #include "cloth/timestep.h"
 #include "config/memory.h"
@@ -9,10 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Vertices of a cloth to those of the next coarser one: edges of half the number. */
-#define RATIO 4
-/* Cages with fewer vertices than this are not made: a skirt of 650 folds another way than a finer one. */
-#define FEWEST 1500
 /* A cage that keeps a larger share of the vertices is not worth its time. */
 #define WORTH_SHARE 0.6
 
@@ -66,7 +63,7 @@ static bool is_seam(const tl_cloth *cloth, uint32_t triangle, int corner)
     return (double)glms_vec2_distance(here, there) > share * (double)glms_vec2_norm(here);
 }
 
-static bool make_cage(const tl_cloth *cloth, struct tl_cage *out)
+static bool make_cage(const tl_cloth *cloth, size_t vertex_target, struct tl_cage *out)
 {
     const struct tl_topology *topology = &cloth->topology;
     bool(*seams)[3] = tl_alloc(topology->triangle_count, sizeof *seams);
@@ -82,7 +79,7 @@ static bool make_cage(const tl_cloth *cloth, struct tl_cage *out)
                                           .rest = (const float(*)[3][2])cloth->rest,
                                           .seams = (const bool(*)[3])seams,
                                           .held = held};
-    bool made = tl_cage_make(&source, topology->vertex_count / RATIO, out);
+    bool made = tl_cage_make(&source, vertex_target, out);
     free(seams);
     free(held);
     return made;
@@ -118,6 +115,7 @@ static void take_pins(tl_coarser *coarser, const tl_cloth *from)
 {
     const struct tl_cage *cage = &coarser->cage;
     tl_cloth *cloth = coarser->cloth;
+    cloth->pin_count = 0;
     uint32_t *particles = TL_NEW_ARRAY(uint32_t, from->particles.count);
     memset(particles, 0xff, from->particles.count * sizeof *particles);
     for (size_t i = 0; i < 3 * cage->triangle_count; i++)
@@ -153,14 +151,21 @@ static int substeps_of(const tl_coarser *coarser, const tl_cloth *from)
                             : from->params.substeps;
 }
 
-static bool make_cloth(tl_coarser *coarser, const tl_cloth *from)
+static struct tl_cloth_params params_of(const tl_coarser *coarser, const tl_cloth *from)
 {
-    const struct tl_cage *cage = &coarser->cage;
     struct tl_cloth_params params = from->params;
-    tl_error error; /* of no interest: the cloth settles without a cage then */
     params.substeps = substeps_of(coarser, from);
     params.pin_above_m = 0;
     params.pin_colour = TL_PIN_NO_COLOUR;
+    params.caged_above = 0;
+    return params;
+}
+
+static bool make_cloth(tl_coarser *coarser, const tl_cloth *from)
+{
+    const struct tl_cage *cage = &coarser->cage;
+    const struct tl_cloth_params params = params_of(coarser, from);
+    tl_error error; /* of no interest: the cloth does without a cage then */
     make_garment(coarser, from);
     coarser->cloth = tl_cloth_create(&coarser->garment, &from->fabric, &params, &error);
     if (!coarser->cloth)
@@ -187,7 +192,7 @@ static vec3d point_of(const tl_coarser *coarser, const struct tl_cage_point *poi
 
 static void take_offsets(tl_coarser *coarser, const tl_cloth *cloth)
 {
-    coarser->offsets = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+    coarser->offsets = tl_resize(coarser->offsets, cloth->particles.count, sizeof *coarser->offsets);
     for (size_t i = 0; i < cloth->particles.count; i++) {
         const struct tl_cage_point *point = &coarser->cage.points[i];
         if (point->triangle != TL_NONE)
@@ -195,14 +200,14 @@ static void take_offsets(tl_coarser *coarser, const tl_cloth *cloth)
     }
 }
 
-tl_coarser *tl_coarser_create(const tl_cloth *cloth)
+tl_coarser *tl_coarser_create(const tl_cloth *cloth, size_t vertex_target)
 {
     size_t count = cloth->topology.vertex_count;
-    if (count / RATIO < FEWEST || cloth->seams.pair_count > 0)
+    if (cloth->seams.pair_count > 0)
         return NULL;
     tl_coarser *coarser = TL_NEW(tl_coarser);
-    bool worth =
-        make_cage(cloth, &coarser->cage) && (double)coarser->cage.vertex_count <= WORTH_SHARE * (double)count;
+    bool worth = make_cage(cloth, vertex_target, &coarser->cage) &&
+                 (double)coarser->cage.vertex_count <= WORTH_SHARE * (double)count;
     if (!worth || !make_cloth(coarser, cloth)) {
         tl_coarser_destroy(&coarser);
         return NULL;
@@ -294,4 +299,175 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
     free(turns);
     free(plain);
     free(places);
+}
+
+/* ---- In motion ---- */
+
+void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
+{
+    const struct tl_cage *cage = &coarser->cage;
+    struct tl_particles *particles = &coarser->cloth->particles;
+    coarser->cloth->fabric = cloth->fabric;
+    coarser->cloth->params = params_of(coarser, cloth);
+    for (size_t i = 0; i < 3 * cage->triangle_count; i++) {
+        const uint32_t to = particle_of(coarser, i / 3, i % 3);
+        const uint32_t from = cage->vertices[cage->triangles[i / 3][i % 3]];
+        particles->x[to] = cloth->particles.x[from];
+        particles->v[to] = cloth->particles.v[from];
+    }
+    take_pins(coarser, cloth);
+    tl_cloth_set_constants(coarser->cloth);
+    tl_cloth_mark_start(coarser->cloth);
+    free(coarser->made);
+    coarser->made = places_of(coarser);
+    take_offsets(coarser, cloth);
+}
+
+/* Shares of a place that are not negative: where a border was straightened it is moved onto the cage. */
+static void clamp_shares(const double weights[3], double shares[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += fmax(weights[k], 0);
+    for (int k = 0; k < 3; k++)
+        shares[k] = fmax(weights[k], 0) / sum;
+}
+
+/* The share of an offset that is kept where the corners of its triangle have turned it differently: all where
+ * they agree, nothing where two of them are a sixth of a turn apart, as in a fold of the cage. In folds
+ * offsets of either side would reach through each other. */
+static double share_of_turns(const vec3d turned[3], double length)
+{
+    double apart = 0;
+    for (int k = 0; k < 3; k++)
+        apart = fmax(apart, vec3d_distance(turned[k], turned[(k + 1) % 3]));
+    return length > 0 ? fmax(1 - 2 * apart / length, 0) : 0;
+}
+
+/* A particle's place on the cage, and its way from there. */
+struct follower {
+    vec3d flat, way;
+};
+
+/* Fills *out; returns the share of its way that the particle may go, as far as its own triangle knows. */
+static float find_way(const tl_coarser *coarser, size_t particle, const vec3d *places,
+                      const struct tl_rigid *turns, const struct tl_clearance *clearances,
+                      struct follower *out)
+{
+    const struct tl_cage_point *point = &coarser->cage.points[particle];
+    const uint32_t *v = coarser->cage.triangles[point->triangle];
+    const vec3d offset = coarser->offsets[particle];
+    struct tl_cage_point on_cage = *point;
+    clamp_shares(point->weights, on_cage.weights);
+    out->flat = point_of(coarser, &on_cage, places);
+    vec3d x = point_of(coarser, point, places), turned[3];
+    for (int k = 0; k < 3; k++) {
+        turned[k] = tl_rigid_turn(&turns[v[k]], offset);
+        x = vec3d_muladd(x, turned[k], on_cage.weights[k]);
+    }
+    out->way = vec3d_sub(x, out->flat);
+    float share = (float)share_of_turns(turned, vec3d_norm(offset));
+    for (int k = 0; k < 3; k++)
+        share = fminf(share, tl_clearance_share(&clearances[v[k]], vec3d_to_float(places[v[k]]),
+                                                vec3d_to_float(out->flat), vec3d_to_float(out->way)));
+    return share;
+}
+
+static struct tl_clearance *clearances_of(const tl_coarser *coarser, const tl_collider *collider)
+{
+    const struct tl_cage *cage = &coarser->cage;
+    struct tl_clearance *of_particles = TL_NEW_ARRAY(struct tl_clearance, coarser->cloth->particles.count);
+    struct tl_clearance *clearances = TL_NEW_ARRAY(struct tl_clearance, cage->vertex_count);
+    tl_cloth_clearances(coarser->cloth, collider, of_particles);
+    for (size_t i = 0; i < 3 * cage->triangle_count; i++)
+        clearances[cage->triangles[i / 3][i % 3]] = of_particles[particle_of(coarser, i / 3, i % 3)];
+    free(of_particles);
+    return clearances;
+}
+
+/* Each of the cage's vertices has the least share of all that lies in its triangles, so that shares between
+ * them change evenly, and none is larger than that of a particle itself. */
+static float *shares_at_vertices(const tl_coarser *coarser, const float *shares, size_t particle_count)
+{
+    const struct tl_cage *cage = &coarser->cage;
+    float *least = TL_NEW_ARRAY(float, cage->vertex_count);
+    for (size_t i = 0; i < cage->vertex_count; i++)
+        least[i] = 1;
+    for (size_t i = 0; i < particle_count; i++) {
+        const uint32_t triangle = cage->points[i].triangle;
+        for (int k = 0; triangle != TL_NONE && k < 3; k++) {
+            float *at = &least[cage->triangles[triangle][k]];
+            *at = fminf(*at, shares[i]);
+        }
+    }
+    return least;
+}
+
+void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider, struct tl_particles *particles)
+{
+    const struct tl_cage *cage = &coarser->cage;
+    const size_t count = particles->count;
+    vec3d *places = places_of(coarser);
+    struct tl_clearance *clearances = clearances_of(coarser, collider);
+    struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
+    struct follower *followers = tl_alloc(count, sizeof *followers);
+    float *shares = TL_NEW_ARRAY(float, count);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < cage->vertex_count; i++)
+        turns[i] = turn_at(coarser, i, places);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < count; i++)
+        shares[i] = cage->points[i].triangle == TL_NONE
+                        ? 1
+                        : find_way(coarser, i, places, turns, clearances, &followers[i]);
+    float *least = shares_at_vertices(coarser, shares, count);
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < count; i++) {
+        const struct tl_cage_point *point = &cage->points[i];
+        double of[3], share = 0;
+        if (point->triangle == TL_NONE || !(particles->w[i] > 0))
+            continue;
+        clamp_shares(point->weights, of);
+        for (int k = 0; k < 3; k++)
+            share += of[k] * (double)least[cage->triangles[point->triangle][k]];
+        particles->x[i] = vec3d_muladd(followers[i].flat, followers[i].way, share);
+    }
+    free(least);
+    free(shares);
+    free(followers);
+    free(turns);
+    free(clearances);
+    free(places);
+}
+
+void tl_coarser_place(const tl_coarser *coarser, uint32_t particle, uint32_t corners[3], float shares[3])
+{
+    const struct tl_cage_point *point = &coarser->cage.points[particle];
+    double clamped[3];
+    corners[0] = corners[1] = corners[2] = particle;
+    shares[0] = 1, shares[1] = shares[2] = 0;
+    if (point->triangle == TL_NONE)
+        return;
+    clamp_shares(point->weights, clamped);
+    for (int k = 0; k < 3; k++) {
+        const uint32_t corner = coarser->cage.vertices[coarser->cage.triangles[point->triangle][k]];
+        if (corner == particle) {
+            corners[0] = corners[1] = corners[2] = particle;
+            shares[0] = 1, shares[1] = shares[2] = 0;
+            return;
+        }
+        corners[k] = corner;
+        shares[k] = (float)clamped[k];
+    }
+}
+
+uint32_t tl_coarser_vertex_near(const tl_coarser *coarser, uint32_t particle)
+{
+    const struct tl_cage_point *point = &coarser->cage.points[particle];
+    uint32_t best = 0;
+    if (point->triangle == TL_NONE)
+        return TL_NONE;
+    for (uint32_t k = 1; k < 3; k++)
+        best = point->weights[k] > point->weights[best] ? k : best;
+    return 3 * point->triangle + best;
 }

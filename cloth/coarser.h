@@ -19,9 +19,9 @@
 
 typedef struct tl_coarser tl_coarser;
 
-/* Makes a coarser cloth at the cloth's present positions, at rest, with all its params. NULL when the cloth
- * is too small to gain by one, when it cannot be made much coarser, or has seams that are open. */
-tl_coarser *tl_coarser_create(const tl_cloth *cloth);
+/* Makes a coarser cloth of about `vertex_target` vertices at the cloth's present positions, at rest, with all
+ * its params. NULL when it cannot be made much coarser, or has seams that are open. */
+tl_coarser *tl_coarser_create(const tl_cloth *cloth, size_t vertex_target);
 void tl_coarser_destroy(tl_coarser **handle);
 
 /* The coarser cloth, to be settled. Lifetime: until tl_coarser_destroy. */
@@ -30,5 +30,24 @@ tl_cloth *tl_coarser_cloth(tl_coarser *coarser);
 /* Moves the free vertices of the cloth that the coarser one was made of to where that has come to; they are
  * at rest then. Forgets contacts. */
 void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth);
+
+/* ---- In motion (caged.c) ---- */
+
+/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of, and new offsets.
+ */
+void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth);
+
+/* Moves the free ones of `particles`, of the cloth that it was made of, with the coarser cloth. Offsets are
+ * shortened where they would lead through a body or through other cloth (clearance.h). */
+void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider,
+                       struct tl_particles *particles);
+
+/* The corners of the triangle on which a particle lies, as particles of the cloth that it was made of, and
+ * their shares, which are not negative; of one without a place, three times itself. */
+void tl_coarser_place(const tl_coarser *coarser, uint32_t particle, uint32_t corners[3], float shares[3]);
+
+/* The render vertex of the coarser cloth that has the largest share in a particle; TL_NONE: it has no place.
+ */
+uint32_t tl_coarser_vertex_near(const tl_coarser *coarser, uint32_t particle);
 
 #endif

@@ -45,12 +45,23 @@ void tl_cloth_log_unsettled(const tl_cloth *cloth)
             cloth->unsettled_speed, cloth->params.settle_s);
 }
 
+/* Vertices of a cloth to those of the next coarser one: edges of half the number. Cages of fewer than FEWEST
+ * are not made: a skirt of 650 vertices folds another way than a finer one. */
+#define RATIO  4
+#define FEWEST 1500
+
+static tl_coarser *make_coarser(const tl_cloth *cloth)
+{
+    const size_t target = cloth->topology.vertex_count / RATIO;
+    return cloth->params.cages && target >= FEWEST ? tl_coarser_create(cloth, target) : NULL;
+}
+
 /* Settles a coarser version of the cloth, if it has one, and carries the cloth to where that has come to. A
  * coarser cloth that fails is left out: the cloth itself can settle without. */
 static bool settle_coarser(tl_cloth *cloth, const tl_collider *collider)
 {
     tl_error error = {0};
-    tl_coarser *coarser = cloth->params.cages ? tl_coarser_create(cloth) : NULL;
+    tl_coarser *coarser = make_coarser(cloth);
     bool carried = coarser && tl_cloth_settle(tl_coarser_cloth(coarser), collider, &error);
     if (carried)
         tl_coarser_carry(coarser, cloth);

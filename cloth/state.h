@@ -42,6 +42,13 @@ struct tl_cloth {
     vec3d grab_from, grab_target; /* m, where the pull's spring ends at the start and the end of a frame */
     uint64_t jump_followed;       /* collider revision whose jump has been applied to the cloth */
     double time_s;
+    struct tl_coarser *cage; /* caged.c; NULL: not made yet */
+    void (*destroy_cage)(struct tl_coarser **cage);
+    bool has_no_cage;     /* none can be made */
+    bool cage_is_current; /* it is where the cloth is, and set as the cloth is */
+    bool was_caged;       /* a cage has moved the cloth since its contacts were found */
+    vec3d cage_grab;      /* m, from the grabbed vertex to the cage's */
+    uint64_t cage_revision;
     bool settled;
     double unsettled_speed;     /* m/s, when the time for settling ended before rest; else 0 */
     double needle_share;        /* share of the triangles that are needles */

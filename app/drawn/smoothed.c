@@ -9,11 +9,6 @@
 /* Normals that differ by more than half a right angle are those of a hard edge. */
 #define HARD_COSINE 0.707f
 
-/* Cloth that is nearer to a body than this is kept off it, by so much: a body that bends by 40 mm rises by
- * 0.3 mm between vertices that are 10 mm apart. */
-#define REACH_M 0.01f
-#define CLEAR_M 0.001f
-
 /* The side of a triangle that faces a corner, by its vertices. */
 struct drawn_side {
     uint32_t key[2];  /* what sides are sorted by, the lower one first */
@@ -153,17 +148,6 @@ static void take_uvs(const tl_mesh *mesh, struct tl_smoothed *out)
     }
 }
 
-/* The share of a point's way `moved` from where the cloth is, `flat`, that it may go as far as one end of its
- * edge knows: towards a body to CLEAR_M above it, and no farther where the cloth itself is lower. */
-static float share_clear(vec3s flat, vec3s moved, vec3s end, const struct tl_clearance *clearance)
-{
-    float above = clearance->height_m + glms_vec3_dot(glms_vec3_sub(flat, end), clearance->up);
-    float down = -glms_vec3_dot(moved, clearance->up), room = fmaxf(above - CLEAR_M, 0);
-    float length = glms_vec3_norm(moved);
-    float share = clearance->height_m < REACH_M && down > room ? room / fmaxf(down, 1e-12f) : 1;
-    return length > clearance->room_m ? fminf(share, clearance->room_m / length) : share;
-}
-
 /* The smooth surface is inside of what bulges: it would sink into a body that the cloth lies on, and through
  * cloth that lies on it. */
 static void stay_clear(struct tl_smoothed *smoothed)
@@ -178,7 +162,8 @@ static void stay_clear(struct tl_smoothed *smoothed)
         vec3s moved = glms_vec3_sub(smoothed->fine[i], flat);
         float share = 1;
         for (int k = 0; k < 2; k++)
-            share = fminf(share, share_clear(flat, moved, coarse[ends[k]], &smoothed->clearances[ends[k]]));
+            share = fminf(share,
+                          tl_clearance_share(&smoothed->clearances[ends[k]], coarse[ends[k]], flat, moved));
         smoothed->fine[i] = glms_vec3_add(flat, glms_vec3_scale(moved, share));
     }
 }

@@ -106,6 +106,7 @@ static bool drape(tl_session *session, tl_error *error)
     session->cloth = tl_drape(&request, session->collider, error);
     if (!session->cloth)
         return false;
+    tl_cloth_make_cage(session->cloth);
     if (session->authored && body &&
         !(session->tucked = tl_tuck_find(&session->garment->model.mesh, body, error)))
         return false;
@@ -304,6 +305,7 @@ void tl_session_destroy(tl_session **handle)
     free(session->strain.of_vertices);
     free(session->tucked);
     free(session->crossed.triangles);
+    tl_light_mesh_release(&session->cage.light_mesh);
     free(session->standing.size);
     free(session->standing.inside);
     tl_appearance_release(&session->appearance);
@@ -513,6 +515,23 @@ static tl_surface smoothed(tl_session *session, const tl_surface *garment)
     return tl_smoothed_surface(smooth, &worn, garment);
 }
 
+/* Of a heavy garment that is moved by a cage: light is computed where its corners are. */
+static const struct tl_light_mesh *light_mesh_of_garment(tl_session *session)
+{
+    const uint64_t revision = session->cloth ? tl_cloth_cage(session->cloth, NULL) : 0;
+    const tl_mesh *mesh = &session->garment->model.mesh;
+    if (revision > 0 && revision != session->cage.revision) {
+        struct tl_light_mesh *light_mesh = &session->cage.light_mesh;
+        tl_light_mesh_release(light_mesh);
+        *light_mesh = tl_light_mesh_make(mesh->vertex_count);
+        tl_cloth_cage(session->cloth, &(struct tl_cage_places){light_mesh->from, light_mesh->shares});
+        tl_light_mesh_number(light_mesh, mesh->indices, mesh->index_count);
+        session->appearance_revision = ++session->appearances_made;
+    }
+    session->cage.revision = revision;
+    return revision > 0 ? &session->cage.light_mesh : NULL;
+}
+
 /* The garment comes last. */
 static void add_garment(tl_session *session)
 {
@@ -521,6 +540,7 @@ static void add_garment(tl_session *session)
     garment.crossed = crossed_of_garment(session);
     garment.has_own_normals = tl_session_garment_state(session) == TL_GARMENT_AUTHORED;
     garment.borders = borders_of_garment(session);
+    garment.light_mesh = light_mesh_of_garment(session);
     if (shows_board(session))
         session->surfaces[session->surface_count++] = tl_board_surface(&session->board, &garment);
     session->surfaces[session->surface_count++] = smoothed(session, &garment);

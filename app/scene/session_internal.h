@@ -48,6 +48,11 @@ struct tl_session {
     } crossed;
     struct tl_smoothed smoothed; /* made when it is first shown */
 
+    struct {
+        struct tl_light_mesh light_mesh;
+        uint64_t revision; /* tl_cloth_cage that it is of; 0: none */
+    } cage;
+
     struct tl_appearance appearance;
     uint64_t appearance_revision; /* of meshes and materials; the renderer sees another one as new */
     uint64_t appearances_made;    /* the highest revision so far */

@@ -1,0 +1,106 @@
+/* One frame of the cloth: by itself, or by a cage.
+ *
+ * A garment of 100,000 vertices takes seconds a frame when all of them are simulated. Cloth of more than
+ * params.caged_above vertices is therefore moved by a cage of CAGE_VERTICES (coarser.h), which has its
+ * weight, its pins and its contacts, and which it follows; it is the cloth itself that settles. The reference
+ * solver moves every cloth itself, and cloth whose seams are open moves itself until they are closed. */
+#include "cloth/advance.h"
+#include "cloth/build.h"
+#include "cloth/coarser.h"
+#include "config/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Two cores move so many in 30 ms a frame. */
+#define CAGE_VERTICES 5000
+
+static bool is_heavy(const tl_cloth *cloth)
+{
+    const int above = cloth->params.caged_above;
+    return above > 0 && cloth->topology.vertex_count > (size_t)above && !cloth->has_no_cage &&
+           cloth->params.solver != TL_CLOTH_REFERENCE && cloth->seams.pair_count == 0;
+}
+
+void tl_cloth_make_cage(tl_cloth *cloth)
+{
+    if (!is_heavy(cloth) || cloth->cage)
+        return;
+    cloth->cage = tl_coarser_create(cloth, CAGE_VERTICES);
+    cloth->destroy_cage = tl_coarser_destroy;
+    cloth->has_no_cage = !cloth->cage;
+    cloth->cage_revision++;
+}
+
+/* False when no cage can be made. */
+static bool prepare(tl_cloth *cloth)
+{
+    tl_cloth_make_cage(cloth);
+    if (cloth->cage && !cloth->cage_is_current)
+        tl_coarser_restart(cloth->cage, cloth);
+    cloth->cage_is_current = cloth->cage != NULL;
+    return cloth->cage != NULL;
+}
+
+/* A pull is one of the cage's nearest vertex, by the same way. */
+static void pass_pull_on(tl_cloth *cloth)
+{
+    tl_cloth *cage = tl_coarser_cloth(cloth->cage);
+    const uint32_t particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : 0;
+    const uint32_t vertex = cloth->grabbed ? tl_coarser_vertex_near(cloth->cage, particle) : TL_NONE;
+    if (vertex == TL_NONE) {
+        tl_cloth_release(cage);
+        return;
+    }
+    if (!cage->grabbed || cage->grabbed_vertex != vertex)
+        cloth->cage_grab =
+            vec3d_sub(cage->particles.x[cage->topology.weld[vertex]], cloth->particles.x[particle]);
+    tl_cloth_grab(cage, vertex, vec3d_to_float(vec3d_add(cloth->grab_target, cloth->cage_grab)));
+}
+
+static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
+                          const struct tl_advance_params *advance, tl_error *error)
+{
+    struct tl_particles *particles = &cloth->particles;
+    const size_t count = particles->count;
+    pass_pull_on(cloth);
+    if (!tl_cloth_advance(tl_coarser_cloth(cloth->cage), collider, advance, error))
+        return false;
+    cloth->good_x = tl_resize(cloth->good_x, count, sizeof *cloth->good_x);
+    memcpy(cloth->good_x, particles->x, count * sizeof *cloth->good_x);
+    tl_coarser_follow(cloth->cage, collider, particles);
+    for (size_t i = 0; i < count; i++)
+        particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], cloth->good_x[i]), cloth->params.frame_rate);
+    cloth->grab_from = cloth->grab_target;
+    cloth->time_s += 1 / cloth->params.frame_rate;
+    cloth->was_caged = true;
+    return true;
+}
+
+bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    const struct tl_advance_params advance = {
+        .clock = true, .contact_budget = 2, .min_slip_speed = TL_MIN_SLIP_SPEED};
+    if (is_heavy(cloth) && prepare(cloth))
+        return advance_caged(cloth, collider, &advance, error);
+    if (cloth->was_caged)
+        tl_cloth_set_constants(cloth); /* forgets contacts, which are those of where it was before */
+    cloth->was_caged = false;
+    return tl_cloth_advance(cloth, collider, &advance, error);
+}
+
+uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out)
+{
+    const size_t count = cloth->topology.render_count;
+    uint32_t *vertices = out && cloth->cage ? TL_NEW_ARRAY(uint32_t, cloth->particles.count) : NULL;
+    for (size_t i = count; vertices && i-- > 0;) /* the first vertex at each place */
+        vertices[cloth->topology.weld[i]] = (uint32_t)i;
+    for (size_t i = 0; vertices && i < count; i++) {
+        uint32_t corners[3];
+        tl_coarser_place(cloth->cage, cloth->topology.weld[i], corners, out->shares[i]);
+        for (int k = 0; k < 3; k++)
+            out->from[i][k] = vertices[corners[k]];
+    }
+    free(vertices);
+    return cloth->cage ? cloth->cage_revision : 0;
+}
