@@ -587,7 +587,7 @@ static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error)
 {
-    cloth->cage_is_current = false;
+    cloth->cage_is_current = cloth->was_caged = false;
     if (cloth->params.self_contact)
         prepare_apart(cloth);
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))

@@ -29,6 +29,7 @@ void tl_cloth_make_cage(tl_cloth *cloth)
     cloth->cage = tl_coarser_create(cloth, CAGE_VERTICES);
     cloth->destroy_cage = tl_coarser_destroy;
     cloth->has_no_cage = !cloth->cage;
+    cloth->caged_cloth = cloth->cage ? tl_coarser_cloth(cloth->cage) : NULL;
     cloth->cage_revision++;
 }
 
@@ -85,7 +86,6 @@ bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error
         return advance_caged(cloth, collider, &advance, error);
     if (cloth->was_caged)
         tl_cloth_set_constants(cloth); /* forgets contacts, which are those of where it was before */
-    cloth->was_caged = false;
     return tl_cloth_advance(cloth, collider, &advance, error);
 }
 

@@ -71,7 +71,7 @@ struct tl_cloth_report {
     double max_speed;      /* m/s */
     double max_strain; /* largest |length - rest length| / rest length over the triangles' sides. The divisor
                           is at least a quarter of the usual edge length: see cloth/measure.c */
-    double rms_strain; /* root mean square of the same */
+    double rms_strain; /* root mean square of the same; both are a cage's where one has moved the cloth */
     double kinetic_energy;   /* J */
     double elastic_energy;   /* J */
     double potential_energy; /* J, of free particles in gravity; 0 at y = 0 */

@@ -323,7 +323,7 @@ void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
     take_offsets(coarser, cloth);
 }
 
-/* Shares of a place that are not negative: where a border was straightened it is moved onto the cage. */
+/* Shares of a place that are not negative: where a border was straightened it lies beside the cage. */
 static void clamp_shares(const double weights[3], double shares[3])
 {
     double sum = 0;
@@ -357,15 +357,15 @@ static float find_way(const tl_coarser *coarser, size_t particle, const vec3d *p
     const struct tl_cage_point *point = &coarser->cage.points[particle];
     const uint32_t *v = coarser->cage.triangles[point->triangle];
     const vec3d offset = coarser->offsets[particle];
-    struct tl_cage_point on_cage = *point;
-    clamp_shares(point->weights, on_cage.weights);
-    out->flat = point_of(coarser, &on_cage, places);
-    vec3d x = point_of(coarser, point, places), turned[3];
+    double of[3];
+    vec3d turned[3];
+    clamp_shares(point->weights, of);
+    out->flat = point_of(coarser, point, places);
+    out->way = (vec3d){0};
     for (int k = 0; k < 3; k++) {
         turned[k] = tl_rigid_turn(&turns[v[k]], offset);
-        x = vec3d_muladd(x, turned[k], on_cage.weights[k]);
+        out->way = vec3d_muladd(out->way, turned[k], of[k]);
     }
-    out->way = vec3d_sub(x, out->flat);
     float share = (float)share_of_turns(turned, vec3d_norm(offset));
     for (int k = 0; k < 3; k++)
         share = fminf(share, tl_clearance_share(&clearances[v[k]], vec3d_to_float(places[v[k]]),

@@ -120,6 +120,8 @@ static size_t count_crossings(const tl_cloth *cloth)
 
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider)
 {
+    /* Across a fold of a cage, edges of what follows it are as short as the fold is thin: no strain. */
+    const tl_cloth *moved = cloth->was_caged ? cloth->caged_cloth : cloth;
     struct tl_cloth_report report = {.vertex_count = cloth->topology.vertex_count,
                                      .edge_count = cloth->topology.edge_count,
                                      .triangle_count = cloth->topology.triangle_count,
@@ -128,13 +130,13 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .open_seams = cloth->seams.pair_count,
                                      .time_s = cloth->time_s,
                                      .max_speed = tl_cloth_max_speed(cloth),
-                                     .max_strain = tl_cloth_max_strain(cloth),
-                                     .rms_strain = rms_strain(cloth),
+                                     .max_strain = tl_cloth_max_strain(moved),
+                                     .rms_strain = rms_strain(moved),
                                      .critical_step_s = cloth->critical_step,
                                      .substep_s = tl_cloth_substep(cloth),
                                      .unconverged_steps = cloth->tally.unconverged,
                                      .shortened_steps = cloth->tally.shortened,
-                                     .caught_count = cloth->contacts.caught_count,
+                                     .caught_count = moved->contacts.caught_count,
                                      .settled = cloth->settled};
     struct tl_energies energies = tl_cloth_energies(cloth);
     report.kinetic_energy = energies.kinetic;

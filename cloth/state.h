@@ -44,10 +44,11 @@ struct tl_cloth {
     double time_s;
     struct tl_coarser *cage; /* caged.c; NULL: not made yet */
     void (*destroy_cage)(struct tl_coarser **cage);
-    bool has_no_cage;     /* none can be made */
-    bool cage_is_current; /* it is where the cloth is, and set as the cloth is */
-    bool was_caged;       /* a cage has moved the cloth since its contacts were found */
-    vec3d cage_grab;      /* m, from the grabbed vertex to the cage's */
+    const tl_cloth *caged_cloth; /* of the cage */
+    bool has_no_cage;            /* none can be made */
+    bool cage_is_current;        /* it is where the cloth is, and set as the cloth is */
+    bool was_caged;              /* a cage has moved the cloth since its contacts were found */
+    vec3d cage_grab;             /* m, from the grabbed vertex to the cage's */
     uint64_t cage_revision;
     bool settled;
     double unsettled_speed;     /* m/s, when the time for settling ended before rest; else 0 */
