@@ -59,7 +59,7 @@ static const struct tl_option cloth_rows[] = {
     TL_OPTION_BOOL(struct tl_cloth_params, cages, AFFECTS,
                    "settles coarser versions of a fine cloth first, from which it comes to rest sooner"),
     TL_OPTION_INT(struct tl_cloth_params, caged_above, AFFECTS, 0, 1000000000, "",
-                  "cloth of more vertices is moved by a cage of 5,000, and itself only settles; 0: none is"),
+                  "cloth of more vertices is moved by a cage of 3,000, and itself only settles; 0: none is"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, TL_AFFECTS_SCENE | AFFECTS | TL_AFFECTS_WORK, 0.001f, 1,
                     "m", "target edge length of built-in garments; larger: coarser, faster"),
     TL_OPTION_ENUM(struct tl_cloth_params, rest, TL_AFFECTS_SCENE | AFFECTS, tl_rest_names,
