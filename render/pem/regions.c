@@ -68,3 +68,17 @@ vec3s tl_region_direction(const struct tl_regions *regions, int i, float u, floa
     return glms_vec3_normalize(tl_cube_direction(line / size, ((float)x + within) / (float)size,
                                                  ((float)(line % size) + v) / (float)size));
 }
+
+/* `u` alone chooses the texel, so it must be even by itself: steps of the golden ratio are the evenest.
+ * (Those of the plastic number, 0.7549 and 0.5698, are even in the square, but 0.7549 is nearly 3/4: sixteen
+ * of them lie in four heaps.) `v` matters in a region of a few texels. Its step, that of the square root of
+ * 3, is even in the square beside the other. Fixed point: exact at any n. */
+vec3s tl_region_sample(const struct tl_regions *regions, int i, uint32_t n)
+{
+    const uint32_t step_u = 2654435769u, step_v = 3144134277u;
+    uint32_t hash = ((uint32_t)i + 1) * 0x9e3779b1u;
+    hash = (hash ^ hash >> 15) * 0x85ebca77u;
+    const uint32_t u = hash + n * step_u, v = (hash ^ hash >> 13) * 0xc2b2ae3du + n * step_v;
+    const float unit = 1.0f / (1 << 24);
+    return tl_region_direction(regions, i, (float)(u >> 8) * unit, (float)(v >> 8) * unit);
+}

@@ -71,5 +71,8 @@ void tl_regions_release(struct tl_regions *regions);
  * give neighbouring texels, so that stratified u cover the region evenly. Unit, in the environment's frame.
  * If the region is empty, its own direction. */
 vec3s tl_region_direction(const struct tl_regions *regions, int i, float u, float v);
+/* Direction number n of a sequence that covers the light of region i evenly after any number of terms. Every
+ * region begins at a place of its own, so that no two jitter in step. */
+vec3s tl_region_sample(const struct tl_regions *regions, int i, uint32_t n);
 
 #endif

@@ -176,22 +176,9 @@ struct tl_region_view tl_region_view_make(vec3s direction, const struct tl_caste
     };
 }
 
-/* The fractional part, in [0, 1). */
-static float fraction(double x)
-{
-    return fminf((float)(x - floor(x)), 0x1.fffffep-1f);
-}
-
-/* Rounds follow the additive sequence of the plastic number [Roberts 2018], which is even over any number of
- * rounds; each region begins at a place of its own, so that no two jitter in step. */
 vec3s tl_region_seen_direction(const struct tl_regions *regions, int i, int round)
 {
-    const double step_u = 0.7548776662466927, step_v = 0.5698402909980532; /* 1 / p and 1 / p^2 */
-    if (round == 0)
-        return regions->items[i].direction;
-    double begin_u = 0.5 + i * 0.6180339887498949, begin_v = 0.5 + i * 0.4142135623730950;
-    return tl_region_direction(regions, i, fraction(begin_u + round * step_u),
-                               fraction(begin_v + round * step_v));
+    return round == 0 ? regions->items[i].direction : tl_region_sample(regions, i, (uint32_t)round);
 }
 
 void tl_shadow_maps_forget(tl_shadow_maps *maps)

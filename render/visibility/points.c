@@ -2,7 +2,6 @@
 
 #include "config/memory.h"
 #include "config/simd.h"
-#include "render/trace/spread.h"
 #include "render/visibility/cache_probes.h"
 #include "render/visibility/maps.h"
 #include "render/visibility/ray_origins.h"
@@ -322,6 +321,7 @@ static void resolve_taps(tl_points *points)
         }
 }
 
+/* In motion all points share the directions of a frame: one a region differs visibly from another. */
 static vec3s *jitter_directions(const tl_points *points, const struct tl_points_request *request)
 {
     int count = request->regions->count, rays = request->params->rays;
@@ -329,8 +329,8 @@ static vec3s *jitter_directions(const tl_points *points, const struct tl_points_
 #pragma omp parallel for
     for (int i = 0; i < count; i++)
         for (int k = 0; k < rays; k++) {
-            vec2s at = tl_spread((uint32_t)i, points->frame * (uint32_t)rays + (uint32_t)k);
-            vec3s direction = tl_region_direction(request->regions, i, at.x, at.y);
+            const uint32_t number = points->frame * (uint32_t)rays + (uint32_t)k;
+            vec3s direction = tl_region_sample(request->regions, i, number);
             directions[i * rays + k] = tl_turn_direction(direction, request->environment_yaw);
         }
     return directions;
@@ -365,7 +365,8 @@ static bool begin_point(tl_points *points, size_t point)
 static struct tl_cluster open_cluster(tl_points *points, size_t number, const struct tl_refresh *refresh)
 {
     size_t slot = points->slots[number], first = slot * TL_CLUSTER;
-    struct tl_cluster cluster = {.probes = points->probes.items + number * TL_CLUSTER,
+    struct tl_cluster cluster = {.number = number,
+                                 .probes = points->probes.items + number * TL_CLUSTER,
                                  .members = visible_members(points, number),
                                  .values = points->values + first * points->stride,
                                  .weights = points->weights + first * points->stride,
@@ -568,7 +569,8 @@ static bool takes_whole_rounds(const struct tl_points_request *request)
 
 static void trace_all(tl_points *points, const struct tl_points_request *request)
 {
-    vec3s centres[TL_REGIONS_MAX], *directions = jitter_directions(points, request);
+    const bool is_shared = request->moved && !request->whole_rounds;
+    vec3s centres[TL_REGIONS_MAX], *directions = is_shared ? jitter_directions(points, request) : NULL;
     float importances[TL_REGIONS_MAX];
     for (int i = 0; i < request->regions->count; i++) {
         const struct tl_region *region = &request->regions->items[i];

@@ -1,6 +1,7 @@
 #include "render/visibility/refresh.h"
 
 #include "config/simd.h"
+#include "render/env/cube.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,6 +17,12 @@
  * regions traced in a frame is chosen because it is late, or important ones would wait for all late ones. */
 #define LATE_ROUNDS 4
 #define LATE_SHARE  4
+
+/* At rest clusters take turns with so many runs of directions, which follow one another in each region's
+ * sequence, a round after the other however many frames lie between. If all points looked in the same
+ * directions, what these miss of a region would be missing everywhere: after 16 rounds 0.1 to 0.3 % of the
+ * image's mean. So neighbouring clusters err each by themselves. */
+#define DIRECTION_RUNS 16
 
 /* Weights of directions are kept in sixteen bits: a thousand rounds fill them, and from then on the mean is a
  * running one. */
@@ -270,14 +277,26 @@ static void store(const struct tl_refresh *refresh, const struct tl_cluster *clu
     }
 }
 
+static vec3s direction_of(const struct tl_refresh *refresh, const struct tl_cluster *cluster, int region,
+                          int round, int ray)
+{
+    const struct tl_points_request *request = refresh->request;
+    const int rays = request->params->rays, run = rays * request->params->rounds;
+    if (refresh->directions)
+        return refresh->directions[region * rays + ray];
+    const uint32_t first = (uint32_t)(cluster->number % DIRECTION_RUNS) * (uint32_t)run;
+    const uint32_t number = first + (uint32_t)(round * rays + ray);
+    return tl_turn_direction(tl_region_sample(request->regions, region, number), request->environment_yaw);
+}
+
 static size_t trace_region(const struct tl_refresh *refresh, const struct tl_cluster *cluster,
-                           const struct cluster_lanes *lanes, uint32_t lanes_wanted, int region)
+                           const struct cluster_lanes *lanes, uint32_t lanes_wanted, int region, int round)
 {
     int ray_count = refresh->request->params->rays;
     struct glance glance = {0};
     size_t rays = 0;
     for (int k = 0; k < ray_count; k++)
-        rays += look(refresh, lanes, lanes_wanted, refresh->directions[region * ray_count + k], &glance);
+        rays += look(refresh, lanes, lanes_wanted, direction_of(refresh, cluster, region, round, k), &glance);
     store(refresh, cluster, lanes_wanted, region, &glance);
     return rays;
 }
@@ -301,7 +320,9 @@ size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_clus
         uint32_t lanes_wanted = selected[i] ? cluster->members : cluster->fresh;
         if (!lanes_wanted)
             continue;
-        rays += trace_region(refresh, cluster, &lanes, lanes_wanted, i);
+        /* Until it has a round of its own, a new member sees what none of these rounds does. */
+        const int round = selected[i] ? cluster->rounds[i] : refresh->request->params->rounds;
+        rays += trace_region(refresh, cluster, &lanes, lanes_wanted, i, round);
         if (lanes_wanted == cluster->members)
             cluster->stamps[i] = refresh->frame;
         cluster->rounds[i] = (uint16_t)(cluster->rounds[i] + (selected[i] && counts));
@@ -309,15 +330,16 @@ size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_clus
     return rays;
 }
 
-size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
-                       int count, uint16_t *values, uint16_t *weights)
+size_t tl_places_trace(const struct tl_refresh *refresh, size_t bundle, int round, const vec3s *origins,
+                       const vec3s *normals, int count, uint16_t *values, uint16_t *weights)
 {
     struct cluster_lanes lanes = {.members = (1u << count) - 1};
-    const struct tl_cluster cluster = {.members = lanes.members, .values = values, .weights = weights};
+    const struct tl_cluster cluster = {
+        .number = bundle, .members = lanes.members, .values = values, .weights = weights};
     size_t rays = 0;
     for (int i = 0; i < count; i++)
         set_lane(&lanes, i, origins[i], normals[i]);
     for (int i = 0; i < refresh->request->regions->count; i++)
-        rays += trace_region(refresh, &cluster, &lanes, lanes.members, i);
+        rays += trace_region(refresh, &cluster, &lanes, lanes.members, i, round);
     return rays;
 }

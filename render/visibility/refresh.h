@@ -10,7 +10,7 @@
 struct tl_refresh {
     const struct tl_points_request *request;
     size_t stride;            /* of values, and of the arrays by region */
-    const vec3s *directions;  /* [regions][params->rays]: jittered, world */
+    const vec3s *directions;  /* [regions][params->rays]: of all clusters, world; NULL: each has its own */
     const vec3s *centres;     /* [regions]: world */
     const float *importances; /* [regions] */
     float offset_m;           /* where rays start above their surface */
@@ -28,6 +28,7 @@ struct tl_refresh {
 
 /* A cluster in use. */
 struct tl_cluster {
+    size_t number;                       /* chooses its directions at rest */
     const struct tl_cache_probe *probes; /* TL_CLUSTER of them */
     uint32_t members;                    /* bit i: probe i is visible */
     uint32_t fresh;                      /* bit i: ... and holds nothing of use yet: every region is traced */
@@ -46,9 +47,10 @@ size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_clus
 /* The smallest number of rounds that any region has had at rest. */
 int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster);
 
-/* Traces all regions from up to TL_CLUSTER places that are not cached points, `normals` on the visible side.
- * `values` and `weights` are [count][stride]. Returns the number of rays. */
-size_t tl_places_trace(const struct tl_refresh *refresh, const vec3s *origins, const vec3s *normals,
-                       int count, uint16_t *values, uint16_t *weights);
+/* Traces a round of all regions from bundle number `bundle` of up to TL_CLUSTER places that are not cached
+ * points, `normals` on the visible side. `values` and `weights` are [count][stride]. Returns the number of
+ * rays. */
+size_t tl_places_trace(const struct tl_refresh *refresh, size_t bundle, int round, const vec3s *origins,
+                       const vec3s *normals, int count, uint16_t *values, uint16_t *weights);
 
 #endif

@@ -150,7 +150,8 @@ static size_t trace_bundle(const struct tl_repair *repair, const struct tl_refre
         starts[count] = origins->points[repair->samples[i]];
         normals[count] = refresh->request->samples->items[repair->samples[i]].smooth;
     }
-    return tl_places_trace(refresh, starts, normals, count, values + row, weights + row);
+    return tl_places_trace(refresh, bundle, repair->rounds, starts, normals, count, values + row,
+                           weights + row);
 }
 
 size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refresh,

@@ -420,6 +420,46 @@ static void stratified_samples_cover_evenly(void **state)
     tl_cube_release(&cube);
 }
 
+/* The share of region i's light in the texels before the one in this direction. */
+static float place_in_region(const struct tl_regions *regions, int i, vec3s direction)
+{
+    const uint32_t texel = (uint32_t)tl_cube_texel(regions->size, direction);
+    for (uint32_t k = regions->first[i]; k < regions->first[i + 1]; k++)
+        if (regions->texels[k] == texel)
+            return k > regions->first[i] ? regions->cumulative[k - 1] : 0;
+    fail_msg("a direction outside of its region");
+    return 0;
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of any n terms in turn of the golden ratio's sequence the largest gap is less than 1.9 / n, beside a
+ * texel's share. (Of 16 of the plastic number's: 0.2.) */
+static void sequences_are_even(void **state)
+{
+    (void)state;
+    enum { TERMS = 16 };
+    tl_cube cube = cube_of(64, smooth);
+    struct tl_regions regions = {0};
+    tl_regions_cut_sphere(&cube, 24, &regions);
+    for (int i = 0; i < 24; i++)
+        for (uint32_t first = 0; first < 200; first += 7) {
+            float places[TERMS + 1];
+            for (uint32_t n = 0; n < TERMS; n++)
+                places[n] = place_in_region(&regions, i, tl_region_sample(&regions, i, first + n));
+            qsort(places, TERMS, sizeof *places, compare_floats);
+            places[TERMS] = places[0] + 1;
+            for (int n = 0; n < TERMS; n++)
+                assert_true(places[n + 1] - places[n] < 1.9f / TERMS + 0.01f);
+        }
+    tl_regions_release(&regions);
+    tl_cube_release(&cube);
+}
+
 /* Root mean square angle between a texel's direction and the centroid of its region, in degrees, weighted by
  * luminance and by solid angle: what one number for each region loses. */
 static void measure_quantisation(const struct tl_regions *regions, double degrees[2])
@@ -496,6 +536,7 @@ int main(void)
         cmocka_unit_test(spread_is_the_mean_square_angle),
         cmocka_unit_test(directions_are_sampled_by_luminance),
         cmocka_unit_test(stratified_samples_cover_evenly),
+        cmocka_unit_test(sequences_are_even),
         cmocka_unit_test(the_sphere_loses_less_than_the_faces),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

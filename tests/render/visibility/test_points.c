@@ -254,6 +254,46 @@ static void values_converge_to_brute_force(void **state)
     stage_close(&stage);
 }
 
+/* The relative error of all light that arrives at all points, root mean square over some regions' beginnings:
+ * that of the image's mean, which does not fall with the number of points where all look in the same
+ * directions. */
+static double measure_mean_error(struct stage *stage, int trials)
+{
+    double squares = 0;
+    for (int trial = 0; trial < trials; trial++) {
+        double all = 0, wrong = 0;
+        move_sheet(stage, 0.1f * (float)trial);
+        refresh_scene(stage);
+        step(stage, true);
+        while (!tl_points_are_done(stage->points))
+            step(stage, false);
+        for (size_t s = 0; s < stage->samples.count; s += 5)
+            for (int i = 0; i < stage->regions.count; i++) {
+                float arriving, truth = true_value(stage, s, 0, i, 256, &arriving);
+                const double light = (double)(arriving * stage->regions.items[i].importance);
+                wrong += light * ((double)value_at(stage, s, 0, i) - (double)truth);
+                all += light * (double)truth;
+            }
+        squares += wrong / all * wrong / all;
+    }
+    return sqrt(squares / trials);
+}
+
+/* A hundred clusters with sixteen runs of sixteen rounds. What came out: 0.10 %; 0.29 % where all clusters
+ * have the same run, and 1.00 % where that is of the plastic number, too. */
+static void points_err_by_themselves(void **state)
+{
+    (void)state;
+    struct stage stage;
+    stage_open(&stage, 24);
+    stage.params.rounds = 16;
+    stage.request.whole_rounds = true;
+    const double error = measure_mean_error(&stage, 6);
+    printf("mean error of all points: %.3f %%\n", 100 * error);
+    assert_true(error < 0.0015);
+    stage_close(&stage);
+}
+
 static void taps_are_the_samples_corners(void **state)
 {
     (void)state;
@@ -383,8 +423,11 @@ static void rest_is_spread_over_frames(void **state)
     assert_true(frames[1] <= ROUNDS + 1);
     assert_true(frames[0] > 2 * frames[1]);
     double error = measure_error(&spread, 256);
-    assert_true(error < 0.072);
-    assert_true(error < 1.2 * measure_error(&whole, 256));
+    /* What came out is 0.040 and 0.033. That of directions by the plastic number, whose first sixteen lie in
+     * four heaps, was 0.056 and 0.055. Spread over frames, samples are chosen for repair after fewer rounds.
+     */
+    assert_true(error < 0.048);
+    assert_true(error < 1.3 * measure_error(&whole, 256));
     for (int i = 0; i < 2; i++) {
         step(both[i], false);
         assert_int_equal(tl_points_report(both[i]->points).rays, 0);
@@ -767,6 +810,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(values_converge_to_brute_force),
+        cmocka_unit_test(points_err_by_themselves),
         cmocka_unit_test(taps_are_the_samples_corners),
         cmocka_unit_test(every_region_has_its_turn),
         cmocka_unit_test(importance_waits_its_turn),
