@@ -123,7 +123,8 @@ void tl_trade_write_memory(const tl_environment *environment, FILE *out)
         tl_cells_add(&cells, "%.1f", row->pems_mb[0]);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_cubes(row->regions, size) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_chains(row->regions, size) / MEBIBYTE);
-        tl_cells_add(&cells, "%.2f", (double)tl_memory_paraboloids(&cube, &regions) / MEBIBYTE);
+        tl_cells_add(&cells, "%.2f",
+                     (double)tl_memory_paraboloids(&cube, &regions, TL_CHAIN_SQRT_COSINE, 12) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", row->maps_mb[2]);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_shadow_maps(row->regions, map, 8) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_shadow_maps(row->regions, map, 4) / MEBIBYTE);
