@@ -7,11 +7,11 @@
 #include <string.h>
 
 /* A box in the plane of p. */
-struct box {
+struct plane_box {
     float low[2], high[2]; /* empty when low > high */
 };
 
-static const struct box box_empty = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+static const struct plane_box box_empty = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
 
 static void project(const struct tl_paraboloid *map, vec3s unit, float p[2])
 {
@@ -44,7 +44,7 @@ static void set_frame(const struct tl_region *region, struct tl_paraboloid *map)
 /* Adds the part of the sphere that the hat of a texel covers: it ends at the centres of its neighbours.
  * Across an edge of the cube it ends a little elsewhere than on the continued plane of the face; see MARGIN.
  */
-static void add_hat(const struct tl_paraboloid *map, int size, int texel, struct box *box)
+static void add_hat(const struct tl_paraboloid *map, int size, int texel, struct plane_box *box)
 {
     int face = texel / (size * size), y = texel / size % size, x = texel % size;
     for (int i = 0; i < 9; i++) {
@@ -79,7 +79,7 @@ static float reach_of(int size, int level)
 }
 
 /* Texels of a box that is widened by an angle on all sides; more than any cube has if it is too wide. */
-static float widened_texels(const struct box *box, float reach, float density)
+static float widened_texels(const struct plane_box *box, float reach, float density)
 {
     float texels = 1;
     for (int axis = 0; axis < 2; axis++) {
@@ -91,9 +91,9 @@ static float widened_texels(const struct box *box, float reach, float density)
     return texels;
 }
 
-static struct box *box_regions(const tl_cube *cube, const struct tl_regions *regions)
+static struct plane_box *box_regions(const tl_cube *cube, const struct tl_regions *regions)
 {
-    struct box *boxes = TL_NEW_ARRAY(struct box, (size_t)regions->count);
+    struct plane_box *boxes = TL_NEW_ARRAY(struct plane_box, (size_t)regions->count);
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < regions->count; i++) {
         struct tl_paraboloid map = {0};
@@ -108,7 +108,7 @@ static struct box *box_regions(const tl_cube *cube, const struct tl_regions *reg
 
 int tl_paraboloid_levels(const tl_cube *cube, const struct tl_regions *regions)
 {
-    struct box *boxes = box_regions(cube, regions);
+    struct plane_box *boxes = box_regions(cube, regions);
     int level = 0;
     for (; level < TL_PARABOLOID_LEVELS_MAX && cube->size >> level > 1; level++) {
         float side = (float)(cube->size >> level), texels = 0;
@@ -129,7 +129,7 @@ int tl_paraboloid_levels(const tl_cube *cube, const struct tl_regions *regions)
 static struct tl_paraboloid_crop find_crop(const struct tl_paraboloid *map, const tl_cube *level,
                                            float density)
 {
-    struct box box = box_empty;
+    struct plane_box box = box_empty;
     for (size_t i = 0; i < 6 * (size_t)level->size * (size_t)level->size; i++)
         if (is_lit(level, i))
             add_hat(map, level->size, (int)i, &box);

@@ -360,16 +360,42 @@ static void add_pem_level(const struct tl_resources *inside, const struct tl_cha
     free(sums);
 }
 
+static bool has_pems(const struct tl_checked *checked)
+{
+    return is_time(checked) && has(checked, TL_MADE_PEMS) &&
+           tl_renderer_frame_resources(checked->renderer)->pems.count > 0;
+}
+
 void tl_measure_pems(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!is_time(checked) || !has(checked, TL_MADE_PEMS) ||
-        tl_renderer_frame_resources(checked->renderer)->pems.count == 0)
+    if (!has_pems(checked))
         return;
     const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter);
-    if (whole.level_count >
-        1) /* the first level is cut, not filtered, and takes four times as long to read */
-        add_pem_level(inside, &whole, 1, finding);
-    add_pem_level(inside, &whole, whole.level_count - 1, finding);
+    int finest = inside->pems.cube_level;
+    /* The first level of all is cut, not filtered, and takes four times as long to read. */
+    finest = finest == 0 && whole.level_count > 1 ? 1 : finest;
+    add_pem_level(inside, &whole, finest, finding);
+    if (finest < whole.level_count - 1)
+        add_pem_level(inside, &whole, whole.level_count - 1, finding);
     tl_chain_release(&whole);
+}
+
+/* Filters keep a region's light nearly, and so does sampling what they made of it. */
+void tl_measure_paraboloids(const struct tl_checked *checked, struct tl_finding *finding)
+{
+    if (!has_pems(checked))
+        return;
+    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
+    int level = inside->pems.cube_level > 1 ? 1 : 0;
+    for (int i = 0; i < inside->pems.count && inside->pems.cube_level > 0; i++) {
+        tl_cube pem = tl_pems_read(&inside->pems, i, level);
+        struct power got = power_of_cube(&pem);
+        vec3s power = inside->regions.items[i].power;
+        double light = (double)(power.x + power.y + power.z);
+        double off = fabs(got.rgb[0] + got.rgb[1] + got.rgb[2] - light);
+        if (tl_finding_add(finding, light > 0 ? off / light : off))
+            tl_finding_place(finding, "region %d of %d, level %d", i, inside->pems.count, level);
+        tl_cube_release(&pem);
+    }
 }
