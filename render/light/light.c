@@ -18,12 +18,12 @@ enum {
     ALREADY_THERE,
     MAP_LIMITS,
     GROUND_DISC,
-    CUBE_LEVEL
+    PARABOLOID_DENSITY
 };
 enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
 /* Texture units; the G-buffer's layers without the triangles come first. */
 enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
-/* The program of chains whose fine levels are paraboloids. */
+/* The program of chains that are paraboloid maps. */
 #define PARABOLOIDS TL_LIGHT_SOURCES
 /* Values of the uniform in regions.frag. */
 enum composition { SUM, DIFFERENCE, RATIO, OCCLUSION, OCCLUSION_COLOUR, UNSHADOWED };
@@ -300,14 +300,15 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     const struct tl_pems *pems = request->pems;
     bool shadowed = params->method != TL_METHOD_UNSHADOWED, exact_first = begins_exact(params);
     const tl_program *program =
-        program_of(lighting, gpu, pems->maps ? PARABOLOIDS : TL_LIGHT_CHAIN,
+        program_of(lighting, gpu, pems->paraboloids ? PARABOLOIDS : TL_LIGHT_CHAIN,
                    shadowed ? (enum tl_visibility)params->visibility : TL_VISIBILITY_RAYS, error);
     if (!program || (exact_first && !draw_regions(lighting, gpu, request, TL_LIGHT_EXACT, error)))
         return false;
     use_program(program, request);
     glUniform1f(PEM_SCALE, pems->scale);
-    if (pems->maps)
-        glUniform1i(CUBE_LEVEL, pems->cube_level);
+    if (pems->paraboloids)
+        glUniform2i(PARABOLOID_DENSITY, tl_paraboloid_density(pems->size, 0),
+                    pems->paraboloids[0].level_count);
     glUniform1f(ALREADY_THERE, params->composition == TL_COMPOSE_DIFFERENCE ? 1 : 0);
     glBindTextureUnit(LEVELS_UNIT, request->lobe_levels->id);
     for (int pass = 0; pass < pems->array_count; pass++) {

@@ -32,7 +32,7 @@ bool tl_light_needs_exact(const struct tl_light_params *params);
  * with GL has two. */
 bool tl_light_is_composed(const struct tl_light_params *params);
 
-/* Programs: one a source, and another one for chains whose fine levels are paraboloids. */
+/* Programs: one a source, and another one for chains that are paraboloid maps. */
 #define TL_LIGHT_PROGRAMS  (TL_LIGHT_SOURCES + 1)
 #define TL_LIGHT_MAP_KINDS 3 /* enum tl_visibility, none instead of rays */
 

@@ -42,22 +42,21 @@ size_t tl_memory_shadow_maps(int regions, int size, size_t texel_bytes)
 size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions,
                              enum tl_chain_filter filter, int per_array)
 {
-    int levels = tl_paraboloid_levels(cube, regions);
     struct tl_paraboloid *maps = TL_NEW_ARRAY(struct tl_paraboloid, (size_t)regions->count);
 #pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < regions->count; i++) {
         tl_cube cut = tl_pem_cut(cube, regions, i);
         struct tl_chain chain = tl_chain_build(&cut, filter);
-        maps[i] = tl_paraboloid_place(&regions->items[i], &chain, levels);
+        maps[i] = tl_paraboloid_place(&chain);
         tl_chain_release(&chain);
         tl_cube_release(&cut);
     }
     size_t texels = 0;
-    for (int first = 0; first < regions->count && levels > 0; first += per_array) {
+    for (int first = 0; first < regions->count; first += per_array) {
         int left = regions->count - first, width, height;
-        tl_paraboloids_pack(&maps[first], left < per_array ? left : per_array, levels, &width, &height);
+        tl_paraboloids_pack(&maps[first], left < per_array ? left : per_array, &width, &height);
         texels += (size_t)width * (size_t)height;
     }
     free(maps);
-    return texels * RGBA16F_BYTES + tl_memory_chains(regions->count, cube->size >> levels);
+    return texels * RGBA16F_BYTES;
 }

@@ -28,9 +28,8 @@ size_t tl_memory_chains(int regions, int size);
 /* Bytes of `regions` shadow maps. */
 size_t tl_memory_shadow_maps(int regions, int size, size_t texel_bytes);
 
-/* The paper's proposal as pem/pems.h keeps it: cropped paraboloid maps of the fine levels, packed into one
- * texture for every `per_array` regions, and cubes of the coarse levels. RGBA16F. Filters the regions, since
- * the crops are those of what they become. */
+/* The paper's proposal as pem/pems.h keeps it: cropped paraboloid maps, those of `per_array` regions in one
+ * texture. RGBA16F. Filters the regions, since the crops are those of what they become. */
 size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions,
                              enum tl_chain_filter filter, int per_array);
 

@@ -1,28 +1,25 @@
-/* The fine levels of PEMs as paraboloid maps, cropped to what is not black [002, section 6].
+/* PEMs as parts of dual paraboloid maps, cropped to what is not black [002, section 6].
  *
- * A unit direction d lies at p = (d.right, d.up) / (1 + d.direction) of a frame: p is tan(a / 2) long at the
- * angle a from the frame's direction. Level l of a cube of `size` texels a face is sampled on a lattice of
- * TL_PARABOLOID_DENSITY x (size >> l) texels a unit of p, at its centre that many times as dense as the
- * centre of a face. Texel i of the lattice is centred at (i + 0.5) / density on either axis.
+ * A unit direction d lies in chart 0 if d.z >= 0, else in chart 1, at p = d.xy / (1 + |d.z|), within the unit
+ * disc: the paraboloids of env/layout.h. Level l of a cube of `size` texels a face is sampled on a lattice of
+ * tl_paraboloid_density(size, l) texels a unit of p. Texel i of the lattice is centred at (i + 0.5) / density on
+ * either axis; one texel beyond the disc is part of it, so that fetches at the rim are bilinear, too.
  *
- * Maps of the regions of one face have one frame, the face's. Their texels coincide, so that the maps of
- * neighbours add up to the map of both: with a frame for each region a constant environment is off by twice
- * as much, in lines along all borders of regions instead of the edges of the cube. Regions of a cut of the
- * sphere have frames of their own.
- *
- * The filtered region is wider than the region by the reach of the filter. A level is stored as paraboloids
- * while these take fewer texels than cubes; coarser levels, whose lobes are about as wide as half the sphere,
- * stay cubes. Pure; threads: any. */
+ * All regions share both charts, and each keeps the boxes of texels that its light, as the filters have spread it,
+ * reaches in them. So the maps of all regions add up to the map of the whole environment, texel by texel, and a
+ * constant stays constant. (With charts about the centre of each region their lattices differ: at the density
+ * chosen here a constant was off by 1 % root mean square and by up to 29 % of it along all borders of regions.)
+ * The widest lobes reach everywhere, and their maps are whole. Pure; threads: any. */
 #ifndef TOILE_RENDER_PEM_PARABOLOIDS_H
 #define TOILE_RENDER_PEM_PARABOLOIDS_H
 
 #include "render/pem/chain.h"
-#include "render/pem/regions.h"
 
-#define TL_PARABOLOID_LEVELS_MAX 7
-#define TL_PARABOLOID_DENSITY    2
+#define TL_PARABOLOID_CHARTS     2
+#define TL_PARABOLOID_LEVELS_MAX 10 /* of cubes of 512 texels */
 
-/* Part of a lattice; its outermost texels are black. Width 0: the level is black. */
+/* Part of a lattice. The light ends within its outermost texels, unless these are the lattice's. Width 0: nothing
+ * of the chart is lit. */
 struct tl_paraboloid_crop {
     int x0, y0, width, height; /* first texel of the lattice; texels */
     int atlas_x, atlas_y;      /* first texel in the texture that holds it; set by tl_paraboloids_pack */
@@ -30,28 +27,29 @@ struct tl_paraboloid_crop {
 
 /* The maps of one region. */
 struct tl_paraboloid {
-    vec3s right, up, direction; /* environment's frame, unit */
-    struct tl_paraboloid_crop crops[TL_PARABOLOID_LEVELS_MAX];
+    int level_count;
+    struct tl_paraboloid_crop crops[TL_PARABOLOID_LEVELS_MAX][TL_PARABOLOID_CHARTS];
 };
 
 /* Texels a unit of p. */
-float tl_paraboloid_density(int size, int level);
+int tl_paraboloid_density(int size, int level);
 
-/* The number of levels that are stored as paraboloids, estimated from the lit texels of all regions and the
- * reach of the filters; 0 to TL_PARABOLOID_LEVELS_MAX, and fewer than the chain has. */
-int tl_paraboloid_levels(const tl_cube *cube, const struct tl_regions *regions);
+/* The crops of a region whose filtered levels are `chain`. */
+struct tl_paraboloid tl_paraboloid_place(const struct tl_chain *chain);
+/* Samples a level of the chain: [height][width][3] of its crop, owned by the caller; NULL where it is black. */
+float *tl_paraboloid_sample(const struct tl_paraboloid *map, const struct tl_chain *chain, int level,
+                            int chart);
 
-/* Frame and crops of a region whose filtered levels are `chain`. */
-struct tl_paraboloid tl_paraboloid_place(const struct tl_region *region, const struct tl_chain *chain,
-                                         int levels);
-/* Samples a level of the chain: [height][width][3] of its crop, owned by the caller; NULL where it is black.
- */
-float *tl_paraboloid_sample(const struct tl_paraboloid *map, const struct tl_chain *chain, int level);
-/* Bilinear fetch from such texels, black outside of the crop. */
-vec3s tl_paraboloid_fetch(const struct tl_paraboloid *map, int level, float density, const float *texels,
-                          vec3s direction);
+/* Chart and point of a unit direction. */
+int tl_paraboloid_project(vec3s direction, float p[2]);
+/* Bilinear fetch at p from the texels of a crop, black outside of it. */
+vec3s tl_paraboloid_fetch(const struct tl_paraboloid_crop *crop, int density, const float *texels,
+                          const float p[2]);
+/* Fetches those texels of a cube, at their centres, that lie in the chart. */
+void tl_paraboloid_resample(const struct tl_paraboloid_crop *crop, int density, const float *texels, int chart,
+                            const tl_cube *out);
 
 /* Places the crops of some maps side by side in one texture of width x height texels, at least 1 x 1. */
-void tl_paraboloids_pack(struct tl_paraboloid *maps, int count, int levels, int *width, int *height);
+void tl_paraboloids_pack(struct tl_paraboloid *maps, int count, int *width, int *height);
 
 #endif

@@ -1,6 +1,5 @@
-/* The PEMs on the GPU: one filtered cube map per region [002, section 4], several in each cube map array; or,
- * as the paper proposes, cropped paraboloid maps for the fine levels (paraboloids.h), those of each array in
- * one texture, and cube maps for the coarse ones alone. paraboloids.glsl reads the latter.
+/* The PEMs on the GPU: one filtered cube map per region [002, section 4], several in each cube map array; or, as
+ * the paper proposes, cropped paraboloid maps (paraboloids.h), those of several regions in one texture.
  *
  * RGBA16F, as in the paper. A sun beyond the range of half floats is preserved: all values are stored
  * multiplied by one power of two for the whole environment, which costs no precision, and the light pass
@@ -10,6 +9,7 @@
 
 #include "render/gpu/gpu.h"
 #include "render/pem/paraboloids.h"
+#include "render/pem/regions.h"
 
 #define TL_PEM_TEXEL_BYTES 8
 #define TL_PEM_STORED_MAX                                                                                    \
@@ -23,12 +23,12 @@ struct tl_pem_storage {
 };
 
 struct tl_pems {
-    int count, per_array, array_count, size;
+    int count, per_array, array_count;
+    int size;           /* texels a face of the cube */
     float scale;        /* radiance = scale x stored */
-    int cube_level;     /* the level of the chain that is level 0 of the cubes: those below are paraboloids */
-    tl_texture *arrays; /* cube map arrays, per_array cubes each; the last one fewer */
-    tl_texture *maps;   /* one an array: the paraboloid maps of its regions; NULL: there are none */
-    struct tl_paraboloid *paraboloids; /* by region */
+    tl_texture *arrays; /* cube map arrays, per_array cubes each, the last one fewer; or the textures that hold as
+                           many regions' paraboloid maps */
+    struct tl_paraboloid *paraboloids; /* by region; NULL: these are cubes */
     unsigned buffer;                   /* GL name: what the shader knows of them */
 };
 
@@ -36,7 +36,7 @@ struct tl_pems {
  * parallel; the result does not depend on the number of threads. */
 void tl_pems_build(struct tl_pems *pems, tl_gpu *gpu, const tl_cube *cube, const struct tl_regions *regions,
                    int filter, struct tl_pem_storage storage);
-/* Binds the textures of an array, the cubes to `unit`. */
+/* Binds an array: cubes to `unit`, paraboloid maps to that of paraboloids.glsl, with their buffer. */
 void tl_pems_bind(const struct tl_pems *pems, int array, unsigned unit);
 void tl_pems_release(struct tl_pems *pems);
 size_t tl_pems_bytes(const struct tl_pems *pems); /* of the textures */

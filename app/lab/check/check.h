@@ -19,7 +19,7 @@ struct tl_invariant {
 };
 
 extern const struct tl_invariant tl_invariants[];
-enum { TL_INVARIANTS_MAX = 48 };
+enum { TL_INVARIANTS_MAX = 40 };
 extern const size_t tl_invariant_count;
 
 /* The worst of all frames so far, by invariant. */

@@ -336,13 +336,28 @@ void tl_measure_slices(const struct tl_checked *checked, struct tl_finding *find
     free(light);
 }
 
+/* A level of the undivided cube, as it is stored: paraboloid maps are fetched at the centres of its texels. */
+static tl_cube whole_level(const struct tl_pems *pems, const struct tl_chain *whole, int level)
+{
+    tl_cube out = tl_cube_copy(&whole->levels[level]);
+    const struct tl_paraboloid map = tl_paraboloid_place(whole);
+    for (int chart = 0; chart < TL_PARABOLOID_CHARTS && pems->paraboloids; chart++) {
+        float *texels = tl_paraboloid_sample(&map, whole, level, chart);
+        if (texels)
+            tl_paraboloid_resample(&map.crops[level][chart], tl_paraboloid_density(pems->size, level), texels,
+                                   chart, &out);
+        free(texels);
+    }
+    return out;
+}
+
 /* Compares the sum of all PEMs at one level with that level of the undivided cube. They are equal, as filters
- * are linear. */
+ * and sampling are linear. */
 static void add_pem_level(const struct tl_resources *inside, const struct tl_chain *whole, int level,
                           struct tl_finding *finding)
 {
-    const tl_cube *expected = &whole->levels[level];
-    size_t values = 18 * (size_t)expected->size * (size_t)expected->size;
+    tl_cube expected = whole_level(&inside->pems, whole, level);
+    size_t values = 18 * (size_t)expected.size * (size_t)expected.size;
     double *sums = TL_NEW_ARRAY(double, values), mean = 0;
     for (int i = 0; i < inside->pems.count; i++) {
         tl_cube pem = tl_pems_read(&inside->pems, i, level);
@@ -351,51 +366,26 @@ static void add_pem_level(const struct tl_resources *inside, const struct tl_cha
         tl_cube_release(&pem);
     }
     for (size_t v = 0; v < values; v++)
-        mean += (double)expected->texels[v] / (double)values;
+        mean += (double)expected.texels[v] / (double)values;
     for (size_t v = 0; v < values; v++) {
-        double off = fabs(sums[v] - (double)expected->texels[v]);
-        if (tl_finding_add(finding, off > 0 ? off / ((double)expected->texels[v] + mean) : off))
+        double off = fabs(sums[v] - (double)expected.texels[v]);
+        if (tl_finding_add(finding, off > 0 ? off / ((double)expected.texels[v] + mean) : off))
             tl_finding_place(finding, "level %d, texel %zu of %zu", level, v / 3, values / 3);
     }
+    tl_cube_release(&expected);
     free(sums);
-}
-
-static bool has_pems(const struct tl_checked *checked)
-{
-    return is_time(checked) && has(checked, TL_MADE_PEMS) &&
-           tl_renderer_frame_resources(checked->renderer)->pems.count > 0;
 }
 
 void tl_measure_pems(const struct tl_checked *checked, struct tl_finding *finding)
 {
-    if (!has_pems(checked))
+    if (!is_time(checked) || !has(checked, TL_MADE_PEMS) ||
+        tl_renderer_frame_resources(checked->renderer)->pems.count == 0)
         return;
     const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
     struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter);
-    int finest = inside->pems.cube_level;
-    /* The first level of all is cut, not filtered, and takes four times as long to read. */
-    finest = finest == 0 && whole.level_count > 1 ? 1 : finest;
-    add_pem_level(inside, &whole, finest, finding);
-    if (finest < whole.level_count - 1)
-        add_pem_level(inside, &whole, whole.level_count - 1, finding);
+    if (whole.level_count >
+        1) /* the first level is cut, not filtered, and takes four times as long to read */
+        add_pem_level(inside, &whole, 1, finding);
+    add_pem_level(inside, &whole, whole.level_count - 1, finding);
     tl_chain_release(&whole);
-}
-
-/* Filters keep a region's light nearly, and so does sampling what they made of it. */
-void tl_measure_paraboloids(const struct tl_checked *checked, struct tl_finding *finding)
-{
-    if (!has_pems(checked))
-        return;
-    const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
-    int level = inside->pems.cube_level > 1 ? 1 : 0;
-    for (int i = 0; i < inside->pems.count && inside->pems.cube_level > 0; i++) {
-        tl_cube pem = tl_pems_read(&inside->pems, i, level);
-        struct power got = power_of_cube(&pem);
-        vec3s power = inside->regions.items[i].power;
-        double light = (double)(power.x + power.y + power.z);
-        double off = fabs(got.rgb[0] + got.rgb[1] + got.rgb[2] - light);
-        if (tl_finding_add(finding, light > 0 ? off / light : off))
-            tl_finding_place(finding, "region %d of %d, level %d", i, inside->pems.count, level);
-        tl_cube_release(&pem);
-    }
 }

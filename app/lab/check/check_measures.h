@@ -16,7 +16,7 @@ tl_measure tl_measure_budget;
 
 /* check_light.c */
 tl_measure tl_measure_environment, tl_measure_regions, tl_measure_exact, tl_measure_sum;
-tl_measure tl_measure_slices, tl_measure_pems, tl_measure_paraboloids;
+tl_measure tl_measure_slices, tl_measure_pems;
 
 /* check_visibility.c */
 tl_measure tl_measure_moments, tl_measure_visibility, tl_measure_leaks, tl_measure_age;

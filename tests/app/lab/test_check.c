@@ -171,10 +171,9 @@ static void a_clean_frame_passes(void **state)
     static const char *const rays[] = {"visibility.range", "visibility.regions", "light.exact", "light.sum"};
     static const char *const chains[] = {"maps.moments", "light.pems"};
     static const char *const exact[] = {"maps.moments", "light.slices", "light.sum", "light.exact"};
-    static const char *const maps[] = {"maps.moments", "light.pems", "light.paraboloids"};
     stand_maker *const stands[] = {by_rays, by_chains, by_paraboloids, by_slices};
-    const char *const *const own[] = {rays, chains, maps, exact};
-    const size_t counts[] = {TL_COUNT(rays), TL_COUNT(chains), TL_COUNT(maps), TL_COUNT(exact)};
+    const char *const *const own[] = {rays, chains, chains, exact};
+    const size_t counts[] = {TL_COUNT(rays), TL_COUNT(chains), TL_COUNT(chains), TL_COUNT(exact)};
     for (size_t i = 0; i < TL_COUNT(stands); i++) {
         struct stand *stand = stands[i]();
         draw_white(stand);
@@ -678,10 +677,10 @@ static void a_lost_region_is_named(void **state)
 
     stand = by_paraboloids();
     const struct tl_pems *pems = &inside(stand->renderer)->pems;
-    const struct tl_paraboloid_crop *crop = &pems->paraboloids[5].crops[1];
-    glClearTexSubImage(pems->maps[0].id, 0, crop->atlas_x, crop->atlas_y, 0, crop->width, crop->height, 1,
+    const struct tl_paraboloid_crop *crop = &pems->paraboloids[5].crops[1][0];
+    glClearTexSubImage(pems->arrays[0].id, 0, crop->atlas_x, crop->atlas_y, 0, crop->width, crop->height, 1,
                        GL_RGBA, GL_FLOAT, black);
-    assert_breaks(&stand->checked, "light.paraboloids", "region 5 of 24");
+    assert_breaks(&stand->checked, "light.pems", "level 1");
     take_down(&stand);
 
     stand = by_slices();

@@ -210,9 +210,8 @@ static void paraboloids_take_what_is_computed(void **state)
         size_t before = tl_gpu_texture_bytes(gpu) - tl_pems_bytes(&pems), stored = 0;
         tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE,
                       (struct tl_pem_storage){7, TL_PEM_PARABOLOID});
-        assert_true(pems.cube_level > 0);
         for (int i = 0; i < pems.array_count; i++)
-            stored += stored_bytes(&pems.arrays[i]) + stored_bytes(&pems.maps[i]);
+            stored += stored_bytes(&pems.arrays[i]);
         size_t computed = tl_memory_paraboloids(&cube, &regions, TL_CHAIN_SQRT_COSINE, 7);
         assert_int_equal(tl_pems_bytes(&pems), computed);
         assert_int_equal(stored, computed);
