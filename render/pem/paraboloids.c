@@ -3,18 +3,21 @@
 #include "config/memory.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* At the centre of a chart p changes half as fast as the angle, so that a texel of a face, 2 / size wide at its
- * centre, is as wide as one of `size` a unit of p. Maps are this many times as dense there, and up to twice that at
- * the rim. */
+/* At the centre of a chart p changes half as fast as the angle, so that a texel of a face, 2 / size wide at
+ * its centre, is as wide as one of `size` a unit of p. Maps are this many times as dense there, and 1.3 times
+ * that at the corners. */
 #define DENSITY 2
 
-/* Levels of so few texels a face fill their charts: hats are wider than what find_crop follows them by. */
-#define WHOLE_SIZE 8
+/* Levels of at most so many texels a face fill their charts: hats are wider than what find_crop follows them
+ * by. */
+#define WHOLE_SIZE 4
+
+/* A chart ends there: tan(22.5 degrees). */
+#define BORDER 0.41421356f
 
 int tl_paraboloid_density(int size, int level)
 {
@@ -24,16 +27,30 @@ int tl_paraboloid_density(int size, int level)
 static vec3s unproject(int chart, float x, float y)
 {
     float square = x * x + y * y, scale = 1 / (1 + square);
-    float z = (1 - square) * scale;
-    return (vec3s){{2 * x * scale, 2 * y * scale, chart == 0 ? z : -z}};
+    int axis = chart / 2;
+    vec3s d;
+    d.raw[axis] = (chart % 2 ? square - 1 : 1 - square) * scale;
+    d.raw[axis == 0 ? 1 : 0] = 2 * x * scale;
+    d.raw[axis == 2 ? 1 : 2] = 2 * y * scale;
+    return d;
+}
+
+/* The point in any chart, also beyond its border. */
+static void project(vec3s direction, int chart, float p[2])
+{
+    int axis = chart / 2;
+    float above = fmaxf(1 + (chart % 2 ? -direction.raw[axis] : direction.raw[axis]), 1e-6f);
+    p[0] = direction.raw[axis == 0 ? 1 : 0] / above;
+    p[1] = direction.raw[axis == 2 ? 1 : 2] / above;
 }
 
 int tl_paraboloid_project(vec3s direction, float p[2])
 {
-    float above = 1 + fabsf(direction.z);
-    p[0] = direction.x / above;
-    p[1] = direction.y / above;
-    return direction.z >= 0 ? 0 : 1;
+    float x = fabsf(direction.x), y = fabsf(direction.y), z = fabsf(direction.z);
+    int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    int chart = 2 * axis + (direction.raw[axis] < 0);
+    project(direction, chart, p);
+    return chart;
 }
 
 static bool is_lit(const tl_cube *cube, size_t texel)
@@ -46,23 +63,23 @@ static bool is_lit(const tl_cube *cube, size_t texel)
 struct plane_box {
     float low[2], high[2]; /* empty when low > high */
 };
+static const struct plane_box empty = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
 
-/* Adds the part of a chart that the hat of a texel covers: it ends at the centres of its neighbours. (Across an
- * edge of the cube it ends a little elsewhere than on the continued plane of the face; see MARGIN.) What lies beyond
- * `rim` is pulled in to it. */
-static void add_hat(int size, int texel, int chart, float rim, struct plane_box *box)
+/* Adds the part of a chart that the hat of a texel covers: it ends at the centres of its neighbours. (Across
+ * an edge of the cube it ends a little elsewhere than on the continued plane of the face; see MARGIN.) What
+ * lies beyond `border` is pulled in to it. */
+static void add_hat(int size, int texel, int chart, float border, struct plane_box *box)
 {
     int face = texel / (size * size), y = texel / size % size, x = texel % size;
-    struct plane_box hat = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    struct plane_box hat = empty;
     bool within = false;
     for (int i = 0; i < 9; i++) {
-        float s = ((float)(x + i % 3) - 0.5f) / (float)size, t = ((float)(y + i / 3) - 0.5f) / (float)size;
-        vec3s d = glms_vec3_normalize(tl_cube_direction(face, s, t));
-        float above = fmaxf(1 + (chart == 0 ? d.z : -d.z), 1e-6f), p[2] = {d.x / above, d.y / above};
-        float length = hypotf(p[0], p[1]);
-        within = within || length < rim;
+        float s = ((float)(x + i % 3) - 0.5f) / (float)size, t = ((float)(y + i / 3) - 0.5f) / (float)size,
+              p[2];
+        project(glms_vec3_normalize(tl_cube_direction(face, s, t)), chart, p);
+        within = within || (fabsf(p[0]) < border && fabsf(p[1]) < border);
         for (int axis = 0; axis < 2; axis++) {
-            float place = p[axis] * fminf(rim / fmaxf(length, 1e-6f), 1);
+            float place = fminf(fmaxf(p[axis], -border), border);
             hat.low[axis] = fminf(hat.low[axis], place);
             hat.high[axis] = fmaxf(hat.high[axis], place);
         }
@@ -81,22 +98,34 @@ static int clamp_index(int value, int low, int high)
     return value < low ? low : value > high ? high : value;
 }
 
+/* Charts are those of the faces, in their order. Hats of texels that lie within a face end before its border.
+ */
+static bool may_reach(int size, int texel, int chart)
+{
+    int x = texel % size, y = texel / size % size;
+    bool within = x >= 2 && y >= 2 && x < size - 2 && y < size - 2;
+    return !within || size <= WHOLE_SIZE || texel / (size * size) == chart;
+}
+
 static struct tl_paraboloid_crop find_crop(const tl_cube *level, int density, int chart)
 {
-    struct plane_box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-    float rim = 1 + 1.5f / (float)density;
-    for (size_t i = 0; i < 6 * (size_t)level->size * (size_t)level->size; i++)
-        if (is_lit(level, i))
-            add_hat(level->size, (int)i, chart, level->size > WHOLE_SIZE ? rim : INFINITY, &box);
+    const float scale = (float)density, border = BORDER + 1.5f / scale;
+    struct plane_box box = empty;
+    for (int i = 0; i < 6 * level->size * level->size; i++) {
+        if (!may_reach(level->size, i, chart) || !is_lit(level, (size_t)i))
+            continue;
+        if (level->size <= WHOLE_SIZE)
+            box = (struct plane_box){{-border, -border}, {border, border}};
+        else
+            add_hat(level->size, i, chart, border, &box);
+    }
     if (box.low[0] > box.high[0])
         return (struct tl_paraboloid_crop){0};
     /* The last texels whose centres lie outside of the box, on each side; or the lattice's. */
-    int first[2], last[2];
+    int first[2], last[2], limit = (int)ceilf(BORDER * scale - 0.5f);
     for (int axis = 0; axis < 2; axis++) {
-        float low = level->size > WHOLE_SIZE ? box.low[axis] : -2;
-        float high = level->size > WHOLE_SIZE ? box.high[axis] : 2;
-        first[axis] = clamp_index((int)floorf(low * (float)density - 0.5f - MARGIN), -density - 1, density);
-        last[axis] = clamp_index((int)ceilf(high * (float)density - 0.5f + MARGIN), -density - 1, density);
+        first[axis] = clamp_index((int)floorf(box.low[axis] * scale - 0.5f - MARGIN), -limit - 1, limit);
+        last[axis] = clamp_index((int)ceilf(box.high[axis] * scale - 0.5f + MARGIN), -limit - 1, limit);
     }
     return (struct tl_paraboloid_crop){
         .x0 = first[0], .y0 = first[1], .width = last[0] - first[0] + 1, .height = last[1] - first[1] + 1};
@@ -108,8 +137,8 @@ struct tl_paraboloid tl_paraboloid_place(const struct tl_chain *chain)
     assert(chain->level_count <= TL_PARABOLOID_LEVELS_MAX);
     for (int level = 0; level < chain->level_count; level++)
         for (int chart = 0; chart < TL_PARABOLOID_CHARTS; chart++)
-            map.crops[level][chart] = find_crop(
-                &chain->levels[level], tl_paraboloid_density(chain->levels[0].size, level), chart);
+            map.crops[level][chart] =
+                find_crop(&chain->levels[level], tl_paraboloid_density(chain->levels[0].size, level), chart);
     return map;
 }
 
@@ -151,8 +180,8 @@ vec3s tl_paraboloid_fetch(const struct tl_paraboloid_crop *crop, int density, co
     return colour;
 }
 
-void tl_paraboloid_resample(const struct tl_paraboloid_crop *crop, int density, const float *texels, int chart,
-                            const tl_cube *out)
+void tl_paraboloid_resample(const struct tl_paraboloid_crop *crop, int density, const float *texels,
+                            int chart, const tl_cube *out)
 {
     for (int i = 0; i < 6 * out->size * out->size; i++) {
         float p[2];
@@ -192,9 +221,8 @@ void tl_paraboloids_pack(struct tl_paraboloid *maps, int count, int *width, int 
 {
     size_t crop_count = 0, texels = 0;
     int widest = 1;
-    struct tl_paraboloid_crop **crops =
-        TL_NEW_ARRAY(struct tl_paraboloid_crop *,
-                     (size_t)count *TL_PARABOLOID_LEVELS_MAX *TL_PARABOLOID_CHARTS);
+    struct tl_paraboloid_crop **crops = TL_NEW_ARRAY(
+        struct tl_paraboloid_crop *, (size_t)count * TL_PARABOLOID_LEVELS_MAX * TL_PARABOLOID_CHARTS);
     for (int i = 0; i < count; i++)
         for (int k = 0; k < maps[i].level_count * TL_PARABOLOID_CHARTS; k++) {
             struct tl_paraboloid_crop *crop =

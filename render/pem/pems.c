@@ -15,8 +15,7 @@
 
 /* struct Paraboloid of paraboloids.glsl, std430. */
 struct gpu_paraboloid {
-    float shifts[TL_PARABOLOID_CHARTS][2];
-    vec4s bounds[TL_PARABOLOID_CHARTS];
+    float bounds[TL_PARABOLOID_CHARTS][4], shifts[TL_PARABOLOID_CHARTS][2];
 };
 
 /* The smallest power of two that scales every texel into the range of half floats. */
@@ -57,8 +56,8 @@ static int regions_in(const struct tl_pems *pems, int array)
     return left < pems->per_array ? left : pems->per_array;
 }
 
-/* Cubes of the same size and number stay where they are. Paraboloid maps get their textures when their crops are
- * known. */
+/* Cubes of the same size and number stay where they are. Paraboloid maps get their textures when their crops
+ * are known. */
 static void allocate(struct tl_pems *pems, tl_gpu *gpu, int count, int size, struct tl_pem_storage storage)
 {
     bool cubes = storage.layout == TL_PEM_CUBE;
@@ -74,9 +73,8 @@ static void allocate(struct tl_pems *pems, tl_gpu *gpu, int count, int size, str
     if (!cubes)
         pems->paraboloids = TL_NEW_ARRAY(struct tl_paraboloid, (size_t)count);
     for (int i = 0; i < pems->array_count && cubes; i++)
-        pems->arrays[i] =
-            tl_texture_create(gpu, GL_TEXTURE_CUBE_MAP_ARRAY, GL_RGBA16F, size, size, 6 * regions_in(pems, i),
-                              tl_texture_full_levels(size, size));
+        pems->arrays[i] = tl_texture_create(gpu, GL_TEXTURE_CUBE_MAP_ARRAY, GL_RGBA16F, size, size,
+                                            6 * regions_in(pems, i), tl_texture_full_levels(size, size));
 }
 
 static void upload_cubes(const struct tl_pems *pems, int index, const struct tl_chain *chain)
@@ -123,7 +121,10 @@ static struct gpu_paraboloid gpu_paraboloid_of(const struct tl_paraboloid_crop c
         float x = (float)crop->atlas_x + 0.5f, y = (float)crop->atlas_y + 0.5f;
         out.shifts[chart][0] = (float)(crop->atlas_x - crop->x0);
         out.shifts[chart][1] = (float)(crop->atlas_y - crop->y0);
-        out.bounds[chart] = (vec4s){{x, y, x + (float)(crop->width - 1), y + (float)(crop->height - 1)}};
+        out.bounds[chart][0] = x;
+        out.bounds[chart][1] = y;
+        out.bounds[chart][2] = x + (float)(crop->width - 1);
+        out.bounds[chart][3] = y + (float)(crop->height - 1);
     }
     return out;
 }

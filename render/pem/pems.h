@@ -1,5 +1,5 @@
-/* The PEMs on the GPU: one filtered cube map per region [002, section 4], several in each cube map array; or, as
- * the paper proposes, cropped paraboloid maps (paraboloids.h), those of several regions in one texture.
+/* The PEMs on the GPU: one filtered cube map per region [002, section 4], several in each cube map array; or,
+ * as the paper proposes, cropped paraboloid maps (paraboloids.h), those of several regions in one texture.
  *
  * RGBA16F, as in the paper. A sun beyond the range of half floats is preserved: all values are stored
  * multiplied by one power of two for the whole environment, which costs no precision, and the light pass
@@ -26,8 +26,8 @@ struct tl_pems {
     int count, per_array, array_count;
     int size;           /* texels a face of the cube */
     float scale;        /* radiance = scale x stored */
-    tl_texture *arrays; /* cube map arrays, per_array cubes each, the last one fewer; or the textures that hold as
-                           many regions' paraboloid maps */
+    tl_texture *arrays; /* cube map arrays, per_array cubes each, the last one fewer; or the textures that
+                           hold as many regions' paraboloid maps */
     struct tl_paraboloid *paraboloids; /* by region; NULL: these are cubes */
     unsigned buffer;                   /* GL name: what the shader knows of them */
 };

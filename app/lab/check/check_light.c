@@ -336,7 +336,8 @@ void tl_measure_slices(const struct tl_checked *checked, struct tl_finding *find
     free(light);
 }
 
-/* A level of the undivided cube, as it is stored: paraboloid maps are fetched at the centres of its texels. */
+/* A level of the undivided cube, as it is stored: paraboloid maps are fetched at the centres of its texels.
+ */
 static tl_cube whole_level(const struct tl_pems *pems, const struct tl_chain *whole, int level)
 {
     tl_cube out = tl_cube_copy(&whole->levels[level]);

@@ -112,8 +112,8 @@ void tl_trade_write_memory(const tl_environment *environment, FILE *out)
     tl_report_paragraph(out,
                         "MiB, with the columns of the paper's figure 8. Its column of PEMs is twice what six "
                         "faces of 128 x 128 "
-                        "RGBA16F take. Paraboloids: the paper's proposal, fine levels cropped to what their "
-                        "region is filtered to (light.pem_layout), 12 regions a texture.");
+                        "RGBA16F take. Paraboloids: the paper's proposal, maps cropped to where a PEM is not "
+                        "black (light.pem_layout), with mip levels, 12 regions a texture.");
     for (size_t i = 0; i < TL_COUNT(heads); i++)
         tl_cells_add(&cells, "%s", heads[i]);
     for (int i = 0; i < TL_PAPER_ROWS; i++) {

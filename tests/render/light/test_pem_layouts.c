@@ -2,9 +2,9 @@
  *
  * The maps are sampled at half of the cubes' step h and interpolated. A level is piecewise linear; where its
  * slope changes by c the interpolation errs by c h / 4 at most. A filtered level falls from its smallest tap
- * to 0 within one step, 0.7 of its peak: an error of 0.7 / 8, 9 % of the peak. Level 0 falls from its peak on
- * both sides: 25 %. Bounds that are smaller are twice what came out; they name a lost or misplaced map, which
- * is wrong by all of its light. */
+ * to 0 within one step, 0.7 of its peak: an error of 0.7 / 8, 9 % of the peak, on either axis, 18 % in all.
+ * Level 0 falls from its peak on both sides: 25 % on either axis. The bounds here are smaller: twice what
+ * came out. They are enough to name a lost or misplaced map, which is wrong by all of its light. */
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
@@ -121,8 +121,8 @@ static double layouts_agree(const struct test_device *device, struct scene *scen
         struct difference off = compare(&images[TL_PEM_PARABOLOID][i], &images[TL_PEM_CUBE][i]);
         printf("%s, g %.3f: rms %.4f of the mean, largest %.3f of the peak\n", what, (double)glosses[i],
                off.rms, off.largest);
-        assert_near(off.rms, 0, glosses[i] < 1 ? 0.1 : 0.3);
-        assert_near(off.largest, 0, glosses[i] < 1 ? 0.09 : 0.25);
+        assert_near(off.rms, 0, glosses[i] < 1 ? 0.09 : 0.27);
+        assert_near(off.largest, 0, glosses[i] < 1 ? 0.11 : 0.26);
         worst = fmax(worst, off.rms);
         tl_image_release(&images[0][i]);
         tl_image_release(&images[1][i]);
@@ -142,8 +142,8 @@ static void layouts_draw_the_same(void **state)
     }
 }
 
-/* The spot's light crosses edges and corners of the cube, where maps of two or three faces meet; and lies
- * within a face. */
+/* The spot's light crosses edges and corners of the cube, where two or three charts meet; or lies within one.
+ */
 static void edges_and_corners_are_no_different(void **state)
 {
     static const vec3s places[] = {{{1, 1, 1}}, {{0.1f, 1, 1}}, {{1, 0, -0.98f}}, {{-0.1f, 1, 0.2f}}};
@@ -157,7 +157,7 @@ static void edges_and_corners_are_no_different(void **state)
     }
 }
 
-/* Regions of the sphere have frames of their own. */
+/* Regions of the sphere lie on several faces. */
 static void cuts_of_the_sphere_are_no_different(void **state)
 {
     struct scene scene;
@@ -167,7 +167,22 @@ static void cuts_of_the_sphere_are_no_different(void **state)
     close_scene(&scene);
 }
 
-/* A perfect reflector is white under white light. At edges of the cube lattices meet. */
+/* Radiance of 1e6 does not fit a half float; it must be scaled before it is sampled. */
+static vec3s sun(vec3s d)
+{
+    bool lit = glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}})) > 0.97f;
+    return lit ? (vec3s){{1e6f, 9e5f, 8e5f}} : (vec3s){{0.5f, 0.6f, 0.7f}};
+}
+
+static void a_sun_stays_in_range(void **state)
+{
+    struct scene scene;
+    open_scene(&scene, sun, 64, 24);
+    layouts_agree(*state, &scene, "sun");
+    close_scene(&scene);
+}
+
+/* A perfect reflector is white under white light. */
 static void white_stays_white(void **state)
 {
     struct scene scene;
@@ -191,8 +206,8 @@ static void white_stays_white(void **state)
             }
         printf("white, g %.3f: rms %.5f, largest %.5f\n", (double)glosses[i], sqrt(squares / covered),
                largest);
-        assert_near(sqrt(squares / covered), 0, glosses[i] < 0.85f ? 1e-3 : glosses[i] < 1 ? 0.01 : 0.03);
-        assert_near(largest, 0, glosses[i] < 0.85f ? 1e-3 : glosses[i] < 1 ? 0.09 : 0.25);
+        /* Half floats: 2^-11 of each region's light, and of normals. */
+        assert_near(largest, 0, 5e-4);
         tl_image_release(&image);
     }
     reflectance = 0.8f;
@@ -245,7 +260,7 @@ static void passes_add_up(void **state)
     tl_image whole = draw(*state, &scene, 0.98f);
     scene.settings.light.pems_per_pass = 5;
     tl_image other = draw(*state, &scene, 0.98f);
-    assert_near(compare(&other, &whole).largest, 0, 24 * 1.2e-7);
+    assert_near(compare(&other, &whole).largest, 0, 2 * 24 * 1.2e-7);
     tl_image_release(&whole);
     tl_image_release(&other);
     close_scene(&scene);
@@ -260,6 +275,7 @@ int main(void)
         cmocka_unit_test(white_stays_white),
         cmocka_unit_test(no_level_begins_with_a_step),
         cmocka_unit_test(passes_add_up),
+        cmocka_unit_test(a_sun_stays_in_range),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
