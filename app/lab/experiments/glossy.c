@@ -258,8 +258,8 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "D16  PEMs as cropped paraboloid maps",
      .text =
-         "A PEM is black but for its region and what the filters spread it over. Its fine levels are stored "
-         "as parts of paraboloid maps, cropped to that; the coarse ones stay cubes. The table below has the "
+         "A PEM is black but for its region and what the filters spread its light over. Each level is stored "
+         "as parts of paraboloid maps, cropped to that, twice as dense as the cube. The table below has the "
          "bytes of both.",
      .exact_text = "the same regions and shadows with exact lobes, each by direct convolution (D4)",
      .solid = "sphere",

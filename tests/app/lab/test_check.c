@@ -677,9 +677,11 @@ static void a_lost_region_is_named(void **state)
 
     stand = by_paraboloids();
     const struct tl_pems *pems = &inside(stand->renderer)->pems;
-    const struct tl_paraboloid_crop *crop = &pems->paraboloids[5].crops[1][0];
-    glClearTexSubImage(pems->arrays[0].id, 0, crop->atlas_x, crop->atlas_y, 0, crop->width, crop->height, 1,
-                       GL_RGBA, GL_FLOAT, black);
+    for (int chart = 0; chart < TL_PARABOLOID_CHARTS; chart++) {
+        const struct tl_paraboloid_crop *crop = &pems->paraboloids[5].crops[1][chart];
+        glClearTexSubImage(pems->arrays[0].id, 0, crop->atlas_x, crop->atlas_y, 0, crop->width, crop->height,
+                           1, GL_RGBA, GL_FLOAT, black);
+    }
     assert_breaks(&stand->checked, "light.pems", "level 1");
     take_down(&stand);
 
