@@ -55,6 +55,7 @@ add_library(toile_light STATIC
   pem/lobe.c
   pem/lobe_error.c
   pem/memory.c
+  pem/paraboloids.c
   pem/regions.c
   pem/regions_faces.c
   pem/regions_internal.c

@@ -427,7 +427,7 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
     resources->filter = light->filter;
     resources->takes_suns = light->sun;
     resources->cut = (struct tl_cut_input){light->regions, light->cut};
-    resources->pems_per_pass = light->pems_per_pass;
+    resources->pem_storage = (struct tl_pem_storage){light->pems_per_pass, light->pem_layout};
     resources->lobes_input = tl_input_lobes(light);
     resources->shadow_options = tl_input_shadows(light);
     resources->ray_options = (struct tl_rays_input){tl_light_ray_params(light), tl_light_averages(light)};

@@ -52,7 +52,7 @@
     IO(READS, cube)                                                                                          \
     IO(READS, regions)                                                                                       \
     IO(READS, filter)                                                                                        \
-    IO(READS, pems_per_pass)                                                                                 \
+    IO(READS, pem_storage)                                                                                   \
     IO(WRITES, pems)                                                                                         \
     IO(USES, gpu)
 
@@ -103,7 +103,7 @@
     IO(READS, regions_revision)                                                                              \
     IO(READS, yaw)                                                                                           \
     IO(READS, shadow_options)                                                                                \
-    IO(READS, pems_per_pass)                                                                                 \
+    IO(READS, pem_storage)                                                                                   \
     IO(READS, round)                                                                                         \
     IO(SEES, suns)                                                                                           \
     IO(SEES, shapes)                                                                                         \
@@ -120,7 +120,7 @@
     IO(READS, casters)                                                                                       \
     IO(SEES, yaw)                                                                                            \
     IO(SEES, shadow_options)                                                                                 \
-    IO(SEES, pems_per_pass)                                                                                  \
+    IO(SEES, pem_storage)                                                                                    \
     IO(SEES, round)                                                                                          \
     IO(SEES, suns)                                                                                           \
     IO(SEES, shapes)                                                                                         \

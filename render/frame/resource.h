@@ -18,7 +18,7 @@ enum tl_resource {
     TL_INPUT_FILTER,
     TL_INPUT_SUN,
     TL_INPUT_REGIONS,
-    TL_INPUT_PASSES,
+    TL_INPUT_PASSES,      /* how PEMs are stored */
     TL_INPUT_MAPS,        /* size and blur of the shadow maps */
     TL_INPUT_RAYS,        /* how rays are spent */
     TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */

@@ -58,7 +58,7 @@ struct tl_surroundings {
     RESOURCE(filter, TL_INPUT_FILTER, int)     /* enum tl_chain_filter */                                    \
     RESOURCE(takes_suns, TL_INPUT_SUN, bool)                                                                 \
     RESOURCE(cut, TL_INPUT_REGIONS, struct tl_cut_input)                                                     \
-    RESOURCE(pems_per_pass, TL_INPUT_PASSES, int)                                                            \
+    RESOURCE(pem_storage, TL_INPUT_PASSES, struct tl_pem_storage)                                            \
     RESOURCE(shadow_options, TL_INPUT_MAPS, struct tl_shadow_input)                                          \
     RESOURCE(ray_options, TL_INPUT_RAYS, struct tl_rays_input)                                               \
     RESOURCE(round, TL_INPUT_ROUND, int)                                                                     \

@@ -81,7 +81,7 @@ bool tl_run_lobe(const struct tl_lobe_job *job, tl_error *error)
 bool tl_run_pems(const struct tl_pems_job *job, tl_error *error)
 {
     (void)error;
-    tl_pems_build(job->pems, *job->gpu, job->cube, job->regions, *job->filter, *job->pems_per_pass);
+    tl_pems_build(job->pems, *job->gpu, job->cube, job->regions, *job->filter, *job->pem_storage);
     return true;
 }
 

@@ -28,7 +28,7 @@ bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
         .surface_count = (job)->shapes->drawn_count,                                                         \
         .ground_index = (job)->ground_input->is_drawn ? (int)(job)->shapes->drawn_count - 1 : -1,            \
         .map_size = (job)->shadow_options->map_size,                                                         \
-        .maps_per_array = (job)->shadow_options->in_passes ? *(job)->pems_per_pass : TL_REGIONS_MAX,         \
+        .maps_per_array = (job)->shadow_options->in_passes ? (job)->pem_storage->per_array : TL_REGIONS_MAX, \
         .blur_m = (job)->shadow_options->blur_m, .regions_revision = *(job)->regions_revision,               \
         .refresh =                                                                                           \
             (job)->moment->moves_shadows && !(job)->moment->still ? (job)->ray_options->params.refresh : 0,  \

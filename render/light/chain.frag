@@ -1,6 +1,9 @@
 #version 450 core
 // One additive pass over some of the regions, their light from filter chains [002, eq. 5]: c += VIS_i PEM_i; or, after
-// the exact light, what is missing: c += (VIS_i - 1) PEM_i.
+// the exact light, what is missing: c += (VIS_i - 1) PEM_i. PARABOLOIDS: these are cropped paraboloid maps.
+#ifdef PARABOLOIDS
+#include "paraboloids.glsl"
+#endif
 #include "sample.glsl"
 #include "visibility.glsl"
 
@@ -22,6 +25,29 @@ float lobe_level(float glossiness)
     return texture(lobe_levels, vec2((glossiness * (steps - 1.0) + 0.5) / steps, 0.5)).r;
 }
 
+// A direction as PEMs are looked up by it, and the light of the region in layer i through the lobe of a level about it.
+#ifdef PARABOLOIDS
+#define PLACE ParaboloidPoint
+PLACE pem_place(vec3 d)
+{
+    return paraboloid_project(normalize(d));
+}
+vec3 pem(int i, PLACE at, float level)
+{
+    return paraboloid_fetch(region_range.x + i, at, level);
+}
+#else
+#define PLACE vec3
+PLACE pem_place(vec3 d)
+{
+    return d;
+}
+vec3 pem(int i, PLACE at, float level)
+{
+    return textureLod(pems, vec4(at, float(i)), level).rgb;
+}
+#endif
+
 float share(int i, Sample place)
 {
     Region region = regions[region_range.x + i];
@@ -35,18 +61,17 @@ void main()
     if (lobe == LOBE_SINGLE) {
         // One look-up for direction and glossiness [002, section 3.4]; its direction and its colour go from
         // diffuse (n, kd) at g = 0 to mirror (r, F ks) at g = 1. n.r >= 0, so the mean never vanishes.
-        vec3 d = into_environment(mix(place.normal, place.mirror, place.glossiness));
+        PLACE d = pem_place(into_environment(mix(place.normal, place.mirror, place.glossiness)));
         float level = lobe_level(place.glossiness);
         for (int i = 0; i < region_range.y; i++)
-            sum += share(i, place) * textureLod(pems, vec4(d, float(i)), level).rgb;
+            sum += share(i, place) * pem(i, d, level);
         sum *= mix(place.kd, place.ks, place.glossiness);
     } else {
-        vec3 d = into_environment(place.normal), m = into_environment(place.mirror);
+        PLACE d = pem_place(into_environment(place.normal)), m = pem_place(into_environment(place.mirror));
         float diffuse_level = lobe_level(0.0), gloss_level = lobe_level(place.glossiness);
         for (int i = 0; i < region_range.y; i++) {
-            vec3 pem = place.kd * textureLod(pems, vec4(d, float(i)), diffuse_level).rgb +
-                       place.ks * textureLod(pems, vec4(m, float(i)), gloss_level).rgb;
-            sum += share(i, place) * pem;
+            vec3 both = place.kd * pem(i, d, diffuse_level) + place.ks * pem(i, m, gloss_level);
+            sum += share(i, place) * both;
         }
     }
     light = vec4(sum * pem_scale * place.cover, 0.0);

@@ -9,10 +9,22 @@
 #include <stdlib.h>
 
 /* Uniform locations of chain.frag and regions.frag, and what they include. */
-enum { REGION_RANGE = 0, EYE, ENVIRONMENT_TURN, PEM_SCALE, LOBE, ALREADY_THERE, MAP_LIMITS, GROUND_DISC };
+enum {
+    REGION_RANGE = 0,
+    EYE,
+    ENVIRONMENT_TURN,
+    PEM_SCALE,
+    LOBE,
+    ALREADY_THERE,
+    MAP_LIMITS,
+    GROUND_DISC,
+    PARABOLOID_DENSITY
+};
 enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
 /* Texture units; the G-buffer's layers without the triangles come first. */
 enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
+/* The program of chains that are paraboloid maps. */
+#define PARABOLOIDS TL_LIGHT_SOURCES
 /* Values of the uniform in regions.frag. */
 enum composition { SUM, DIFFERENCE, RATIO, OCCLUSION, OCCLUSION_COLOUR, UNSHADOWED };
 
@@ -97,7 +109,7 @@ bool tl_lighting_create(struct tl_lighting *lighting, tl_gpu *gpu, tl_error *err
 
 void tl_lighting_release(struct tl_lighting *lighting)
 {
-    for (int source = 0; source < TL_LIGHT_SOURCES; source++)
+    for (int source = 0; source < TL_LIGHT_PROGRAMS; source++)
         for (int kind = 0; kind < TL_LIGHT_MAP_KINDS; kind++)
             tl_program_destroy(&lighting->programs[source][kind]);
     tl_texture_destroy(&lighting->exponent_levels);
@@ -109,27 +121,30 @@ void tl_lighting_release(struct tl_lighting *lighting)
 bool tl_lighting_reload(struct tl_lighting *lighting, tl_error *error)
 {
     bool fine = true;
-    for (int source = 0; source < TL_LIGHT_SOURCES; source++)
+    for (int source = 0; source < TL_LIGHT_PROGRAMS; source++)
         for (int kind = 0; kind < TL_LIGHT_MAP_KINDS; kind++)
             if (lighting->programs[source][kind].id)
                 fine = fine && tl_program_reload(&lighting->programs[source][kind], error);
     return fine;
 }
 
-/* The program of a source under a kind of maps (RAYS: none). */
-static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, enum tl_light_source source,
+/* The program of a source, or PARABOLOIDS, under a kind of maps (RAYS: none). */
+static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, int source,
                                     enum tl_visibility kind, tl_error *error)
 {
-    static const char *const defines[TL_LIGHT_SOURCES][TL_LIGHT_MAP_KINDS] = {
+    static const char *const defines[TL_LIGHT_PROGRAMS][TL_LIGHT_MAP_KINDS] = {
         [TL_LIGHT_CHAIN] = {"#define VSM\n", "#define DEPTH\n", NULL},
         [TL_LIGHT_SLICES] = {"#define SLICES\n#define VSM\n", "#define SLICES\n#define DEPTH\n",
                              "#define SLICES\n"},
         [TL_LIGHT_LOBES] = {"#define VSM\n", "#define DEPTH\n", NULL},
         [TL_LIGHT_EXACT] = {"#define EXACT\n", "#define EXACT\n", "#define EXACT\n"},
+        [PARABOLOIDS] = {"#define PARABOLOIDS\n#define VSM\n", "#define PARABOLOIDS\n#define DEPTH\n",
+                         "#define PARABOLOIDS\n"},
     };
+    bool chain = source == TL_LIGHT_CHAIN || source == PARABOLOIDS;
     tl_program *program = &lighting->programs[source][kind];
     if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
-                                                   source == TL_LIGHT_CHAIN ? "chain.frag" : "regions.frag",
+                                                   chain ? "chain.frag" : "regions.frag",
                                                    defines[source][kind], program, error))
         return NULL;
     return program;
@@ -285,18 +300,21 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     const struct tl_pems *pems = request->pems;
     bool shadowed = params->method != TL_METHOD_UNSHADOWED, exact_first = begins_exact(params);
     const tl_program *program =
-        program_of(lighting, gpu, TL_LIGHT_CHAIN,
+        program_of(lighting, gpu, pems->paraboloids ? PARABOLOIDS : TL_LIGHT_CHAIN,
                    shadowed ? (enum tl_visibility)params->visibility : TL_VISIBILITY_RAYS, error);
     if (!program || (exact_first && !draw_regions(lighting, gpu, request, TL_LIGHT_EXACT, error)))
         return false;
     use_program(program, request);
     glUniform1f(PEM_SCALE, pems->scale);
+    if (pems->paraboloids)
+        glUniform2i(PARABOLOID_DENSITY, tl_paraboloid_density(pems->size, 0),
+                    pems->paraboloids[0].level_count);
     glUniform1f(ALREADY_THERE, params->composition == TL_COMPOSE_DIFFERENCE ? 1 : 0);
     glBindTextureUnit(LEVELS_UNIT, request->lobe_levels->id);
     for (int pass = 0; pass < pems->array_count; pass++) {
         int first = pass * pems->per_array, left = pems->count - first;
         glUniform2i(REGION_RANGE, first, left < pems->per_array ? left : pems->per_array);
-        glBindTextureUnit(PEMS_UNIT, pems->arrays[pass].id);
+        tl_pems_bind(pems, pass, PEMS_UNIT);
         if (shadowed)
             glBindTextureUnit(MAPS_UNIT, tl_shadow_maps_texture(request->maps, pass));
         draw_pass(gpu, pass == 0 && !exact_first);

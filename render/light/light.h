@@ -32,13 +32,15 @@ bool tl_light_needs_exact(const struct tl_light_params *params);
  * with GL has two. */
 bool tl_light_is_composed(const struct tl_light_params *params);
 
+/* Programs: one a source, and another one for chains that are paraboloid maps. */
+#define TL_LIGHT_PROGRAMS  (TL_LIGHT_SOURCES + 1)
 #define TL_LIGHT_MAP_KINDS 3 /* enum tl_visibility, none instead of rays */
 
 /* GL programs that draw light, and the table of exponents that they look up. A cache: affects speed, never
  * the image. */
 struct tl_lighting {
-    tl_program programs[TL_LIGHT_SOURCES][TL_LIGHT_MAP_KINDS]; /* made when first used */
-    unsigned regions_buffer;                                   /* GL name: regions, then suns */
+    tl_program programs[TL_LIGHT_PROGRAMS][TL_LIGHT_MAP_KINDS]; /* made when first used */
+    unsigned regions_buffer;                                    /* GL name: regions, then suns */
     tl_texture exponent_levels; /* fractional number of an exponent by the logarithm of s */
 };
 

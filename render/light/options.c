@@ -10,6 +10,7 @@ static const char *const method_names[] = {"pem",        "lights",    "ao",   "a
 static const char *const lobe_names[] = {"single", "dual", NULL};
 static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
+static const char *const pem_layout_names[] = {"cube", "paraboloid", NULL};
 static const char *const visibility_names[] = {"vsm", "depth", "rays", NULL};
 static const char *const moments_names[] = {"float", "half", NULL};
 static const char *const ratio_at_names[] = {"samples", "vertices", NULL};
@@ -42,6 +43,9 @@ static const struct tl_option light_rows[] = {
                    "filter between the levels of a PEM; wider filters make glossy highlights rounder"),
     TL_OPTION_INT(light_params, pems_per_pass, TL_AFFECTS_APPEARANCE | TL_AFFECTS_PASSES, 1, 64, "",
                   "regions summed in one drawing pass; larger: fewer passes, larger textures"),
+    TL_OPTION_ENUM(light_params, pem_layout, TL_AFFECTS_APPEARANCE | TL_AFFECTS_PASSES, pem_layout_names,
+                   "cube: a PEM is a cube map; paraboloid: parts of paraboloid maps, cropped to where it is "
+                   "not black: a thirteenth of the memory at 96 regions, slightly softer, a third slower"),
     TL_OPTION_ENUM(light_params, visibility,
                    TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT | TL_AFFECTS_SHADOW_MAPS, visibility_names,
                    "vsm: variance shadow maps; depth: plain shadow maps; rays: rays cached at vertices"),

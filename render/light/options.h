@@ -36,6 +36,7 @@ struct tl_light_params { /* table "light" */
     int pem_size;        /* texels per face side, a power of two */
     int filter;          /* enum tl_chain_filter */
     int pems_per_pass;   /* 12 in the paper; 1 to 64 */
+    int pem_layout;      /* enum tl_pem_layout (pem/pems.h) */
     int visibility;      /* enum tl_visibility: the back-end */
     int composition;     /* enum tl_composition; rays: ratio only */
     int ratio_at;        /* enum tl_ratio_at, of rays */

@@ -227,12 +227,12 @@ vec3s tl_chain_sample(const struct tl_chain *chain, vec3s direction, float level
     return glms_vec3_lerp(fine, coarse, level - (float)below);
 }
 
-tl_cube tl_pem_cut(const tl_cube *cube, const struct tl_region *region)
+tl_cube tl_pem_cut(const tl_cube *cube, const struct tl_regions *regions, int i)
 {
     tl_cube pem = tl_cube_create(cube->size);
-    size_t row_bytes = 3 * (size_t)(region->x1 - region->x0) * sizeof(float);
-    for (int y = region->y0; y < region->y1; y++)
-        memcpy(texel_of(&pem, region->face, region->x0, y), texel_of(cube, region->face, region->x0, y),
-               row_bytes);
+    for (uint32_t k = regions->first[i]; k < regions->first[i + 1]; k++) {
+        size_t texel = 3 * (size_t)regions->texels[k];
+        memcpy(pem.texels + texel, cube->texels + texel, 3 * sizeof(float));
+    }
     return pem;
 }

@@ -32,8 +32,8 @@ void tl_chain_release(struct tl_chain *chain);
 /* Trilinear look-up at a fractional level; clamped to the levels that exist. */
 vec3s tl_chain_sample(const struct tl_chain *chain, vec3s direction, float level);
 
-/* One PEM: a copy of the cube, black outside the region [002, section 4]. */
-struct tl_region;
-tl_cube tl_pem_cut(const tl_cube *cube, const struct tl_region *region);
+/* One PEM: a copy of the cube, black outside of region i [002, section 4]. */
+struct tl_regions;
+tl_cube tl_pem_cut(const tl_cube *cube, const struct tl_regions *regions, int i);
 
 #endif

@@ -1,8 +1,8 @@
 #include "render/pem/memory.h"
 
 #include "config/memory.h"
+#include "render/pem/paraboloids.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #define RGBA16F_BYTES 8
@@ -39,17 +39,24 @@ size_t tl_memory_shadow_maps(int regions, int size, size_t texel_bytes)
     return (size_t)regions * (size_t)size * (size_t)size * texel_bytes;
 }
 
-size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions)
+size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions,
+                             enum tl_chain_filter filter, int per_array)
 {
-    float *radii = TL_NEW_ARRAY(float, (size_t)regions->count);
-    tl_slices_radii(cube, regions, radii);
-    size_t texels = 0;
+    struct tl_paraboloid *maps = TL_NEW_ARRAY(struct tl_paraboloid, (size_t)regions->count);
+#pragma omp parallel for schedule(dynamic)
     for (int i = 0; i < regions->count; i++) {
-        /* A paraboloid holds one hemisphere. Its coordinate is tan(angle / 2); at the centre it changes half
-         * as fast with the angle as that of a cube's face, so 2 in it correspond to 1 there. */
-        float reach = tanf(fminf(radii[i], (float)M_PI_2) / 2);
-        texels += chain_texels((int)ceilf(2 * reach * (float)cube->size));
+        tl_cube cut = tl_pem_cut(cube, regions, i);
+        struct tl_chain chain = tl_chain_build(&cut, filter);
+        maps[i] = tl_paraboloid_place(&chain);
+        tl_chain_release(&chain);
+        tl_cube_release(&cut);
     }
-    free(radii);
+    size_t texels = 0;
+    for (int first = 0; first < regions->count; first += per_array) {
+        int left = regions->count - first, width, height;
+        tl_paraboloids_pack(&maps[first], left < per_array ? left : per_array, &width, &height);
+        texels += (size_t)width * (size_t)height;
+    }
+    free(maps);
     return texels * RGBA16F_BYTES;
 }

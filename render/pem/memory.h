@@ -1,9 +1,13 @@
 /* Memory of the maps of all regions in several forms: the paper's figure 8 and this program's own [002,
- * section 5]. Computed without making the maps. For slices see tl_slices_bytes_of. Pure; threads: any. */
+ * section 5]. Computed without making the maps. For slices see tl_slices_bytes_of (slices.h). Pure; threads:
+ * any. */
 #ifndef TOILE_RENDER_PEM_MEMORY_H
 #define TOILE_RENDER_PEM_MEMORY_H
 
-#include "render/pem/slices.h"
+#include "render/pem/chain.h"
+#include "render/pem/regions.h"
+
+#include <stddef.h>
 
 /* Figure 8 as printed, in MB of 2^20 bytes: PEMs of 128 and 256 texels a side (RGBA16F), variance shadow maps
  * of 64 to 1024 (RG16F). The PEM columns are twice the size of six faces of RGBA16F: 128^2 x 6 x 8 bytes are
@@ -24,8 +28,9 @@ size_t tl_memory_chains(int regions, int size);
 /* Bytes of `regions` shadow maps. */
 size_t tl_memory_shadow_maps(int regions, int size, size_t texel_bytes);
 
-/* The paper's proposal: one paraboloid map per region, cropped to the region, with mip levels, at its centre
- * as dense as the centre of a cube's face. RGBA16F. Lobes wider than the region itself do not fit into it. */
-size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions);
+/* The paper's proposal as pem/pems.h keeps it: cropped paraboloid maps, those of `per_array` regions in one
+ * texture. RGBA16F. Filters the regions, since the crops are those of what they become. */
+size_t tl_memory_paraboloids(const tl_cube *cube, const struct tl_regions *regions,
+                             enum tl_chain_filter filter, int per_array);
 
 #endif

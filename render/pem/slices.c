@@ -261,16 +261,6 @@ size_t tl_slices_bytes_of(const tl_cube *cube, const struct tl_regions *regions,
     return bytes;
 }
 
-void tl_slices_radii(const tl_cube *cube, const struct tl_regions *regions, float radii[])
-{
-    struct tl_slice_frame *frames = TL_NEW_ARRAY(struct tl_slice_frame, (size_t)regions->count);
-    struct region *sources = prepare_all(cube, regions, frames);
-    for (int i = 0; i < regions->count; i++)
-        radii[i] = sources[i].radius;
-    release_all(sources, regions->count);
-    free(frames);
-}
-
 void tl_slices_release(struct tl_slices *slices)
 {
     for (size_t i = 0; i < TL_COUNT(slices->texels); i++)

@@ -40,8 +40,5 @@ vec3s tl_slices_fetch(const struct tl_slices *slices, int region, vec3s directio
 size_t tl_slices_bytes(const struct tl_slices *slices);
 /* The size that the slices of `exponents` will have, computed without making them. */
 size_t tl_slices_bytes_of(const tl_cube *cube, const struct tl_regions *regions, uint32_t exponents);
-/* Half-angles (rad, by region) of the smallest cones about the directions of the frames that contain all lit
- * texels. */
-void tl_slices_radii(const tl_cube *cube, const struct tl_regions *regions, float radii[]);
 
 #endif

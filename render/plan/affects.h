@@ -13,8 +13,8 @@
 #define TL_AFFECTS_PEM_SIZE    TL_AFFECTS_RENDER_BIT(2)
 #define TL_AFFECTS_FILTER      TL_AFFECTS_RENDER_BIT(3) /* how PEMs are filtered */
 #define TL_AFFECTS_SUN         TL_AFFECTS_RENDER_BIT(4)
-#define TL_AFFECTS_REGIONS     TL_AFFECTS_RENDER_BIT(5) /* how the environment is cut */
-#define TL_AFFECTS_PASSES      TL_AFFECTS_RENDER_BIT(6)
+#define TL_AFFECTS_REGIONS     TL_AFFECTS_RENDER_BIT(5)  /* how the environment is cut */
+#define TL_AFFECTS_PASSES      TL_AFFECTS_RENDER_BIT(6)  /* how PEMs are stored */
 #define TL_AFFECTS_SHADOW_MAPS TL_AFFECTS_RENDER_BIT(7)  /* size and blur of the shadow maps */
 #define TL_AFFECTS_RAYS        TL_AFFECTS_RENDER_BIT(8)  /* how rays are spent */
 #define TL_AFFECTS_LIGHT       TL_AFFECTS_RENDER_BIT(9)  /* how light is put together */

@@ -5,6 +5,7 @@ target_compile_definitions(toile_test_scenes PRIVATE TOILE_DATA_DIR="") # testin
 
 toile_test(gpu/gpu gpu toile_render PkgConfig::EPOXY)
 toile_test(light/light gpu toile_test_scenes)
+toile_test(light/pem_layouts gpu toile_test_scenes)
 toile_test(gbuffer/cull gpu toile_test_scenes)
 toile_test(gbuffer/id_layers unit toile_render)
 toile_test(gbuffer/raster gpu toile_test_scenes)

@@ -19,6 +19,7 @@ foreach(name
     env/mip_levels
     pem/lobe
     pem/lobe_error
+    pem/paraboloids
     env/lobes
     visibility/map_fit
     visibility/map_order

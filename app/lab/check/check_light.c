@@ -336,13 +336,29 @@ void tl_measure_slices(const struct tl_checked *checked, struct tl_finding *find
     free(light);
 }
 
+/* A level of the undivided cube, as it is stored: paraboloid maps are fetched at the centres of its texels.
+ */
+static tl_cube whole_level(const struct tl_pems *pems, const struct tl_chain *whole, int level)
+{
+    tl_cube out = tl_cube_copy(&whole->levels[level]);
+    const struct tl_paraboloid map = tl_paraboloid_place(whole);
+    for (int chart = 0; chart < TL_PARABOLOID_CHARTS && pems->paraboloids; chart++) {
+        float *texels = tl_paraboloid_sample(&map, whole, level, chart);
+        if (texels)
+            tl_paraboloid_resample(&map.crops[level][chart], tl_paraboloid_density(pems->size, level), texels,
+                                   chart, &out);
+        free(texels);
+    }
+    return out;
+}
+
 /* Compares the sum of all PEMs at one level with that level of the undivided cube. They are equal, as filters
- * are linear. */
+ * and sampling are linear. */
 static void add_pem_level(const struct tl_resources *inside, const struct tl_chain *whole, int level,
                           struct tl_finding *finding)
 {
-    const tl_cube *expected = &whole->levels[level];
-    size_t values = 18 * (size_t)expected->size * (size_t)expected->size;
+    tl_cube expected = whole_level(&inside->pems, whole, level);
+    size_t values = 18 * (size_t)expected.size * (size_t)expected.size;
     double *sums = TL_NEW_ARRAY(double, values), mean = 0;
     for (int i = 0; i < inside->pems.count; i++) {
         tl_cube pem = tl_pems_read(&inside->pems, i, level);
@@ -351,12 +367,13 @@ static void add_pem_level(const struct tl_resources *inside, const struct tl_cha
         tl_cube_release(&pem);
     }
     for (size_t v = 0; v < values; v++)
-        mean += (double)expected->texels[v] / (double)values;
+        mean += (double)expected.texels[v] / (double)values;
     for (size_t v = 0; v < values; v++) {
-        double off = fabs(sums[v] - (double)expected->texels[v]);
-        if (tl_finding_add(finding, off > 0 ? off / ((double)expected->texels[v] + mean) : off))
+        double off = fabs(sums[v] - (double)expected.texels[v]);
+        if (tl_finding_add(finding, off > 0 ? off / ((double)expected.texels[v] + mean) : off))
             tl_finding_place(finding, "level %d, texel %zu of %zu", level, v / 3, values / 3);
     }
+    tl_cube_release(&expected);
     free(sums);
 }
 

@@ -1,5 +1,5 @@
 /* Glossy self-shadowing with partial environment maps, step by step [Knuth et al. 2014], what goes beyond it,
- * the solvers of the cloth, and what a time budget gives up. Ids D1 to D8, D12 to D15, E2, F2. */
+ * the solvers of the cloth, and what a time budget gives up. Ids D1 to D8, D12 to D16, E2, F2. */
 #include "app/lab/experiments/rows_internal.h"
 
 /* The paper's sum with nothing approximated but what a section is about: exact lobes, plain shadow maps. */
@@ -54,6 +54,9 @@ static const struct tl_technique techniques[] = {
     {.picture = "one bounce", .id = "D15", PRESET("review", "light.bounce=one")},
     {.picture = "all bounces", .id = "D15", PRESET("review", "light.bounce=all")},
 
+    {.picture = "PEMs as cube maps", .id = "D16", SET("light.pem_layout=cube")},
+    {.picture = "PEMs as cropped paraboloids", .id = "D16", SET("light.pem_layout=paraboloid")},
+
     {.picture = "preview", .id = "E2", SET("cloth.solver=preview")},
     {.picture = "settle", .id = "E2", SET("cloth.solver=settle")},
 
@@ -71,6 +74,11 @@ static const struct tl_technique techniques[] = {
 static const struct tl_experiment_appearance glosses[] = {
     {.title = "glossiness 0.3", .assignments = {"material.glossiness=0.3"}},
     {.title = "glossiness 0.95", .assignments = {"material.glossiness=0.95"}},
+};
+
+static const struct tl_experiment_appearance narrow[] = {
+    {.title = "glossiness 0.95", .assignments = {"material.glossiness=0.95"}},
+    {.title = "glossiness 0.99", .assignments = {"material.glossiness=0.99"}},
 };
 
 static const struct tl_experiment experiments[] = {
@@ -244,6 +252,23 @@ static const struct tl_experiment experiments[] = {
      .reference_alone = true,
      .side = 256,
      .ids = {"D15"},
+     TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "d16",
+     .scene = "gallery",
+     .title = "D16  PEMs as cropped paraboloid maps",
+     .text =
+         "A PEM is black but for its region and what the filters spread its light over. Each level is stored "
+         "as parts of paraboloid maps, cropped to that, twice as dense as the cube. The table below has the "
+         "bytes of both.",
+     .exact_text = "the same regions and shadows with exact lobes, each by direct convolution (D4)",
+     .solid = "sphere",
+     .base = {"scene.preset=paper", "light.lobe=dual", "light.regions=24", GREY("0.1", "0.8")},
+     .reference = {.assignments = {"light.prefilter=slices"}},
+     .reference_alone = true,
+     .side = 384,
+     .ids = {"D16"},
+     APPEARANCES(narrow),
      TECHNIQUES(techniques)},
     {.output = TL_OUTPUT_PICTURES,
      .name = "e2",

@@ -54,6 +54,9 @@ static const struct tl_technique techniques[] = {
      .group = "regions, rays",
      PRESET("review", "light.regions=384", "light.refresh=0")},
 
+    {.page = "paper, cubes", .group = "PEMs, paper", PAPER("light.pem_layout=cube")},
+    {.page = "paper, paraboloids", .group = "PEMs, paper", PAPER("light.pem_layout=paraboloid")},
+
     {.page = "paper 32", .group = "map size", PAPER("light.map_size=32")},
     {.page = "paper 64", .group = "map size", PAPER("light.map_size=64"), .quick = true},
     {.page = "paper 128", .group = "map size", PAPER("light.map_size=128")},

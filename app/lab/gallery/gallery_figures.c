@@ -265,6 +265,35 @@ void tl_gallery_memory_figures(FILE *out)
     tl_cells_print(&cells, TL_COUNT(heads), out);
 }
 
+/* ---- D16 ---- */
+
+void tl_gallery_crop_figures(FILE *out)
+{
+    static const int sides[] = {32, 64, 128}, counts[] = {24, 96};
+    static const char *const heads[] = {"texels a side", "24 regions, cubes, MiB", "paraboloids, MiB",
+                                        "96 regions, cubes, MiB", "paraboloids, MiB"};
+    const double mebibyte = 1 << 20;
+    struct tl_cells cells = {0};
+    for (size_t i = 0; i < TL_COUNT(heads); i++)
+        tl_cells_add(&cells, "%s", heads[i]);
+    for (size_t i = 0; i < TL_COUNT(sides); i++) {
+        tl_cube even = tl_cube_create(sides[i]); /* regions of equal solid angle */
+        for (int k = 0; k < 18 * sides[i] * sides[i]; k++)
+            even.texels[k] = 1;
+        tl_cells_add(&cells, "%d", sides[i]);
+        for (size_t k = 0; k < TL_COUNT(counts); k++) {
+            struct tl_regions regions = {0};
+            tl_regions_cut(&even, counts[k], &regions);
+            tl_cells_add(&cells, "%.3f", (double)tl_memory_chains(counts[k], sides[i]) / mebibyte);
+            tl_cells_add(&cells, "%.3f",
+                         (double)tl_memory_paraboloids(&even, &regions, TL_CHAIN_SQRT_COSINE, 12) / mebibyte);
+            tl_regions_release(&regions);
+        }
+        tl_cube_release(&even);
+    }
+    tl_cells_print(&cells, TL_COUNT(heads), out);
+}
+
 /* ---- Which section has which ---- */
 
 void tl_gallery_write_figures(const char *section, FILE *out)
@@ -275,7 +304,7 @@ void tl_gallery_write_figures(const char *section, FILE *out)
     } figures[] = {{"a1", tl_gallery_table_figures},  {"a2", tl_gallery_grazing_figures},
                    {"a3", tl_gallery_folded_figures}, {"a9", tl_gallery_normalise_figures},
                    {"a10", tl_gallery_power_figures}, {"b6", tl_gallery_fresnel_figures},
-                   {"d8", tl_gallery_memory_figures}};
+                   {"d8", tl_gallery_memory_figures}, {"d16", tl_gallery_crop_figures}};
     for (size_t i = 0; i < TL_COUNT(figures); i++)
         if (strcmp(figures[i].section, section) == 0)
             figures[i].write(out);

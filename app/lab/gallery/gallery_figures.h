@@ -15,5 +15,6 @@ void tl_gallery_normalise_figures(FILE *out); /* A9: five normalisations over th
 void tl_gallery_power_figures(FILE *out);     /* A10: a highlight by each power, and their banding */
 void tl_gallery_fresnel_figures(FILE *out);   /* B6: the two indices of the paper's figure 7 */
 void tl_gallery_memory_figures(FILE *out);    /* D8: bytes of PEMs and shadow maps by their size */
+void tl_gallery_crop_figures(FILE *out);      /* D16: bytes of cropped PEMs by number of regions and size */
 
 #endif

@@ -112,7 +112,8 @@ void tl_trade_write_memory(const tl_environment *environment, FILE *out)
     tl_report_paragraph(out,
                         "MiB, with the columns of the paper's figure 8. Its column of PEMs is twice what six "
                         "faces of 128 x 128 "
-                        "RGBA16F take. Paraboloids: the paper's proposal of a map a region, cropped to it.");
+                        "RGBA16F take. Paraboloids: the paper's proposal, maps cropped to where a PEM is not "
+                        "black (light.pem_layout), with mip levels, 12 regions a texture.");
     for (size_t i = 0; i < TL_COUNT(heads); i++)
         tl_cells_add(&cells, "%s", heads[i]);
     for (int i = 0; i < TL_PAPER_ROWS; i++) {
@@ -123,7 +124,8 @@ void tl_trade_write_memory(const tl_environment *environment, FILE *out)
         tl_cells_add(&cells, "%.1f", row->pems_mb[0]);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_cubes(row->regions, size) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_chains(row->regions, size) / MEBIBYTE);
-        tl_cells_add(&cells, "%.2f", (double)tl_memory_paraboloids(&cube, &regions) / MEBIBYTE);
+        tl_cells_add(&cells, "%.2f",
+                     (double)tl_memory_paraboloids(&cube, &regions, TL_CHAIN_SQRT_COSINE, 12) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", row->maps_mb[2]);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_shadow_maps(row->regions, map, 8) / MEBIBYTE);
         tl_cells_add(&cells, "%.2f", (double)tl_memory_shadow_maps(row->regions, map, 4) / MEBIBYTE);

@@ -24,6 +24,7 @@ static const struct {
     /* By maps satin differs from the reference by more than these faults do. */
     {"paper", "--preset paper --fabric cotton_plain"},
     {"turned_maps", "--preset paper --fabric cotton_plain --set scene.environment_yaw_deg=50"},
+    {"paraboloids", "--preset paper --fabric cotton_plain --set light.pem_layout=paraboloid"},
     {"depth",
      "--fabric cotton_plain --set light.visibility=depth --set light.prefilter=slices --set "
      "light.composition=difference "

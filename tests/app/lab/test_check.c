@@ -138,6 +138,14 @@ static struct stand *by_chains(void)
     return stand_up(paper, TL_COUNT(paper));
 }
 
+static struct stand *by_paraboloids(void)
+{
+    static const char *const settings[] = {"scene.preset=paper", "light.regions=24",
+                                           "light.map_size=128", "light.pem_size=32",
+                                           "light.lobe=dual",    "light.pem_layout=paraboloid"};
+    return stand_up(settings, TL_COUNT(settings));
+}
+
 static struct stand *by_slices(void)
 {
     return stand_up(slices, TL_COUNT(slices));
@@ -163,9 +171,9 @@ static void a_clean_frame_passes(void **state)
     static const char *const rays[] = {"visibility.range", "visibility.regions", "light.exact", "light.sum"};
     static const char *const chains[] = {"maps.moments", "light.pems"};
     static const char *const exact[] = {"maps.moments", "light.slices", "light.sum", "light.exact"};
-    stand_maker *const stands[] = {by_rays, by_chains, by_slices};
-    const char *const *const own[] = {rays, chains, exact};
-    const size_t counts[] = {TL_COUNT(rays), TL_COUNT(chains), TL_COUNT(exact)};
+    stand_maker *const stands[] = {by_rays, by_chains, by_paraboloids, by_slices};
+    const char *const *const own[] = {rays, chains, chains, exact};
+    const size_t counts[] = {TL_COUNT(rays), TL_COUNT(chains), TL_COUNT(chains), TL_COUNT(exact)};
     for (size_t i = 0; i < TL_COUNT(stands); i++) {
         struct stand *stand = stands[i]();
         draw_white(stand);
@@ -665,6 +673,16 @@ static void a_lost_region_is_named(void **state)
         glClearTexSubImage(array->id, level, 0, 0, 6 * 5, array->width >> level, array->width >> level, 6,
                            GL_RGBA, GL_FLOAT, black); /* region 5 */
     assert_breaks(&stand->checked, "light.pems", "level");
+    take_down(&stand);
+
+    stand = by_paraboloids();
+    const struct tl_pems *pems = &inside(stand->renderer)->pems;
+    for (int chart = 0; chart < TL_PARABOLOID_CHARTS; chart++) {
+        const struct tl_paraboloid_crop *crop = &pems->paraboloids[5].crops[1][chart];
+        glClearTexSubImage(pems->arrays[0].id, 0, crop->atlas_x, crop->atlas_y, 0, crop->width, crop->height,
+                           1, GL_RGBA, GL_FLOAT, black);
+    }
+    assert_breaks(&stand->checked, "light.pems", "level 1");
     take_down(&stand);
 
     stand = by_slices();

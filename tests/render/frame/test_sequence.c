@@ -3,6 +3,7 @@
 #include "tests/render/scenes.h"
 
 #include "config/memory.h"
+#include "render/pem/pems.h"
 
 #include "tests/testing.h"
 
@@ -107,6 +108,8 @@ static void pems_follow(void **state)
 {
     struct tl_light_params light = small_light();
     light.method = TL_METHOD_UNSHADOWED;
+    play(*state, &light, 4);
+    light.pem_layout = TL_PEM_PARABOLOID;
     play(*state, &light, 4);
 }
 

@@ -139,10 +139,12 @@ static vec3s draw_square(tl_renderer *renderer, const struct orientation *o, con
 }
 
 /* With VIS = 1 the PEMs must add up to the undivided environment, filtered and looked up on the CPU. */
-static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), float glossiness, float tolerance)
+static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), enum tl_cut cut, float glossiness,
+                      float tolerance)
 {
     tl_environment environment = test_environment(128, 64, radiance);
     struct tl_render_settings settings = unshadowed(1, 1, TL_LOBE_DUAL);
+    settings.light.cut = (int)cut;
     tl_cube cube = tl_cube_from_environment(&environment, settings.light.pem_size);
     struct tl_chain chain = tl_chain_build(&cube, TL_CHAIN_SQRT_COSINE);
     struct tl_lobe_table *lobe = TL_NEW(struct tl_lobe_table);
@@ -175,20 +177,26 @@ static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), floa
 static void test_sum_of_pems_smooth(void **state)
 {
     for (int step = 0; step <= 5; step++)
-        check_sum(*state, gradient, (float)(step * 51) / 255, 1.3f * 3 * 8.5e-4f);
+        check_sum(*state, gradient, TL_CUT_FACES, (float)(step * 51) / 255, 1.3f * 3 * 8.5e-4f);
 }
 
 /* The same error is a fiftieth of a texel of 32 a side; neighbours differ by up to one. Faces, borders and
  * corners in a wrong place would show as differences of half. */
 static void test_sum_of_pems_noise(void **state)
 {
-    check_sum(*state, noise, 1, 0.04f);
+    check_sum(*state, noise, TL_CUT_FACES, 1, 0.04f);
+}
+
+/* Regions of the sphere lie on several faces. */
+static void test_sum_of_pems_of_the_sphere(void **state)
+{
+    check_sum(*state, gradient, TL_CUT_SPHERE, 0.6f, 1.3f * 3 * 8.5e-4f);
 }
 
 /* A sun of 1e6 does not fit a half float; it must come back as it was. */
 static void test_sum_of_pems_sun(void **state)
 {
-    check_sum(*state, sunny, 0.6f, 1e6f * 2e-3f * HALF_STEP);
+    check_sum(*state, sunny, TL_CUT_FACES, 0.6f, 1e6f * 2e-3f * HALF_STEP);
 }
 
 static double largest_difference(const tl_image *a, const tl_image *b)
@@ -461,6 +469,7 @@ int main(void)
         cmocka_unit_test(test_fresnel),
         cmocka_unit_test(test_sum_of_pems_smooth),
         cmocka_unit_test(test_sum_of_pems_noise),
+        cmocka_unit_test(test_sum_of_pems_of_the_sphere),
         cmocka_unit_test(test_sum_of_pems_sun),
         cmocka_unit_test(test_passes_add_up),
         cmocka_unit_test(test_twice_the_same_bits),

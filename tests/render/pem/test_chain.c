@@ -150,7 +150,7 @@ static void pems_add_up_to_the_whole(void **state)
     struct tl_chain whole = tl_chain_build(&cube, TL_CHAIN_SQRT_COSINE);
     struct tl_chain sums = tl_chain_build(&black, TL_CHAIN_SQRT_COSINE);
     for (int i = 0; i < regions.count; i++) {
-        tl_cube pem = tl_pem_cut(&cube, &regions.items[i]);
+        tl_cube pem = tl_pem_cut(&cube, &regions, i);
         struct tl_chain chain = tl_chain_build(&pem, TL_CHAIN_SQRT_COSINE);
         for (int level = 0; level < chain.level_count; level++)
             for (size_t k = 0; k < float_count(&chain.levels[level]); k++)
@@ -177,7 +177,7 @@ static void skipping_black_changes_no_bit(void **state)
     struct tl_regions regions = {0};
     tl_regions_cut(&cube, 96, &regions);
     for (int i = 0; i < regions.count; i += 7) {
-        tl_cube pem = tl_pem_cut(&cube, &regions.items[i]), dense = tl_pem_cut(&cube, &regions.items[i]);
+        tl_cube pem = tl_pem_cut(&cube, &regions, i), dense = tl_pem_cut(&cube, &regions, i);
         for (size_t k = 0; k < float_count(&dense); k++)
             dense.texels[k] += 1e-30f;
         struct tl_chain sparse_chain = tl_chain_build(&pem, TL_CHAIN_SQRT_COSINE);

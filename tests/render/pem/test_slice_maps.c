@@ -174,7 +174,52 @@ static void chains_take_what_is_computed(void **state)
     tl_cube cube = bright_cube(1);
     tl_regions_cut(&cube, REGIONS, &regions);
     struct tl_pems pems = {0};
-    tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE, 12);
+    tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE,
+                  (struct tl_pem_storage){12, TL_PEM_CUBE});
+    assert_int_equal(tl_pems_bytes(&pems), tl_memory_chains(REGIONS, SIZE));
+    tl_pems_release(&pems);
+    tl_regions_release(&regions);
+    tl_cube_release(&cube);
+}
+
+static size_t stored_bytes(const tl_texture *texture)
+{
+    size_t bytes = 0;
+    for (int level = 0; level < texture->levels; level++) {
+        GLint width, height, depth;
+        glGetTextureLevelParameteriv(texture->id, level, GL_TEXTURE_WIDTH, &width);
+        glGetTextureLevelParameteriv(texture->id, level, GL_TEXTURE_HEIGHT, &height);
+        glGetTextureLevelParameteriv(texture->id, level, GL_TEXTURE_DEPTH, &depth);
+        bytes += (size_t)width * (size_t)height * (size_t)depth * 8;
+    }
+    return bytes;
+}
+
+/* The same for paraboloids, with what GL says of its textures; and switching back and forth leaves nothing.
+ */
+static void paraboloids_take_what_is_computed(void **state)
+{
+    tl_gpu *gpu = *state;
+    tl_cube cube = bright_cube(1);
+    struct tl_pems pems = {0};
+    for (int sphere = 0; sphere < 2; sphere++) {
+        if (sphere)
+            tl_regions_cut_sphere(&cube, REGIONS, &regions);
+        else
+            tl_regions_cut(&cube, REGIONS, &regions);
+        size_t before = tl_gpu_texture_bytes(gpu) - tl_pems_bytes(&pems), stored = 0;
+        tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE,
+                      (struct tl_pem_storage){7, TL_PEM_PARABOLOID});
+        for (int i = 0; i < pems.array_count; i++)
+            stored += stored_bytes(&pems.arrays[i]);
+        size_t computed = tl_memory_paraboloids(&cube, &regions, TL_CHAIN_SQRT_COSINE, 7);
+        assert_int_equal(tl_pems_bytes(&pems), computed);
+        assert_int_equal(stored, computed);
+        assert_int_equal(tl_gpu_texture_bytes(gpu) - before, computed);
+        assert_true(computed < tl_memory_chains(REGIONS, SIZE));
+        printf("%zu bytes, cubes take %zu\n", computed, tl_memory_chains(REGIONS, SIZE));
+    }
+    tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE, (struct tl_pem_storage){7, TL_PEM_CUBE});
     assert_int_equal(tl_pems_bytes(&pems), tl_memory_chains(REGIONS, SIZE));
     tl_pems_release(&pems);
     tl_regions_release(&regions);
@@ -187,6 +232,7 @@ int main(void)
         cmocka_unit_test(the_shader_fetches_as_the_cpu),
         cmocka_unit_test(a_sun_stays_in_range),
         cmocka_unit_test(chains_take_what_is_computed),
+        cmocka_unit_test(paraboloids_take_what_is_computed),
     };
     return cmocka_run_group_tests(tests, open_gpu, close_gpu);
 }
