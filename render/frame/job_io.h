@@ -393,6 +393,9 @@
     IO(AFTER, TL_INPUT_VIEW)                                                                                 \
     IO(WRITES, light)                                                                                        \
     IO(USES, envmap)                                                                                         \
+    IO(READS_HANDLE, surfaces)                                                                               \
+    IO(SEES, shapes)                                                                                         \
+    IO(SEES, shift)                                                                                          \
     IO(SEES, lighting)                                                                                       \
     IO(USES, gpu)
 

@@ -75,13 +75,13 @@ bool tl_run_envmap(const struct tl_envmap_job *job, tl_error *error)
 
 bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
 {
-    const tl_target *gbuffer = &job->gbuffer->target;
-    const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+    const struct tl_envmap_request request = {.gbuffer = &job->gbuffer->target,
                                               .exponent_levels = &job->lighting->exponent_levels,
-                                              .eye = job->camera->view.eye,
+                                              .view = &job->shift->view,
+                                              .surfaces = job->surfaces,
+                                              .surface_count = job->shapes->drawn_count,
                                               .params = job->look_up};
-    tl_light_buffer_begin(job->light, *job->gpu, gbuffer, true);
-    bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, error);
+    bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, job->light, error);
     tl_gpu_reset_state(*job->gpu);
     return fine;
 }
