@@ -279,18 +279,13 @@ void main()
 #else
     float cosine = clamp(dot(place.normal, v), 0.0, 1.0);
 #endif
-#ifdef GROUND
-    bool is_ground = part.is_ground != 0u;
-#else
-    const bool is_ground = false;
-#endif
-    if (PASS == SHARE) { // the ground has no share, and all of its light comes with the light below
-        light = vec4(0.0, 0.0, 0.0, is_ground ? 0.0 : share_over(part, number, place, v, cosine)[channel]);
+    if (PASS == SHARE) {
+        light = vec4(0.0, 0.0, 0.0, share_over(part, number, place, v, cosine)[channel]);
         return;
     }
     vec3 colour = PASS == WHOLE ? whole_light(part, number, place, v, cosine, ratio) : pass_light(part, place, v, ratio);
-#ifdef GROUND
-    if (is_ground && (PASS == WHOLE || (COMPOSITION == OFF ? MODE != SURFACE : PASS == UNDER)))
+#ifdef GROUND // its specular colour and its share are 0: of several passes the one of the light below draws it
+    if (part.is_ground != 0u && (PASS == WHOLE || (COMPOSITION == OFF ? MODE != SURFACE : PASS == UNDER)))
         colour = light_of(SURFACE, place, v, ratio);
 #endif
     light = PASS == WHOLE ? vec4(colour * place.cover, 0.0) : vec4(colour * pass_scale, 0.0);

@@ -173,7 +173,7 @@ static void add_pass(struct pass_list *list, int term, GLenum factor)
     list->items[list->count++] = (struct pass){term, factor};
 }
 
-/* The terms of envmap.h. The ground has no share, and all of its light is that of UNDER. */
+/* The terms of envmap.h. All light of the ground is that of UNDER, because it has no share. */
 static struct pass_list list_passes(const struct tl_envmap *envmap, const struct tl_maps_params *params)
 {
     struct pass_list list = {0};
