@@ -34,20 +34,20 @@ enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT, PASSED_UNIT, OVER_VECTORS_UNIT,
 /* PASS in envmap.frag. */
 enum { WHOLE, SHARE, OVER, UNDER, COATING, THROUGH, SUM };
 /* A pass, and the factor on what it adds. */
-struct pass {
-    int term;
+struct term {
+    int pass;
     GLenum factor;
 };
 #define PASSES_MAX 5
-struct pass_list {
+struct term_list {
     int count;
-    struct pass items[PASSES_MAX];
+    struct term items[PASSES_MAX];
 };
 
-/* The texture, and the program, of one draw. */
+/* What one draw over all samples does. */
 struct draw {
     const struct tl_envmap_request *request;
-    int term;
+    int pass;
     int half;    /* of a pair of paraboloids: 0, 1; -1: both */
     int channel; /* of the share */
 };
@@ -69,8 +69,8 @@ static char *defines_of(const struct tl_envmap *envmap, const struct draw *draw)
     static const char *const halves[3] = {"", "#define HALF 0\n", "#define HALF 1\n"};
     const struct tl_maps_params *params = draw->request->params;
     char pass[32] = "";
-    if (draw->term != WHOLE)
-        snprintf(pass, sizeof pass, "#define PASS %d\n", draw->term);
+    if (draw->pass != WHOLE)
+        snprintf(pass, sizeof pass, "#define PASS %d\n", draw->pass);
     return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s%s%s%s%s",
                      layouts[envmap->layout], params->mode, params->fresnel,
                      by_matrix(envmap, params) ? "#define MATRIX\n" : "",
@@ -141,9 +141,9 @@ static bool draw_term(struct tl_envmap *envmap, tl_gpu *gpu, const struct draw *
     glUniform1f(TEXEL_REACH, texel_reach(&envmap->levels));
     glUniform1i(PART_COUNT, envmap->part_count);
     glUniform1iv(SLOTS, TL_EXPONENT_COUNT + 1, envmap->slots);
-    if (draw->term != WHOLE) {
+    if (draw->pass != WHOLE) {
         glUniform1i(CHANNEL, draw->channel);
-        glUniform1f(PASS_SCALE, draw->term == SUM ? 1 / scale_of(params) : scale_of(params));
+        glUniform1f(PASS_SCALE, draw->pass == SUM ? 1 / scale_of(params) : scale_of(params));
     }
     if (by_matrix(envmap, params))
         set_matrices(&envmap->turn);
@@ -168,15 +168,15 @@ static void bind_textures(const struct tl_envmap *envmap, const struct tl_envmap
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, PARTS_BINDING, envmap->parts_buffer);
 }
 
-static void add_pass(struct pass_list *list, int term, GLenum factor)
+static void add_pass(struct term_list *list, int pass, GLenum factor)
 {
-    list->items[list->count++] = (struct pass){term, factor};
+    list->items[list->count++] = (struct term){pass, factor};
 }
 
 /* The terms of envmap.h. All light of the ground is that of UNDER, because it has no share. */
-static struct pass_list list_passes(const struct tl_envmap *envmap, const struct tl_maps_params *params)
+static struct term_list list_passes(const struct tl_envmap *envmap, const struct tl_maps_params *params)
 {
-    struct pass_list list = {0};
+    struct term_list list = {0};
     bool layered = is_layered(envmap, params), shared = params->fresnel != TL_MAPS_FRESNEL_OFF;
     bool only_under =
         params->mode == TL_MAPS_DIFFUSE ||
@@ -198,18 +198,18 @@ static struct pass_list list_passes(const struct tl_envmap *envmap, const struct
 
 /* Adds up the passes of one colour, or of all colours when `mask` is -1. */
 static bool draw_passes(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
-                        const struct pass_list *list, int mask, tl_error *error)
+                        const struct term_list *list, int mask, tl_error *error)
 {
     bool fine = true;
     int halves = by_matrix(envmap, request->params) ? 2 : 1;
     for (int i = 0; fine && i < list->count; i++) {
-        const struct pass *pass = &list->items[i];
-        bool is_share = pass->term == SHARE;
+        const struct term *term = &list->items[i];
+        bool is_share = term->pass == SHARE;
         glColorMask(!is_share && mask != 1 && mask != 2, !is_share && mask != 0 && mask != 2,
                     !is_share && mask != 0 && mask != 1, is_share);
-        glBlendFunc(pass->factor, is_share ? GL_ZERO : GL_ONE);
+        glBlendFunc(term->factor, is_share ? GL_ZERO : GL_ONE);
         for (int half = 0; fine && half < (is_share ? 1 : halves); half++) {
-            const struct draw draw = {request, pass->term, halves == 1 || is_share ? -1 : half,
+            const struct draw draw = {request, term->pass, halves == 1 || is_share ? -1 : half,
                                       mask < 0 ? 0 : mask};
             fine = draw_term(envmap, gpu, &draw, error);
         }
@@ -223,7 +223,7 @@ static bool draw_several(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_
 {
     const unsigned format = request->params->pass_target == TL_PASS_TARGET_FIXED8 ? GL_RGBA8 : GL_RGBA32F;
     const float black[] = {0, 0, 0, 0};
-    const struct pass_list list = list_passes(envmap, request->params);
+    const struct term_list list = list_passes(envmap, request->params);
     bool by_colour = request->params->fresnel != TL_MAPS_FRESNEL_OFF && envmap->has_colours, fine = true;
     tl_target_fit(&envmap->passed, gpu, request->gbuffer, &format, 1);
     glClearNamedFramebufferfv(envmap->passed.id, GL_COLOR, 0, black);
