@@ -2,7 +2,7 @@
 // The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
 // #defined as the numbers below. GROUND: the ground is drawn, always as SURFACE. MINIFY: mirrors read mip levels.
 // LAYERED: some surfaces have coats or transmit light. PASS: this draw is one of several passes (passes.c). VERTEX_VECTORS:
-// directions come from vertices (vectors.frag).
+// directions come from vertices (vectors.frag). BAKED: diffuse light comes from light maps (light_map.frag).
 #include "exponents.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
@@ -50,6 +50,10 @@ vec4 vertex_vector(sampler2D vectors)
 {
     return texelFetch(vectors, ivec2(gl_FragCoord.xy), 0);
 }
+#endif
+
+#ifdef BAKED
+layout(binding = 11) uniform sampler2D baked; // diffuse light of every sample
 #endif
 
 // The part of a triangle, by binary search; parts are sorted by their first triangle.
@@ -150,6 +154,10 @@ vec3 under_light(int mode, Sample place, vec3 v, float ratio)
     vec3 d = vertex_vector(under_vectors).xyz;
 #else
     vec3 d = mode == TRANSMISSION ? -v : place.normal;
+#endif
+#ifdef BAKED
+    if (mode != TRANSMISSION)
+        return place.kd * texelFetch(baked, ivec2(gl_FragCoord.xy), 0).rgb;
 #endif
     return place.kd * (mode == TRANSMISSION ? lobe_light(d, place.glossiness) : irradiance(d));
 }

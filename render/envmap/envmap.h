@@ -17,6 +17,9 @@
  *
  * F is that of the material (render/brdf), from a table over n . v, which ignores maps.
  *
+ * The terms are drawn in one pass or in several (passes.c), with directions from pixels or from vertices
+ * (vectors.h).
+ *
  * L and E are the contents of the map; the sharpness of L is limited by its resolution. World space; needs
  * the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_ENVMAP_ENVMAP_H
@@ -80,6 +83,8 @@ struct tl_envmap_request {
     const struct tl_view *view;
     const tl_surfaces *surfaces; /* that the G-buffer shows; the ground, if set, is the last one */
     size_t surface_count;
+    const tl_texture
+        *baked; /* diffuse light of every sample in place of the map's (light_map.h); NULL: none */
     const struct tl_maps_params *params;
 };
 /* Draws the light of all samples over a light buffer. False when a shader cannot be compiled. */

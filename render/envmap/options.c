@@ -43,6 +43,10 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(maps_params, vectors, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LOOK_UP, vectors_names,
                    "where directions of look-ups are computed; vertex: at vertices, without bumps, "
                    "interpolated without renormalisation"),
+    TL_OPTION_INT(
+        maps_params, light_map, TL_AFFECTS_APPEARANCE | TL_AFFECTS_ENVMAP, 0, 1024, "texels",
+        "side of the textures of diffuse light with shadows, baked over the UVs of each surface, or at "
+        "its vertices where UVs overlap; what moves is baked again in every frame; 0: none"),
     TL_OPTION_INT(maps_params, capture_every, TL_AFFECTS_APPEARANCE, 0, 1000000, "frames",
                   "redraws the scene into the map if it has changed and this many frames have passed; 0: the "
                   "map holds the environment only"),

@@ -34,6 +34,7 @@ struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int pass_target;     /* enum tl_pass_target (render/local/shading.h), of SEVERAL */
     float pass_white;    /* radiance of the largest value of TL_PASS_TARGET_FIXED8 */
     int vectors;         /* enum tl_maps_vectors */
+    int light_map;       /* texels, side of the textures that diffuse light is baked into; 0: none */
     int capture_every;   /* frames between captures of the scene; 0: the environment only */
     float capture_at[3]; /* metres, from the centre of the casters */
 };

@@ -28,7 +28,15 @@ enum {
     PASS_SCALE
 };
 /* Texture units; the layers of the G-buffer come first. */
-enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT, PASSED_UNIT, OVER_VECTORS_UNIT, UNDER_VECTORS_UNIT };
+enum {
+    LEVELS_UNIT = 5,
+    MAPS_UNIT,
+    FRESNEL_UNIT,
+    PASSED_UNIT,
+    OVER_VECTORS_UNIT,
+    UNDER_VECTORS_UNIT,
+    BAKED_UNIT
+};
 #define PARTS_BINDING 1
 
 /* PASS in envmap.frag. */
@@ -71,13 +79,13 @@ static char *defines_of(const struct tl_envmap *envmap, const struct draw *draw)
     char pass[32] = "";
     if (draw->pass != WHOLE)
         snprintf(pass, sizeof pass, "#define PASS %d\n", draw->pass);
-    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s%s%s%s%s",
+    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s%s%s%s%s%s",
                      layouts[envmap->layout], params->mode, params->fresnel,
                      by_matrix(envmap, params) ? "#define MATRIX\n" : "",
                      envmap->has_ground ? "#define GROUND\n" : "", params->minify ? "#define MINIFY\n" : "",
                      is_layered(envmap, params) ? "#define LAYERED\n" : "",
-                     params->vectors == TL_MAPS_VECTORS_VERTEX ? "#define VERTEX_VECTORS\n" : "", pass,
-                     halves[draw->half + 1]);
+                     params->vectors == TL_MAPS_VECTORS_VERTEX ? "#define VERTEX_VECTORS\n" : "",
+                     draw->request->baked ? "#define BAKED\n" : "", pass, halves[draw->half + 1]);
 }
 
 static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu, const struct draw *draw,
@@ -165,6 +173,8 @@ static void bind_textures(const struct tl_envmap *envmap, const struct tl_envmap
     glBindTextureUnit(FRESNEL_UNIT, envmap->fresnel.id);
     glBindTextureUnit(OVER_VECTORS_UNIT, envmap->vectors.target.colours[0].id);
     glBindTextureUnit(UNDER_VECTORS_UNIT, envmap->vectors.target.colours[1].id);
+    if (request->baked)
+        glBindTextureUnit(BAKED_UNIT, request->baked->id);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, PARTS_BINDING, envmap->parts_buffer);
 }
 
