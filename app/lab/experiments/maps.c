@@ -54,7 +54,7 @@ static const struct tl_technique techniques[] = {
     {.picture = "woven, mirror", .id = "B7", SET(BUMPY, "maps.mode=mirror")},
 };
 
-/* Passes, and vectors at vertices: two sections of one id. */
+/* Passes, vectors at vertices, and light maps: three sections of one id. */
 #define SEVERAL "maps.passes=several"
 #define HALVES  "maps.layout=paraboloid", "maps.look_up=matrix"
 static const struct tl_technique passes[] = {
@@ -78,6 +78,15 @@ static const struct tl_technique vectors[] = {
      SET("maps.vectors=vertex")},
     {.picture = "paraboloid by matrix, vectors at vertices", .id = "B8", SET("maps.vectors=vertex", HALVES)},
     {.picture = "sphere, vectors at vertices", .id = "B8", SET("maps.vectors=vertex", "maps.layout=sphere")},
+};
+
+static const struct tl_technique light_maps[] = {
+    {.picture = "environment map, no shadows", .id = "B8", SET("maps.light_map=0")},
+    {.picture = "light maps of 32 texels", .id = "B8", SET("maps.light_map=32")},
+    {.picture = "light maps of 128 texels",
+     .golden = "envmap_light_map",
+     .id = "B8",
+     SET("maps.light_map=128")},
 };
 
 static const struct tl_experiment_appearance edges[] = {
@@ -230,5 +239,20 @@ static const struct tl_experiment experiments[] = {
      .ids = {"B8"},
      APPEARANCES(edges),
      TECHNIQUES(vectors)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "b8_light_maps",
+     .scene = "gallery",
+     .title = "B8  Light maps",
+     .text =
+         "Where neither light nor surfaces move, diffuse light with its shadows is baked into a texture over "
+         "each surface's UVs, and multiplied by the material's colour [004].",
+     .exact_text = "every sample lit by rays to the environment, without bounces",
+     .side = 384,
+     .solid = "torus",
+     .base = {"light.method=maps", "maps.mode=diffuse", "light.bounce=off", "image.ground=true",
+              "reference.strata=256"},
+     .reference = {.assignments = {TRACED, "material.specular=[0, 0, 0]", FEW_SAMPLES}},
+     .ids = {"B8"},
+     TECHNIQUES(light_maps)},
 };
 const struct tl_experiment_list tl_maps_experiments = {experiments, TL_COUNT(experiments)};
