@@ -18,7 +18,7 @@
  * F is that of the material (render/brdf), from a table over n . v, which ignores maps.
  *
  * The terms are drawn in one pass or in several (passes.c), with directions from pixels or from vertices
- * (vectors.h).
+ * (vectors.h). Light maps (light_map.h) take the place of E(n, 1).
  *
  * L and E are the contents of the map; the sharpness of L is limited by its resolution. World space; needs
  * the GL context of its tl_gpu. */

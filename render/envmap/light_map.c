@@ -1,5 +1,6 @@
 #include "render/envmap/light_map.h"
 
+#include "config/interrupt.h"
 #include "config/log.h"
 #include "config/memory.h"
 #include "render/envmap/light_map_bake.h"
@@ -191,14 +192,17 @@ bool tl_light_map_bake(struct tl_light_map *map, tl_gpu *gpu, const struct tl_re
     }
     tl_progress_end(&progress);
     tl_reference_scene_release(&scene);
-    send(map, gpu, &bake);
-    tl_info("light maps: %d surfaces baked in %d x %d texels, %zu at vertices", bake.layers / 2, side, side,
-            count - (size_t)(bake.layers / 2));
+    bool fine = !tl_interrupted();
+    if (fine) {
+        send(map, gpu, &bake);
+        tl_info("light maps: %d surfaces baked in %d x %d texels, %zu at vertices", bake.layers / 2, side,
+                side, count - (size_t)(bake.layers / 2));
+    }
     for (size_t i = 0; i < count; i++)
         free(bake.texels[i]);
     free(bake.texels);
     free(bake.vertices);
-    return true;
+    return fine || tl_fail(error, TL_INTERRUPTED, "light maps: interrupted while they were baked");
 }
 
 /* UVs to places in the texture, for the middles of texels that tl_light_map_weights has. */

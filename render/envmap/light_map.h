@@ -40,9 +40,8 @@ size_t tl_light_map_bytes(const struct tl_light_map *map);
 
 /* Whether every point of the surface has a place of its own in UV, as far as texels of 1 / side tell. */
 bool tl_light_map_fits(const tl_surface *surface, int side);
-/* Bakes the frame of the request, whose view is not used, with this many texels a side and its strata times
- * replicates as the number of directions; prints what was baked. False with TL_DEVICE if the BVH cannot be
- * built, or when interrupted. */
+/* Bakes the frame of the request, whose view is not used, with this many texels a side and as many directions
+ * as its strata; prints what was baked. Errors: TL_DEVICE if the BVH cannot be built, TL_INTERRUPTED. */
 bool tl_light_map_bake(struct tl_light_map *map, tl_gpu *gpu, const struct tl_reference_request *request,
                        int side, tl_error *error);
 /* Draws the light of the samples of a G-buffer into the target. */

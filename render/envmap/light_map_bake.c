@@ -1,5 +1,6 @@
 #include "render/envmap/light_map_bake.h"
 
+#include "config/interrupt.h"
 #include "config/memory.h"
 #include "render/reference/gather.h"
 
@@ -145,6 +146,8 @@ void tl_light_map_gather(const struct tl_reference_scene *scene, int directions,
                              tl_random_begin(~(uint64_t)group, 1), sky + (size_t)group * (size_t)directions);
 #pragma omp parallel for schedule(dynamic)
     for (size_t batch = 0; batch < batches; batch++) {
+        if (tl_interrupted())
+            continue;
         size_t first = batch * TL_SHADING_POINTS, left = count - first;
         gather_batch(scene, directions, sky + batch % GROUPS * (size_t)directions, points + first,
                      left < TL_SHADING_POINTS ? left : TL_SHADING_POINTS, batch, light);

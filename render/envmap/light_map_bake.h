@@ -21,7 +21,7 @@ uint32_t *tl_light_map_triangles(const tl_surface *surface, int side);
 vec3s tl_light_map_weights(const tl_surface *surface, uint32_t triangle, vec2s low, vec2s extent, int side,
                            int texel);
 /* Gathers E(normal, 1), the mean of the light about the normal by its cosine, shadowed. light[4 at]: RGB, 1.
- */
+ * An interrupt (config/interrupt.h) leaves out the rest. */
 void tl_light_map_gather(const struct tl_reference_scene *scene, int directions,
                          const struct tl_baked_point *points, size_t count, float *light);
 /* Fills texels whose last number is 0 from neighbours that have light, so that bilinear look-ups near the

@@ -55,6 +55,6 @@ static const struct tl_option rows[] = {
         "point of the capture, relative to the centre of the scene; surfaces around it are left out"),
 };
 const struct tl_option_table tl_maps_options =
-    TL_OPTION_TABLE("maps", "classic environment mapping, light.method maps: unshadowed", rows, maps_params,
-                    .layout = TL_LAYOUT_CUBE, .size = 128, .minify = true,
+    TL_OPTION_TABLE("maps", "classic environment mapping, light.method maps: unshadowed but for light maps",
+                    rows, maps_params, .layout = TL_LAYOUT_CUBE, .size = 128, .minify = true,
                     .pass_target = TL_PASS_TARGET_FLOAT, .pass_white = 1);
