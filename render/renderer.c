@@ -162,6 +162,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
     tl_light_buffer_release(&resources->light);
     tl_lighting_release(&resources->lighting);
     tl_envmap_release(&resources->envmap);
+    tl_light_map_release(&resources->light_map);
     tl_local_release(&resources->local);
     tl_capture_release(&resources->capture);
     tl_present_release(&resources->present);
@@ -329,6 +330,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_gbuffer_reload(&renderer->resources.transparency.behind, &error) ||
         !tl_lighting_reload(&renderer->resources.lighting, &error) ||
         !tl_envmap_reload(&renderer->resources.envmap, &error) ||
+        !tl_light_map_reload(&renderer->resources.light_map, &error) ||
         !tl_capture_reload(&renderer->resources.capture, &error) ||
         !tl_present_reload(&renderer->resources.present, &error))
         tl_warn("%s", error.message);
@@ -361,6 +363,14 @@ static bool check_envmap_size(const tl_frame *frame, const struct tl_render_sett
                        "maps: %d environment maps of %d texels need %d MB, more than %d: lower maps.size",
                        __builtin_popcount(exponents), settings->maps.size, (int)(bytes >> 20),
                        (int)(TEXTURE_BYTES_MAX >> 20));
+    uint64_t side = (uint64_t)settings->maps.light_map;
+    bytes = TL_LIGHT_MAP_TEXEL_BYTES * side * side * (frame->surface_count + 1);
+    if (bytes > TEXTURE_BYTES_MAX)
+        return tl_fail(
+            error, TL_USAGE,
+            "maps: light maps of %d texels for %zu surfaces need %d MB, more than %d: lower maps.light_map",
+            settings->maps.light_map, frame->surface_count + 1, (int)(bytes >> 20),
+            (int)(TEXTURE_BYTES_MAX >> 20));
     return true;
 }
 
@@ -439,7 +449,8 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
     resources->detail_steps = settings->detail;
     resources->detail_options = tl_input_detail_maps(&settings->detail);
     resources->show_options = tl_input_show(image);
-    resources->envmap_size = (struct tl_envmap_input){settings->maps.size, settings->maps.capture_every > 0};
+    resources->envmap_size = (struct tl_envmap_input){settings->maps.size, settings->maps.capture_every > 0,
+                                                      settings->maps.light_map};
     resources->layout = tl_input_layout(&settings->maps);
     resources->look_up = tl_input_look_up(&settings->maps);
     resources->capture_options = tl_input_capture(&settings->maps);

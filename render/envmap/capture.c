@@ -64,13 +64,13 @@ static bool add_lamps(struct tl_capture *capture, tl_gpu *gpu, const struct tl_c
 static bool light_view(struct tl_capture *capture, tl_gpu *gpu, const struct tl_capture_request *request,
                        const struct tl_view *view, tl_error *error)
 {
-    const tl_target *gbuffer = &capture->gbuffer.target;
-    const struct tl_envmap_request look_up = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+    const struct tl_envmap_request look_up = {.gbuffer = &capture->gbuffer.target,
                                               .exponent_levels = request->exponent_levels,
-                                              .eye = request->point,
+                                              .view = view,
+                                              .surfaces = request->surfaces,
+                                              .surface_count = request->ranges->surface_count,
                                               .params = &around_params};
-    tl_light_buffer_begin(&capture->light, gpu, gbuffer, true);
-    bool fine = tl_envmap_draw(&capture->around, gpu, &look_up, error);
+    bool fine = tl_envmap_draw(&capture->around, gpu, &look_up, &capture->light, error);
     tl_gpu_reset_state(gpu);
     return fine && add_lamps(capture, gpu, request, view, error);
 }

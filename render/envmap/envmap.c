@@ -2,7 +2,6 @@
 
 #include "config/memory.h"
 #include "render/brdf/brdf.h"
-#include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>
 
@@ -10,13 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Uniform locations of envmap.frag and what it includes; sample.glsl has 1 and 2. */
-enum { EYE = 1, TEXEL_REACH = 3, PART_COUNT, TURN, SLOTS, FRONT_MATRIX = 40, BACK_MATRIX };
-/* Texture units; the layers of the G-buffer come first. */
-enum { LEVELS_UNIT = 5, MAPS_UNIT, FRESNEL_UNIT };
-#define PARTS_BINDING 1
-#define COSINES       256 /* width of the Fresnel table: error 0.07 per mille */
-#define TEXEL_BYTES   16  /* RGBA32F, so that no light is clamped */
+#define COSINES     256 /* width of the Fresnel table: error 0.07 per mille */
+#define TEXEL_BYTES 16  /* RGBA32F, so that no light is clamped */
 
 /* std430: struct Part in envmap.frag. */
 struct part {
@@ -43,6 +37,8 @@ void tl_envmap_release(struct tl_envmap *envmap)
     free(envmap->variants);
     tl_texture_destroy(&envmap->maps);
     tl_texture_destroy(&envmap->fresnel);
+    tl_target_destroy(&envmap->passed);
+    tl_vertex_vectors_release(&envmap->vectors);
     tl_mip_levels_release(&envmap->levels);
     if (envmap->parts_buffer)
         glDeleteBuffers(1, &envmap->parts_buffer);
@@ -54,12 +50,13 @@ bool tl_envmap_reload(struct tl_envmap *envmap, tl_error *error)
     bool fine = true;
     for (size_t i = 0; i < envmap->variant_count; i++)
         fine = fine && tl_program_reload(&envmap->variants[i].program, error);
-    return fine;
+    return fine && tl_vertex_vectors_reload(&envmap->vectors, error);
 }
 
 size_t tl_envmap_bytes(const struct tl_envmap *envmap)
 {
-    return tl_texture_bytes(&envmap->maps) + tl_texture_bytes(&envmap->fresnel) + envmap->parts_bytes;
+    return tl_texture_bytes(&envmap->maps) + tl_texture_bytes(&envmap->fresnel) + envmap->parts_bytes +
+           tl_target_bytes(&envmap->passed) + tl_target_bytes(&envmap->vectors.target);
 }
 
 uint64_t tl_envmap_bytes_needed(const struct tl_maps_params *params, uint32_t exponents)
@@ -220,12 +217,14 @@ static void send_fresnel(struct tl_envmap *envmap, tl_gpu *gpu, const struct par
 {
     size_t max_rows = (size_t)tl_gpu_texture_side_max(gpu), rows = count < max_rows ? count : max_rows;
     float *texels = TL_NEW_ARRAY(float, (size_t)4 * COSINES * (rows + 1));
+    envmap->has_colours = false;
     for (size_t row = 0; row < rows; row++) {
         const tl_material *material = sources[row].material;
         struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
         for (size_t i = 0; i < COSINES; i++) {
             vec3s reflectance = tl_brdf_fresnel(&brdf, (float)i / (float)(COSINES - 1));
             memcpy(texels + 4 * (row * COSINES + i), reflectance.raw, sizeof reflectance);
+            envmap->has_colours |= reflectance.x != reflectance.y || reflectance.y != reflectance.z;
         }
     }
     int height = rows > 0 ? (int)rows : 1;
@@ -246,92 +245,4 @@ void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_
     send_parts(envmap, sources, count);
     send_fresnel(envmap, gpu, sources, count);
     free(sources);
-}
-
-static bool by_matrix(const struct tl_envmap *envmap, const struct tl_maps_params *params)
-{
-    return envmap->layout == TL_LAYOUT_PARABOLOID && params->look_up == TL_LOOK_UP_MATRIX;
-}
-
-static char *defines_of(const struct tl_envmap *envmap, const struct tl_maps_params *params)
-{
-    static const char *const layouts[TL_LAYOUT_COUNT] = {"CUBE", "SPHERE", "PARABOLOID", "LATLONG",
-                                                         "OCTAHEDRAL"};
-    bool layered =
-        envmap->has_layers && params->mode == TL_MAPS_SURFACE && params->fresnel == TL_MAPS_FRESNEL_OFF;
-    return tl_format("#define %s\n#define MODE %d\n#define COMPOSITION %d\n%s%s%s%s", layouts[envmap->layout],
-                     params->mode, params->fresnel, by_matrix(envmap, params) ? "#define MATRIX\n" : "",
-                     envmap->has_ground ? "#define GROUND\n" : "", params->minify ? "#define MINIFY\n" : "",
-                     layered ? "#define LAYERED\n" : "");
-}
-
-static const tl_program *program_of(struct tl_envmap *envmap, tl_gpu *gpu,
-                                    const struct tl_maps_params *params, tl_error *error)
-{
-    char *defines = defines_of(envmap, params);
-    for (size_t i = 0; i < envmap->variant_count; i++)
-        if (strcmp(envmap->variants[i].defines, defines) == 0) {
-            free(defines);
-            return &envmap->variants[i].program;
-        }
-    struct tl_envmap_variant variant = {.defines = defines};
-    if (!tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert", "envmap.frag", defines,
-                                   &variant.program, error)) {
-        free(defines);
-        return NULL;
-    }
-    envmap->variants = tl_resize(envmap->variants, envmap->variant_count + 1, sizeof variant);
-    envmap->variants[envmap->variant_count] = variant;
-    return &envmap->variants[envmap->variant_count++].program;
-}
-
-/* P S M^-1 of equation 7, with the transformation to texture coordinates: (x, y, z, 1) -> (x, y) / (1 + z)
- * from [-1, 1] to [0, 1], rows downwards. M^-1 transforms from world to picture. */
-static void set_matrices(const mat3s *turn)
-{
-    mat3s axes = *turn;
-    mat4s into_picture = glms_mat4_identity();
-    glm_mat4_ins3(axes.raw, into_picture.raw);
-    for (int back = 0; back < 2; back++) {
-        float side = back ? -1 : 1;
-        const mat4s add_axis = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, side, 0}, {0, 0, 1, 1}}};
-        const mat4s project = {{{0.5f * side, 0, 0, 0}, {0, -0.5f, 0, 0}, {0.5f, 0.5f, 1, 1}, {0, 0, 0, 0}}};
-        mat4s matrix = glms_mat4_mul(glms_mat4_mul(project, add_axis), into_picture);
-        glUniformMatrix4fv(back ? BACK_MATRIX : FRONT_MATRIX, 1, GL_FALSE, matrix.raw[0]);
-    }
-}
-
-/* Square root of the mean solid angle of a texel, rad. */
-static float texel_reach(const struct tl_mip_levels *levels)
-{
-    const struct tl_sphere_map *map = &levels->maps[0];
-    float discs = map->layout == TL_LAYOUT_SPHERE || map->layout == TL_LAYOUT_PARABOLOID ? GLM_PI_4f : 1;
-    return sqrtf(4 * GLM_PIf / (discs * (float)map->width * (float)map->height));
-}
-
-bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
-                    tl_error *error)
-{
-    const tl_program *program = program_of(envmap, gpu, request->params, error);
-    if (!program)
-        return false;
-    glUseProgram(program->id);
-    glUniform3fv(EYE, 1, request->eye.raw);
-    glUniform1f(TEXEL_REACH, texel_reach(&envmap->levels));
-    glUniform1i(PART_COUNT, envmap->part_count);
-    glUniform1iv(SLOTS, TL_EXPONENT_COUNT + 1, envmap->slots);
-    if (by_matrix(envmap, request->params))
-        set_matrices(&envmap->turn);
-    else
-        glUniformMatrix3fv(TURN, 1, GL_FALSE, envmap->turn.raw[0]);
-    glTextureParameteri(request->triangles->id, GL_TEXTURE_MIN_FILTER,
-                        GL_NEAREST); /* integers cannot be interpolated */
-    glTextureParameteri(request->triangles->id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glBindTextureUnit(TL_GBUFFER_TRIANGLE, request->triangles->id);
-    glBindTextureUnit(LEVELS_UNIT, request->exponent_levels->id);
-    glBindTextureUnit(MAPS_UNIT, envmap->maps.id);
-    glBindTextureUnit(FRESNEL_UNIT, envmap->fresnel.id);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, PARTS_BINDING, envmap->parts_buffer);
-    tl_gpu_draw_fullscreen(gpu);
-    return true;
 }

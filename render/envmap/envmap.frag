@@ -1,13 +1,23 @@
 #version 450 core
 // The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
 // #defined as the numbers below. GROUND: the ground is drawn, always as SURFACE. MINIFY: mirrors read mip levels.
-// LAYERED: some surfaces have coats or transmit light.
+// LAYERED: some surfaces have coats or transmit light. PASS: this draw is one of several passes (passes.c). VERTEX_VECTORS:
+// directions come from vertices (vectors.frag). BAKED: diffuse light comes from light maps (light_map.frag).
 #include "exponents.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
 
 const int SURFACE = 0, MIRROR = 1, REFRACTION = 2, DIFFUSE = 3, GLOSSY = 4, TRANSMISSION = 5;
 const int OFF = 0, ADDITIVE = 1, COAT = 2;
+const int WHOLE = 0, SHARE = 1, OVER = 2, UNDER = 3, COATING = 4, THROUGH = 5, SUM = 6; // PASS
+#ifdef PASS
+layout(location = 42) uniform int channel; // of the share that alpha holds
+layout(location = 43) uniform float pass_scale; // from radiance to values of the target; SUM: back
+layout(binding = 8) uniform sampler2D passed; // SUM: what the passes left
+#else
+const int PASS = WHOLE, channel = 0;
+const float pass_scale = 1.0;
+#endif
 const int ENVIRONMENT = 31; // index after the last exponent
 const uint TRIANGLE_BACK = 0x80000000u;
 
@@ -31,6 +41,20 @@ layout(std430, binding = 1) readonly buffer Parts
 };
 
 layout(location = 0) out vec4 light;
+
+#ifdef VERTEX_VECTORS
+layout(binding = 9) uniform sampler2D over_vectors; // the reflected view vector; n . v
+layout(binding = 10) uniform sampler2D under_vectors; // the direction of the light below
+
+vec4 vertex_vector(sampler2D vectors)
+{
+    return texelFetch(vectors, ivec2(gl_FragCoord.xy), 0);
+}
+#endif
+
+#ifdef BAKED
+layout(binding = 11) uniform sampler2D baked; // diffuse light of every sample
+#endif
 
 // The part of a triangle, by binary search; parts are sorted by their first triangle.
 int part_of(uint triangle)
@@ -90,6 +114,9 @@ vec3 refracted(vec3 v, vec3 n, vec3 mirror, float ratio)
 // come from textures, and the neighbours' are refracted here, with the ratio of this pixel.
 vec3 refraction(vec3 v, vec3 n, vec3 mirror, float ratio)
 {
+#ifdef VERTEX_VECTORS
+    return mirrored(vertex_vector(under_vectors).xyz);
+#else
     vec3 d = refracted(v, n, mirror, ratio);
 #ifdef MINIFY
     vec3 across = refracted(v + dFdx(v), n + dFdx(n), mirror + dFdx(mirror), ratio) - d;
@@ -97,6 +124,7 @@ vec3 refraction(vec3 v, vec3 n, vec3 mirror, float ratio)
     return look_up(d, slots[ENVIRONMENT], level_of(across, down));
 #else
     return look_up(d, slots[ENVIRONMENT], 0.0);
+#endif
 #endif
 }
 
@@ -120,9 +148,18 @@ vec3 under_light(int mode, Sample place, vec3 v, float ratio)
 {
     if (mode == REFRACTION)
         return refraction(v, place.normal, place.mirror, ratio);
-    if (mode == TRANSMISSION)
-        return place.kd * lobe_light(-v, place.glossiness);
-    return mode == GLOSSY ? vec3(0.0) : place.kd * irradiance(place.normal);
+    if (mode == GLOSSY)
+        return vec3(0.0);
+#ifdef VERTEX_VECTORS
+    vec3 d = vertex_vector(under_vectors).xyz;
+#else
+    vec3 d = mode == TRANSMISSION ? -v : place.normal;
+#endif
+#ifdef BAKED
+    if (mode != TRANSMISSION)
+        return place.kd * texelFetch(baked, ivec2(gl_FragCoord.xy), 0).rgb;
+#endif
+    return place.kd * (mode == TRANSMISSION ? lobe_light(d, place.glossiness) : irradiance(d));
 }
 
 vec3 light_of(int mode, Sample place, vec3 v, float ratio)
@@ -150,40 +187,114 @@ float coat_reflectance(float cosine)
     return 0.5 * (s * s + p * p);
 }
 
-// Adds the light that a thin sheet transmits, and a clear coat, which lies on the smooth surface, over both.
+// The share of the coat, which lies on the smooth surface.
+float coat_share(Part part, Sample place, vec3 v)
+{
+#ifdef VERTEX_VECTORS
+    float cosine = vertex_vector(over_vectors).w;
+#else
+    float cosine = dot(place.smooth_normal, v);
+#endif
+    return part.coat * coat_reflectance(clamp(cosine, 0.0, 1.0));
+}
+
+vec3 coat_light(Part part, Sample place, vec3 v)
+{
+#ifdef VERTEX_VECTORS
+    vec3 mirror = place.mirror;
+#else
+    vec3 mirror = 2.0 * clamp(dot(place.smooth_normal, v), 0.0, 1.0) * place.smooth_normal - v;
+#endif
+    return lobe_light(mirror, part.coat_glossiness);
+}
+
+// The light that a thin sheet transmits.
+vec3 through_light(Part part, Sample place)
+{
+#ifdef VERTEX_VECTORS
+    return part.transmission * irradiance(-vertex_vector(under_vectors).xyz);
+#else
+    return part.transmission * irradiance(-place.normal);
+#endif
+}
+
 vec3 layered(Part part, Sample place, vec3 v, vec3 light)
 {
-    float cosine = clamp(dot(place.smooth_normal, v), 0.0, 1.0), coat = part.coat * coat_reflectance(cosine);
-    vec3 through = part.transmission * irradiance(-place.normal);
-    vec3 mirror = 2.0 * cosine * place.smooth_normal - v;
-    vec3 over = coat > 0.0 ? coat * lobe_light(mirror, part.coat_glossiness) : vec3(0.0);
-    return (1.0 - coat) * (light + through) + over;
+    float coat = coat_share(part, place, v);
+    vec3 over = coat > 0.0 ? coat * coat_light(part, place, v) : vec3(0.0);
+    return (1.0 - coat) * (light + through_light(part, place)) + over;
 }
 #endif
+
+// Everything in one pass.
+vec3 whole_light(Part part, int number, Sample place, vec3 v, float cosine, float ratio)
+{
+    if (COMPOSITION == OFF) {
+        vec3 colour = light_of(MODE, place, v, ratio);
+#ifdef LAYERED
+        colour = layered(part, place, v, colour);
+#endif
+        return colour;
+    }
+    vec3 f = reflectance(number, cosine);
+    return f * over_light(MODE, place) + (COMPOSITION == COAT ? 1.0 - f : vec3(1.0)) * under_light(MODE, place, v, ratio);
+}
+
+// What alpha holds: the share of the mirror, or of the coat.
+vec3 share_over(Part part, int number, Sample place, vec3 v, float cosine)
+{
+#ifdef LAYERED
+    return vec3(coat_share(part, place, v));
+#else
+    return reflectance(number, cosine);
+#endif
+}
+
+// The light that one of several passes adds.
+vec3 pass_light(Part part, Sample place, vec3 v, float ratio)
+{
+#ifdef LAYERED
+    if (PASS == COATING)
+        return coat_light(part, place, v);
+    if (PASS == THROUGH)
+        return through_light(part, place);
+#endif
+    if (PASS == UNDER)
+        return under_light(MODE, place, v, ratio);
+    return (COMPOSITION == OFF && MODE != MIRROR ? place.ks : vec3(1.0)) * over_light(MODE, place);
+}
 
 void main()
 {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     Sample place = read_sample(texel);
+#ifdef PASS
+    if (PASS == SUM) {
+        light = vec4(texelFetch(passed, texel, 0).rgb * pass_scale * place.cover, 0.0);
+        return;
+    }
+#endif
     uint triangle = texelFetch(triangles, texel, 0).r;
     int number = part_of((triangle & ~TRIANGLE_BACK) - 1u);
     Part part = parts[number];
     float ratio = (triangle & TRIANGLE_BACK) != 0u ? part.index : 1.0 / part.index;
     vec3 to_eye = eye - place.point;
-    vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30)), colour;
-    if (COMPOSITION == OFF) {
-        colour = light_of(MODE, place, v, ratio);
-#ifdef LAYERED
-        colour = layered(part, place, v, colour);
+    vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30));
+#ifdef VERTEX_VECTORS
+    vec4 over = vertex_vector(over_vectors);
+    place.mirror = over.xyz;
+    float cosine = clamp(over.w, 0.0, 1.0);
+#else
+    float cosine = clamp(dot(place.normal, v), 0.0, 1.0);
 #endif
-    } else {
-        vec3 f = reflectance(number, clamp(dot(place.normal, v), 0.0, 1.0));
-        colour = f * over_light(MODE, place) +
-                 (COMPOSITION == COAT ? 1.0 - f : vec3(1.0)) * under_light(MODE, place, v, ratio);
+    if (PASS == SHARE) {
+        light = vec4(0.0, 0.0, 0.0, share_over(part, number, place, v, cosine)[channel]);
+        return;
     }
-#ifdef GROUND
-    if (part.is_ground != 0u)
+    vec3 colour = PASS == WHOLE ? whole_light(part, number, place, v, cosine, ratio) : pass_light(part, place, v, ratio);
+#ifdef GROUND // its specular colour and its share are 0: of several passes the one of the light below draws it
+    if (part.is_ground != 0u && (PASS == WHOLE || (COMPOSITION == OFF ? MODE != SURFACE : PASS == UNDER)))
         colour = light_of(SURFACE, place, v, ratio);
 #endif
-    light = vec4(colour * place.cover, 0.0);
+    light = PASS == WHOLE ? vec4(colour * place.cover, 0.0) : vec4(colour * pass_scale, 0.0);
 }

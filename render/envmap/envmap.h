@@ -17,6 +17,9 @@
  *
  * F is that of the material (render/brdf), from a table over n . v, which ignores maps.
  *
+ * The terms are drawn in one pass or in several (passes.c), with directions from pixels or from vertices
+ * (vectors.h). Light maps (light_map.h) take the place of E(n, 1).
+ *
  * L and E are the contents of the map; the sharpness of L is limited by its resolution. World space; needs
  * the GL context of its tl_gpu. */
 #ifndef TOILE_RENDER_ENVMAP_ENVMAP_H
@@ -24,8 +27,10 @@
 
 #include "render/envmap/options.h"
 #include "render/envmap/prefiltered_map.h"
+#include "render/envmap/vectors.h"
 #include "render/gbuffer/gbuffer.h"
 #include "render/gbuffer/samples.h"
+#include "render/light/light_buffer.h"
 #include "render/scene/view.h"
 
 /* A program variant. Software drivers execute both sides of every branch, so options that are constant over
@@ -48,6 +53,9 @@ struct tl_envmap {
     int part_count;
     bool has_ground, has_layers; /* properties of the parts */
     tl_texture fresnel;          /* F over the cosine, one row per part */
+    bool has_colours;            /* ... that differs between the colours */
+    tl_target passed; /* several passes: their sum, and a share in alpha; shares the G-buffer's depth */
+    struct tl_vertex_vectors vectors; /* of TL_MAPS_VECTORS_VERTEX */
 };
 
 /* Frees and zeroes. */
@@ -70,14 +78,17 @@ void tl_envmap_set_parts(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_
                          bool has_ground);
 
 struct tl_envmap_request {
-    const tl_texture *triangles;       /* of the G-buffer */
+    const tl_target *gbuffer;
     const tl_texture *exponent_levels; /* of tl_lighting */
-    vec3s eye;
+    const struct tl_view *view;
+    const tl_surfaces *surfaces; /* that the G-buffer shows; the ground, if set, is the last one */
+    size_t surface_count;
+    const tl_texture
+        *baked; /* diffuse light of every sample in place of the map's (light_map.h); NULL: none */
     const struct tl_maps_params *params;
 };
-/* Draws over the whole bound target, with the G-buffer in the first texture units (tl_light_buffer_begin).
- * False when a shader cannot be compiled. */
+/* Draws the light of all samples over a light buffer. False when a shader cannot be compiled. */
 bool tl_envmap_draw(struct tl_envmap *envmap, tl_gpu *gpu, const struct tl_envmap_request *request,
-                    tl_error *error);
+                    struct tl_light_buffer *light, tl_error *error);
 
 #endif

@@ -1,5 +1,6 @@
 // Look-ups in an environment map by a world direction (env/layout.h). The layout is #defined: CUBE, SPHERE, PARABOLOID,
-// LATLONG or OCTAHEDRAL; MATRIX: paraboloids by projective matrices.
+// LATLONG or OCTAHEDRAL; MATRIX: paraboloids by projective matrices; HALF 0 or 1: only the light of that map, which another
+// pass adds to that of the other one.
 layout(location = 5) uniform mat3 turn; // world to picture
 
 #ifdef CUBE
@@ -35,6 +36,10 @@ vec3 look_up(vec3 direction, int slot, float level)
     vec2 front_place = front.xy / max(front.w, 1e-6), back_place = back.xy / max(back.w, 1e-6);
     vec3 front_layer = vec3(front_place, float(2 * slot));
     bool in_front = textureLod(maps, front_layer, 0.0).a > 0.5;
+#ifdef HALF
+    if (in_front == (HALF == 1))
+        return vec3(0.0);
+#endif
     return textureLod(maps, in_front ? front_layer : vec3(back_place, float(2 * slot + 1)), level).rgb;
 }
 #else

@@ -17,6 +17,12 @@ enum tl_maps_mode {
 /* OFF: the reflectance of the G-buffer. The others: F from a table over the cosine, Lo = F Lm + Ld, or F Lm +
  * (1 - F) Ld [Heidrich and Seidel 1999, 4.4]. */
 enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
+/* ONE: everything in one pass. SEVERAL: a pass for every texture [op. cit., 4.2, 4.4]
+ * (render/envmap/passes.c). */
+enum tl_maps_passes { TL_MAPS_PASSES_ONE, TL_MAPS_PASSES_SEVERAL };
+/* Where directions of look-ups and the cosine of Fresnel's term are computed: at pixels; or at vertices, from
+ * where they are interpolated without renormalisation, as texture coordinates were [op. cit., 4.1]. */
+enum tl_maps_vectors { TL_MAPS_VECTORS_PIXEL, TL_MAPS_VECTORS_VERTEX };
 struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int layout;          /* enum tl_layout (render/env/layout.h) */
     int size;            /* texels, a power of two: side of a cube's face, height of the others */
@@ -24,6 +30,11 @@ struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int mode;            /* enum tl_maps_mode */
     int fresnel;         /* enum tl_maps_fresnel */
     bool minify;         /* mirrors read mip levels */
+    int passes;          /* enum tl_maps_passes */
+    int pass_target;     /* enum tl_pass_target (render/local/shading.h), of SEVERAL */
+    float pass_white;    /* radiance of the largest value of TL_PASS_TARGET_FIXED8 */
+    int vectors;         /* enum tl_maps_vectors */
+    int light_map;       /* texels, side of the textures that diffuse light is baked into; 0: none */
     int capture_every;   /* frames between captures of the scene; 0: the environment only */
     float capture_at[3]; /* metres, from the centre of the casters */
 };

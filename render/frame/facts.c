@@ -225,7 +225,8 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
         return TL_BIT(TL_SCENE_REFERENCE);
     if (light->method == TL_METHOD_MAPS)
         return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
-               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0);
+               (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0) |
+               (settings->maps.light_map > 0 ? TL_BIT(TL_SCENE_LIGHT_MAP) : 0);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)

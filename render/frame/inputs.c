@@ -9,6 +9,7 @@
 #include "render/plan/affects.h"
 
 #include <math.h>
+#include <string.h>
 
 #define MIX(hash, field) tl_hash(hash, &(field), sizeof(field))
 
@@ -256,11 +257,9 @@ struct tl_maps_params tl_input_layout(const struct tl_maps_params *maps)
 
 struct tl_maps_params tl_input_look_up(const struct tl_maps_params *maps)
 {
-    struct tl_maps_params own = tl_input_layout(maps);
-    own.look_up = maps->look_up;
-    own.mode = maps->mode;
-    own.fresnel = maps->fresnel;
-    own.minify = maps->minify;
+    struct tl_maps_params own = *maps; /* all but what is of a capture */
+    own.capture_every = 0;
+    memset(own.capture_at, 0, sizeof own.capture_at);
     return own;
 }
 

@@ -88,6 +88,7 @@ struct tl_lamps_input {
 struct tl_envmap_input {
     int size;         /* texels */
     bool is_captured; /* maps show the scene */
+    int light_map;    /* texels, side; 0: none */
 };
 
 /* Not an input: how the frame stands in time. */

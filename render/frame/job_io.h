@@ -384,15 +384,33 @@
     IO(WRITES, envmap)                                                                                       \
     IO(USES, gpu)
 
+#define TL_LIGHT_MAP_JOB(IO)                                                                                 \
+    IO(READS, environment)                                                                                   \
+    IO(READS, yaw)                                                                                           \
+    IO(READS, shapes)                                                                                        \
+    IO(READS, motion)                                                                                        \
+    IO(READS, ground)                                                                                        \
+    IO(READS, ground_input)                                                                                  \
+    IO(READS, reference_options)                                                                             \
+    IO(READS, detail_steps)                                                                                  \
+    IO(READS, envmap_size)                                                                                   \
+    IO(WRITES, light_map)                                                                                    \
+    IO(USES, gpu)
+
 #define TL_LOOK_UP_JOB(IO)                                                                                   \
     IO(READS, gbuffer)                                                                                       \
     IO(AFTER, TL_MADE_ENVMAP)                                                                                \
+    IO(AFTER, TL_MADE_LIGHT_MAP)                                                                             \
     IO(READS, camera)                                                                                        \
     IO(READS, look_up)                                                                                       \
     IO(AFTER, TL_INPUT_LAMPS)                                                                                \
     IO(AFTER, TL_INPUT_VIEW)                                                                                 \
     IO(WRITES, light)                                                                                        \
     IO(USES, envmap)                                                                                         \
+    IO(USES, light_map)                                                                                      \
+    IO(READS_HANDLE, surfaces)                                                                               \
+    IO(SEES, shapes)                                                                                         \
+    IO(SEES, shift)                                                                                          \
     IO(SEES, lighting)                                                                                       \
     IO(USES, gpu)
 
@@ -516,6 +534,7 @@
     JOB(envmap_lobes, TL_ENVMAP_LOBES_JOB)                                                                   \
     JOB(capture, TL_CAPTURE_JOB)                                                                             \
     JOB(envmap, TL_ENVMAP_JOB)                                                                               \
+    JOB(light_map, TL_LIGHT_MAP_JOB)                                                                         \
     JOB(look_up, TL_LOOK_UP_JOB)                                                                             \
     JOB(lamp_maps, TL_LAMP_MAPS_JOB)                                                                         \
     JOB(lamp_rays, TL_LAMP_RAYS_JOB)                                                                         \

@@ -80,6 +80,8 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
         return tl_capture_bytes(&from->capture);
     case TL_MADE_ENVMAP:
         return tl_envmap_bytes(&from->envmap);
+    case TL_MADE_LIGHT_MAP:
+        return tl_light_map_bytes(&from->light_map);
     case TL_MADE_LIGHT:
         return tl_light_buffer_bytes(&from->light);
     case TL_MADE_LAMP_MAPS:
@@ -121,7 +123,7 @@ struct tl_render_memory tl_resources_memory(const struct tl_resources *from)
 {
     struct tl_render_memory memory = {
         .pems = SUM_OF(TL_MADE_PEMS, TL_MADE_LOBES, TL_MADE_LIGHTS, TL_MADE_SLICES, TL_MADE_ENVMAP_LOBES,
-                       TL_MADE_ENVMAP, TL_MADE_CAPTURE),
+                       TL_MADE_ENVMAP, TL_MADE_LIGHT_MAP, TL_MADE_CAPTURE),
         .maps = SUM_OF(TL_MADE_DEPTHS, TL_MADE_LAMP_MAPS),
         .rays = SUM_OF(TL_MADE_POINTS, TL_MADE_BOUNCE, TL_MADE_RATIOS, TL_MADE_SUN_PIXELS, TL_MADE_TRACE,
                        TL_MADE_SAMPLES),

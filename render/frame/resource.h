@@ -62,6 +62,7 @@ enum tl_resource {
     TL_MADE_ENVMAP_LOBES,
     TL_MADE_CAPTURE,
     TL_MADE_ENVMAP,
+    TL_MADE_LIGHT_MAP,
     TL_MADE_LIGHT,
     TL_MADE_LAMP_MAPS,
     TL_MADE_LAMP_RAYS,
@@ -88,8 +89,9 @@ enum tl_scene_fact {
     TL_SCENE_BLUR,         /* shadow maps are variance maps */
     TL_SCENE_DETAIL,       /* a material's bumps need maps of their own */
     TL_SCENE_REFERENCE,
-    TL_SCENE_ENVMAP,  /* environment maps light the image */
-    TL_SCENE_CAPTURE, /* ... and show the scene */
+    TL_SCENE_ENVMAP,    /* environment maps light the image */
+    TL_SCENE_CAPTURE,   /* ... and show the scene */
+    TL_SCENE_LIGHT_MAP, /* ... beside diffuse light that is baked */
     TL_SCENE_LAMPS,
     TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
     TL_SCENE_LAMP_RAYS, /* ... and rays do */

@@ -10,6 +10,7 @@
 #include "render/env/sun.h"
 #include "render/envmap/capture.h"
 #include "render/envmap/envmap.h"
+#include "render/envmap/light_map.h"
 #include "render/frame/inputs.h"
 #include "render/frame/prepared.h"
 #include "render/light/light.h"
@@ -109,6 +110,7 @@ struct tl_surroundings {
     RESOURCE(surroundings, TL_MADE_ENVMAP_LOBES, struct tl_surroundings)                                     \
     RESOURCE(capture, TL_MADE_CAPTURE, struct tl_capture)                                                    \
     RESOURCE(envmap, TL_MADE_ENVMAP, struct tl_envmap)                                                       \
+    RESOURCE(light_map, TL_MADE_LIGHT_MAP, struct tl_light_map)                                              \
     RESOURCE(light, TL_MADE_LIGHT, struct tl_light_buffer)                                                   \
     RESOURCE(strain_range, TL_MADE_LIGHT, float) /* share of 1 at the ends of the legend */                  \
     RESOURCE(local, TL_MADE_LAMP_MAPS, struct tl_local)                                                      \

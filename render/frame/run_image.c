@@ -73,15 +73,35 @@ bool tl_run_envmap(const struct tl_envmap_job *job, tl_error *error)
     return true;
 }
 
+bool tl_run_light_map(const struct tl_light_map_job *job, tl_error *error)
+{
+    const tl_frame frame = {.surfaces = job->motion->surfaces,
+                            .surface_count = job->shapes->surface_count,
+                            .environment = job->environment->map,
+                            .environment_yaw = *job->yaw};
+    const struct tl_reference_request request = {.frame = &frame,
+                                                 .ground = job->ground_input->is_drawn ? job->ground : NULL,
+                                                 .params = job->reference_options,
+                                                 .detail = job->detail_steps};
+    return tl_light_map_bake(job->light_map, *job->gpu, &request, job->envmap_size->light_map, error);
+}
+
 bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
 {
-    const tl_target *gbuffer = &job->gbuffer->target;
-    const struct tl_envmap_request request = {.triangles = &gbuffer->colours[TL_GBUFFER_TRIANGLE],
+    bool baked = job->look_up->light_map > 0;
+    if (!baked)
+        tl_light_map_release(job->light_map);
+    else if (!tl_light_map_draw(job->light_map, *job->gpu, &job->gbuffer->target, &job->shift->view,
+                                job->surfaces, job->shapes->drawn_count, error))
+        return false;
+    const struct tl_envmap_request request = {.gbuffer = &job->gbuffer->target,
                                               .exponent_levels = &job->lighting->exponent_levels,
-                                              .eye = job->camera->view.eye,
+                                              .view = &job->shift->view,
+                                              .surfaces = job->surfaces,
+                                              .surface_count = job->shapes->drawn_count,
+                                              .baked = baked ? &job->light_map->target.colours[0] : NULL,
                                               .params = job->look_up};
-    tl_light_buffer_begin(job->light, *job->gpu, gbuffer, true);
-    bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, error);
+    bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, job->light, error);
     tl_gpu_reset_state(*job->gpu);
     return fine;
 }

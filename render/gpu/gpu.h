@@ -65,6 +65,10 @@ typedef struct tl_target {
 } tl_target;
 tl_target tl_target_create(tl_gpu *gpu, int width, int height, const unsigned *formats, int colour_count,
                            bool depth);
+/* Makes a target without a depth of its own as large as another one, whose depth it then shares. Nothing of
+ * its colours is kept when size or formats change. */
+void tl_target_fit(tl_target *target, tl_gpu *gpu, const tl_target *like, const unsigned *formats,
+                   int colour_count);
 void tl_target_destroy(tl_target *target);
 size_t tl_target_bytes(const tl_target *target);
 

@@ -137,6 +137,20 @@ tl_target tl_target_create(tl_gpu *gpu, int width, int height, const unsigned *f
     return target;
 }
 
+void tl_target_fit(tl_target *target, tl_gpu *gpu, const tl_target *like, const unsigned *formats,
+                   int colour_count)
+{
+    bool fits = target->width == like->width && target->height == like->height &&
+                target->colour_count == colour_count;
+    for (int i = 0; fits && i < colour_count; i++)
+        fits = target->colours[i].format == formats[i];
+    if (!fits) {
+        tl_target_destroy(target);
+        *target = tl_target_create(gpu, like->width, like->height, formats, colour_count, false);
+    }
+    glNamedFramebufferTexture(target->id, GL_DEPTH_ATTACHMENT, like->depth.id, 0);
+}
+
 void tl_target_destroy(tl_target *target)
 {
     for (int i = 0; i < target->colour_count; i++)

@@ -22,11 +22,7 @@ size_t tl_light_buffer_bytes(const struct tl_light_buffer *buffer)
 static void allocate(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl_target *gbuffer)
 {
     const unsigned format = GL_RGBA32F;
-    if (buffer->target.width != gbuffer->width || buffer->target.height != gbuffer->height) {
-        tl_target_destroy(&buffer->target);
-        buffer->target = tl_target_create(gpu, gbuffer->width, gbuffer->height, &format, 1, false);
-    }
-    glNamedFramebufferTexture(buffer->target.id, GL_DEPTH_ATTACHMENT, gbuffer->depth.id, 0);
+    tl_target_fit(&buffer->target, gpu, gbuffer, &format, 1);
 }
 
 void tl_light_buffer_begin(struct tl_light_buffer *buffer, tl_gpu *gpu, const tl_target *gbuffer,

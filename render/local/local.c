@@ -280,15 +280,9 @@ static void draw_into_light(const struct tl_local_request *request)
 static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request)
 {
     const unsigned format = request->params->pass_target == TL_PASS_TARGET_FIXED8 ? GL_RGBA8 : GL_RGBA32F;
-    int width = request->light->width, height = request->light->height;
-    tl_target *product = &local->product;
-    if (product->width != width || product->height != height || product->colours[0].format != format) {
-        tl_target_destroy(product);
-        *product = tl_target_create(gpu, width, height, &format, 1, false);
-    }
+    tl_target_fit(&local->product, gpu, &request->gbuffer->target, &format, 1);
     local->product_used = true;
-    glNamedFramebufferTexture(product->id, GL_DEPTH_ATTACHMENT, request->gbuffer->target.depth.id, 0);
-    glBindTextureUnit(PRODUCT_UNIT, product->colours[0].id);
+    glBindTextureUnit(PRODUCT_UNIT, local->product.colours[0].id);
 }
 
 /* Multiplies the tables by blending, a few in each pass. A last pass adds the product and the diffuse light

@@ -7,7 +7,7 @@ static const char *const coordinates_names[] = {"matrix", "vertex", "pixel", NUL
 static const char *const reflectance_names[] = {"direct", "table", NULL};
 static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL};
 static const char *const range_names[] = {"clamped", "scaled", NULL};
-static const char *const pass_target_names[] = {"fixed8", "float", NULL};
+const char *const tl_pass_target_names[] = {"fixed8", "float", NULL};
 static const char *const normalisation_names[] = {"none", "cube8", "cube16", "newton", "exact", NULL};
 static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
 static const char *const space_names[] = {"world", "tangent", NULL};
@@ -32,7 +32,7 @@ static const struct tl_option rows[] = {
                    "divided by its maximum"),
     TL_OPTION_INT(params, max_textures_per_pass, AFFECTS, 1, 4, "tables",
                   "tables multiplied in one pass; smaller: more passes for gloss with more tables"),
-    TL_OPTION_ENUM(params, pass_target, AFFECTS, pass_target_names,
+    TL_OPTION_ENUM(params, pass_target, AFFECTS, tl_pass_target_names,
                    "precision of the target in which passes are multiplied"),
     TL_OPTION_ENUM(
         params, normalisation, AFFECTS, normalisation_names,

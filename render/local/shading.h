@@ -18,6 +18,7 @@ enum tl_frequency { TL_FREQUENCY_GOURAUD, TL_FREQUENCY_FAST_PHONG, TL_FREQUENCY_
 enum tl_coordinates { TL_COORDINATES_MATRIX, TL_COORDINATES_VERTEX, TL_COORDINATES_PIXEL };
 enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE };
 enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };
+extern const char *const tl_pass_target_names[]; /* ends with NULL */
 enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT };
 enum tl_self_shadow { TL_SELF_SHADOW_STEP, TL_SELF_SHADOW_RAMP };
 

@@ -1,5 +1,5 @@
 /* Environment maps: how directions become a picture, what is prefiltered into it, how it is looked up
- * [Heidrich and Seidel 1999]. Ids B1 to B7. */
+ * [Heidrich and Seidel 1999]. Ids B1 to B8. */
 #include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY WOVEN("8", "2")
@@ -52,6 +52,48 @@ static const struct tl_technique techniques[] = {
     {.picture = "smooth", .id = "B7", SET("weave.pattern=none")},
     {.picture = "woven, glossy", .id = "B7", SET(BUMPY)},
     {.picture = "woven, mirror", .id = "B7", SET(BUMPY, "maps.mode=mirror")},
+};
+
+/* Passes, vectors at vertices, and light maps: three sections of one id. */
+#define SEVERAL "maps.passes=several"
+#define HALVES  "maps.layout=paraboloid", "maps.look_up=matrix"
+static const struct tl_technique passes[] = {
+    {.picture = "several passes, float target", .id = "B8", SET(SEVERAL)},
+    {.picture = "several passes, 8 bits up to a radiance of 4",
+     .golden = "envmap_passes",
+     .id = "B8",
+     SET(SEVERAL, "maps.pass_target=fixed8", "maps.pass_white=4")},
+    {.picture = "several passes, 8 bits up to a radiance of 1",
+     .id = "B8",
+     SET(SEVERAL, "maps.pass_target=fixed8", "maps.pass_white=1")},
+    {.picture = "several passes, 8 bits up to a radiance of 16",
+     .id = "B8",
+     SET(SEVERAL, "maps.pass_target=fixed8", "maps.pass_white=16")},
+    {.picture = "several passes, float target, paraboloid in two halves", .id = "B8", SET(SEVERAL, HALVES)},
+};
+static const struct tl_technique vectors[] = {
+    {.picture = "cube, vectors at vertices",
+     .golden = "envmap_vectors",
+     .id = "B8",
+     SET("maps.vectors=vertex")},
+    {.picture = "paraboloid by matrix, vectors at vertices", .id = "B8", SET("maps.vectors=vertex", HALVES)},
+    {.picture = "sphere, vectors at vertices", .id = "B8", SET("maps.vectors=vertex", "maps.layout=sphere")},
+};
+
+static const struct tl_technique light_maps[] = {
+    {.picture = "environment map, no shadows", .id = "B8", SET("maps.light_map=0")},
+    {.picture = "light maps of 32 texels", .id = "B8", SET("maps.light_map=32")},
+    {.picture = "light maps of 128 texels",
+     .golden = "envmap_light_map",
+     .id = "B8",
+     SET("maps.light_map=128")},
+};
+
+static const struct tl_experiment_appearance edges[] = {
+    {.title = "edges of 8 cm", .assignments = {"cloth.edge_m=0.08"}},
+    {.title = "edges of 4 cm", .assignments = {"cloth.edge_m=0.04"}},
+    {.title = "edges of 2 cm", .assignments = {"cloth.edge_m=0.02"}},
+    {.title = "edges of 1 cm", .assignments = {"cloth.edge_m=0.01"}},
 };
 
 static const struct tl_experiment experiments[] = {
@@ -164,5 +206,53 @@ static const struct tl_experiment experiments[] = {
      .by_flip = true,
      .ids = {"B7"},
      TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "b8",
+     .scene = "gallery",
+     .title = "B8  A pass for each texture",
+     .text = "Fresnel's term is drawn into the alpha of a target, then the mirror's map is added multiplied "
+             "by it, and the diffuse map by what it leaves [Heidrich and Seidel 1999, 4.4]; a paraboloid's "
+             "maps are added one half at a time [4.2]. A target of 8 bits has 255 steps up to a radiance of "
+             "its own, and loses what is brighter.",
+     .exact_text = "the same maps, read and combined in one pass",
+     .side = 384,
+     .solid = "torus",
+     .base = {"light.method=maps", "maps.mode=mirror", "maps.fresnel=coat", "material.fresnel=dielectric",
+              "material.specular=[1, 1, 1]"},
+     .reference = {.assignments = {"maps.passes=one"}},
+     .by_flip = true,
+     .ids = {"B8"},
+     TECHNIQUES(passes)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "b8_vectors",
+     .scene = "gallery",
+     .title = "B8  Reflection vectors at vertices",
+     .text = "Reflection vectors are computed at vertices and interpolated, as OpenGL generates texture "
+             "coordinates. They come shorter than 1, which a cube map ignores; spheres and paraboloids take "
+             "them for unit vectors.",
+     .exact_text = "vectors computed at every sample of the same mesh",
+     .side = 384,
+     .solid = "torus",
+     .base = {"light.method=maps", "maps.mode=mirror", "maps.size=256"},
+     .reference = {.assignments = {"maps.vectors=pixel"}},
+     .by_flip = true,
+     .ids = {"B8"},
+     APPEARANCES(edges),
+     TECHNIQUES(vectors)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "b8_light_maps",
+     .scene = "gallery",
+     .title = "B8  Light maps",
+     .text =
+         "Where neither light nor surfaces move, diffuse light with its shadows is baked into a texture over "
+         "each surface's UVs, and multiplied by the material's colour [004].",
+     .exact_text = "every sample lit by rays to the environment, without bounces",
+     .side = 384,
+     .solid = "torus",
+     .base = {"light.method=maps", "maps.mode=diffuse", "light.bounce=off", "image.ground=true",
+              "reference.strata=256"},
+     .reference = {.assignments = {TRACED, "material.specular=[0, 0, 0]", FEW_SAMPLES}},
+     .ids = {"B8"},
+     TECHNIQUES(light_maps)},
 };
 const struct tl_experiment_list tl_maps_experiments = {experiments, TL_COUNT(experiments)};

@@ -1,8 +1,7 @@
 /* Environment mapping against numerical integration on the CPU, in every mode, composition and layout; the
  * test_white furnace; what the plan runs and what it costs. */
-#include "tests/render/scenes.h"
+#include "tests/render/envmap/maps_oracle.h"
 
-#include "render/env/layout.h"
 #include "render/scene/view.h"
 
 #include "tests/testing.h"
@@ -10,34 +9,6 @@
 #include <string.h>
 
 #define SIDE 12 /* pixels */
-
-/* Two coloured lights and a glow: smooth, so that a map's texels are no part of the question. */
-static vec3s lights(vec3s d)
-{
-    float first = fmaxf(glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.5f, 0.7f, 0.6f}})), 0);
-    float second = fmaxf(glms_vec3_dot(d, glms_vec3_normalize((vec3s){{-0.6f, 0.1f, -0.8f}})), 0);
-    float warm = 3 * powf(first, 6), cold = 2 * powf(second, 6);
-    return (vec3s){{0.2f + warm, 0.2f + 0.7f * warm + 0.6f * cold, 0.2f + cold + 0.2f * d.y}};
-}
-#define BRIGHTEST 3.2
-
-/* K_s [DESIGN 3], integrated over the environment's texels. */
-static vec3s integrate(const tl_environment *environment, vec3s direction, double s)
-{
-    const tl_image *image = &environment->image;
-    const struct tl_sphere_map map = {TL_LAYOUT_LATLONG, image->width, image->height};
-    double sum[3] = {0, 0, 0};
-    for (int i = 0; i < image->width * image->height; i++) {
-        int x = i % image->width, y = i / image->width;
-        double cosine = (double)glms_vec3_dot(tl_layout_direction(&map, x + 0.5, y + 0.5), direction);
-        if (cosine <= 0)
-            continue;
-        double weight = (s + 1) / (2 * M_PI) * pow(cosine, s) * tl_layout_solid_angle(&map, x, y);
-        for (int c = 0; c < 3; c++)
-            sum[c] += weight * (double)tl_image_floats(image)[3 * i + c];
-    }
-    return (vec3s){{(float)sum[0], (float)sum[1], (float)sum[2]}};
-}
 
 /* A point of the unit sphere that a pixel's middle sees, from outside or from inside. */
 struct point {
@@ -60,29 +31,8 @@ static bool find_point(const struct tl_view *view, int x, int y, bool inside, st
     out->normal = inside ? glms_vec3_negate(hit) : hit;
     out->viewer = glms_vec3_negate(ray);
     out->cosine = (double)glms_vec3_dot(out->normal, out->viewer);
-    out->mirror = glms_vec3_sub(glms_vec3_scale(out->normal, 2 * (float)out->cosine), out->viewer);
+    out->mirror = mirrored_ray(out->normal, out->viewer);
     return out->cosine > 0.2; /* nearer to the rim a pixel reaches far over the sphere */
-}
-
-/* Snell's law by angles. */
-static vec3s refracted(const struct point *point, double index, bool inside, bool *total)
-{
-    double sine = sqrt(1 - point->cosine * point->cosine) * (inside ? index : 1 / index);
-    *total = sine > 1;
-    if (*total)
-        return point->mirror;
-    vec3s along = glms_vec3_sub(glms_vec3_scale(point->normal, (float)point->cosine), point->viewer);
-    vec3s straight = glms_vec3_scale(point->normal, -(float)sqrt(1 - sine * sine));
-    return glms_vec3_add(straight, glms_vec3_scale(glms_vec3_normalize(along), (float)sine));
-}
-
-/* Born and Wolf, 1.5.2, by angles. */
-static double dielectric(double index, double cosine)
-{
-    double sine = sqrt(1 - cosine * cosine) / index, inner = sqrt(1 - sine * sine);
-    double across = (cosine - index * inner) / (cosine + index * inner);
-    double along = (index * cosine - inner) / (index * cosine + inner);
-    return 0.5 * (across * across + along * along);
 }
 
 #define INDEX 1.5
@@ -100,7 +50,7 @@ static vec3s under_light(const tl_environment *environment, int mode, const stru
 {
     bool total;
     if (mode == TL_MAPS_REFRACTION)
-        return lights(refracted(point, INDEX, inside, &total));
+        return lights(refracted_ray(point->normal, point->viewer, INDEX, inside, &total));
     if (mode == TL_MAPS_TRANSMISSION)
         return glms_vec3_mul(kd, integrate(environment, glms_vec3_negate(point->viewer), 10));
     return mode == TL_MAPS_GLOSSY ? (vec3s){{0, 0, 0}}
@@ -160,7 +110,7 @@ static double compare(const struct test_scene *scene, tl_renderer *renderer, boo
         if (!find_point(&view, i % SIDE, i / SIDE, inside, &point))
             continue;
         vec3s expected = expected_light(&scene->environment, &scene->settings.maps, &point, inside);
-        refracted(&point, INDEX, inside, &total);
+        refracted_ray(point.normal, point.viewer, INDEX, inside, &total);
         ++*counted;
         *totals += total;
         for (int c = 0; c < 3; c++)
@@ -214,7 +164,7 @@ static void backs_refract_outwards(void **state)
         bool total;
         if (!find_point(&view, i % SIDE, i / SIDE, true, &point))
             continue;
-        vec3s direction = refracted(&point, INDEX, true, &total);
+        vec3s direction = refracted_ray(point.normal, point.viewer, INDEX, true, &total);
         double sine = INDEX * sqrt(1 - point.cosine * point.cosine);
         counted++;
         totals += total;
@@ -436,7 +386,7 @@ static double pole_error(tl_renderer *renderer, int layout, int size)
         bool total;
         if (!find_point(&view, i % SIDE, i / SIDE, false, &point))
             continue;
-        vec3s expected = lights(refracted(&point, index, false, &total));
+        vec3s expected = lights(refracted_ray(point.normal, point.viewer, index, false, &total));
         for (int c = 0; c < 3; c++) {
             double off = (double)(test_pixel(&image, i % SIDE, i / SIDE)[c] - expected.raw[c]);
             worst = fmax(worst, fabs(off));

@@ -83,12 +83,13 @@ static void look_up(struct device *device, const struct tl_maps_params *params, 
     tl_target gbuffer = mirrors_of(device->gpu, directions, count);
     struct tl_maps_params mirror = *params;
     mirror.mode = TL_MAPS_MIRROR;
-    const struct tl_envmap_request request = {.triangles = &gbuffer.colours[TL_GBUFFER_TRIANGLE],
+    const struct tl_view view = {0}; /* the eye is at the origin */
+    const struct tl_envmap_request request = {.gbuffer = &gbuffer,
                                               .exponent_levels = &device->lighting.exponent_levels,
+                                              .view = &view,
                                               .params = &mirror};
     tl_gpu_reset_state(device->gpu);
-    tl_light_buffer_begin(&device->light, device->gpu, &gbuffer, true);
-    assert_ok(tl_envmap_draw(&device->envmap, device->gpu, &request, &error), error);
+    assert_ok(tl_envmap_draw(&device->envmap, device->gpu, &request, &device->light, &error), error);
     tl_gpu_reset_state(device->gpu);
     size_t texels = (size_t)WIDTH * (size_t)gbuffer.height;
     float *light = TL_NEW_ARRAY(float, 4 * texels);
