@@ -19,8 +19,12 @@ add_library(toile_light STATIC
   brdf/power.c
   construction/options.c
   construction/tables.c
+  brdf/tables/factor.c
+  brdf/tables/factor_solve.c
+  brdf/tables/model_samples.c
   brdf/tables/table_error.c
   brdf/tables/tables.c
+  brdf/tables/tables_read.c
   env/convert.c
   env/cube.c
   env/emitters.c
