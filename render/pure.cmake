@@ -21,6 +21,7 @@ add_library(toile_light STATIC
   construction/tables.c
   brdf/tables/factor.c
   brdf/tables/factor_solve.c
+  brdf/tables/measured.c
   brdf/tables/model_samples.c
   brdf/tables/table_error.c
   brdf/tables/tables.c
@@ -84,6 +85,7 @@ add_library(toile_light STATIC
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
+  transfer/transfer.c
   visibility/fit.c
   visibility/map_order.c
 )

@@ -25,30 +25,30 @@ enum column {
     VALUE,
     COLUMNS
 };
-static const char *const column_names[COLUMNS] = {"theta_l", "phi_l", "theta_v", "phi_v", "l_x", "l_y", "l_z",
-                                                  "v_x",     "v_y",   "v_z",     "r",     "g",   "b",   "value"};
+static const char *const column_names[COLUMNS] = {
+    "theta_l", "phi_l", "theta_v", "phi_v", "l_x", "l_y", "l_z", "v_x", "v_y", "v_z", "r", "g", "b", "value"};
 #define WORDS_MAX    64
 #define UNIT_ERROR   0.02f /* of a vector's length */
 #define BRIGHTEST    1e6f  /* 1/sr: what is larger is a mirror, which no table holds */
 #define UNDER_GROUND 1e-3f /* how far below the surface a direction may lie by rounding */
 
-struct reader {
+struct samples_reader {
     struct tl_text text;
-    int words;               /* columns of the file */
-    int places[COLUMNS];     /* of a column among them; -1: it has none */
+    int words;           /* columns of the file */
+    int places[COLUMNS]; /* of a column among them; -1: it has none */
     bool has_angles, is_grey;
     struct tl_reflectance_samples *out;
     tl_error *error;
 };
 
-static bool fail_here(const struct reader *reader, const char *what)
+static bool fail_here(const struct samples_reader *reader, const char *what)
 {
     return tl_fail(reader->error, TL_INPUT, "%s: line %zu: %s", reader->text.path, reader->text.line, what);
 }
 
 /* ---- The first line ---- */
 
-static bool has(const struct reader *reader, enum column first, enum column last)
+static bool has(const struct samples_reader *reader, enum column first, enum column last)
 {
     for (int c = (int)first; c <= (int)last; c++)
         if (reader->places[c] < 0)
@@ -56,7 +56,7 @@ static bool has(const struct reader *reader, enum column first, enum column last
     return true;
 }
 
-static bool name_columns(struct reader *reader)
+static bool name_columns(struct samples_reader *reader)
 {
     for (int c = 0; c < COLUMNS; c++)
         reader->places[c] = -1;
@@ -76,8 +76,9 @@ static bool name_columns(struct reader *reader)
     reader->has_angles = has(reader, THETA_L, PHI_V);
     reader->is_grey = !has(reader, RED, BLUE);
     if (!reader->has_angles && !has(reader, L_X, V_Z))
-        return fail_here(reader, "does not name the columns of directions: expected theta_l phi_l theta_v phi_v in "
-                                 "degrees, or l_x l_y l_z v_x v_y v_z");
+        return fail_here(reader,
+                         "does not name the columns of directions: expected theta_l phi_l theta_v phi_v in "
+                         "degrees, or l_x l_y l_z v_x v_y v_z");
     if (reader->is_grey && !has(reader, VALUE, VALUE))
         return fail_here(reader, "does not name the columns of reflectance: expected r g b, or value");
     return true;
@@ -91,12 +92,14 @@ static vec3s from_angles(float theta_deg, float phi_deg)
     return (vec3s){{(float)(sin(theta) * cos(phi)), (float)(sin(theta) * sin(phi)), (float)cos(theta)}};
 }
 
-static bool read_direction(const struct reader *reader, const float *words, bool is_viewer, vec3s *out)
+static bool read_direction(const struct samples_reader *reader, const float *words, bool is_viewer,
+                           vec3s *out)
 {
     const int *places = reader->places;
     int angle = is_viewer ? THETA_V : THETA_L, axis = is_viewer ? V_X : L_X;
-    *out = reader->has_angles ? from_angles(words[places[angle]], words[places[angle + 1]])
-                              : (vec3s){{words[places[axis]], words[places[axis + 1]], words[places[axis + 2]]}};
+    *out = reader->has_angles
+               ? from_angles(words[places[angle]], words[places[angle + 1]])
+               : (vec3s){{words[places[axis]], words[places[axis + 1]], words[places[axis + 2]]}};
     float length = glms_vec3_norm(*out);
     if (!(fabsf(length - 1) < UNIT_ERROR))
         return fail_here(reader, is_viewer ? "v is no unit vector: divide it by its length"
@@ -109,7 +112,8 @@ static bool read_direction(const struct reader *reader, const float *words, bool
     return true;
 }
 
-static bool read_sample(const struct reader *reader, const float *words, struct tl_reflectance_sample *out)
+static bool read_sample(const struct samples_reader *reader, const float *words,
+                        struct tl_reflectance_sample *out)
 {
     for (int c = 0; c < 3; c++) {
         out->value.raw[c] = words[reader->places[reader->is_grey ? VALUE : RED + c]];
@@ -121,7 +125,7 @@ static bool read_sample(const struct reader *reader, const float *words, struct 
     return read_direction(reader, words, false, &out->l) && read_direction(reader, words, true, &out->v);
 }
 
-static bool read_samples(struct reader *reader)
+static bool read_samples(struct samples_reader *reader)
 {
     struct tl_reflectance_samples *out = reader->out;
     float words[WORDS_MAX], brightest = 0;
@@ -129,7 +133,8 @@ static bool read_samples(struct reader *reader)
     while (tl_text_next(&reader->text)) {
         struct tl_reflectance_sample sample;
         if (out->count == TL_REFLECTANCE_SAMPLES_MAX)
-            return fail_here(reader, "is one more than the 1000000 samples that can be read: keep every n-th");
+            return fail_here(reader,
+                             "is one more than the 1000000 samples that can be read: keep every n-th");
         if (!tl_text_numbers(&reader->text, "sample", reader->words, words, reader->error))
             return false;
         if (tl_text_word(&reader->text))
@@ -144,15 +149,15 @@ static bool read_samples(struct reader *reader)
         brightest = fmaxf(brightest, glms_vec3_max(sample.value));
     }
     if (out->count < TL_REFLECTANCE_SAMPLES_MIN)
-        return tl_fail(reader->error, TL_INPUT, "%s: has %zu samples: at least 32 are needed", reader->text.path,
-                       out->count);
-    return brightest > 0 ||
-           tl_fail(reader->error, TL_INPUT, "%s: reflects no light: all of its values are 0", reader->text.path);
+        return tl_fail(reader->error, TL_INPUT, "%s: has %zu samples: at least 32 are needed",
+                       reader->text.path, out->count);
+    return brightest > 0 || tl_fail(reader->error, TL_INPUT, "%s: reflects no light: all of its values are 0",
+                                    reader->text.path);
 }
 
 bool tl_reflectance_samples_load(const char *path, struct tl_reflectance_samples *out, tl_error *error)
 {
-    struct reader reader = {.out = out, .error = error};
+    struct samples_reader reader = {.out = out, .error = error};
     *out = (struct tl_reflectance_samples){0};
     if (tl_file_size(path) > TL_REFLECTANCE_FILE_BYTES)
         return tl_fail(error, TL_INPUT, "%s: has more than 256 MB: keep every n-th sample", path);

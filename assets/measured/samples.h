@@ -1,8 +1,8 @@
 /* Measured reflectance as a list of samples, from a text file: what a gonioreflectometer or another program
  * writes, one pair of directions a line.
  *
- *     theta_l, phi_l, theta_v, phi_v, r, g, b          degrees from the normal, and from the weft towards the warp
- *     l_x, l_y, l_z, v_x, v_y, v_z, r, g, b            unit vectors: along weft, warp, normal
+ *     theta_l, phi_l, theta_v, phi_v, r, g, b          degrees from the normal, and from the weft towards the
+ * warp l_x, l_y, l_z, v_x, v_y, v_z, r, g, b            unit vectors: along weft, warp, normal
  *
  * The first line names the columns, in any order; others are skipped. l points to the light, v to the viewer.
  * r, g, b, or `value` alone, are the reflectance f_r, 1/sr, not multiplied by a cosine. Columns are separated

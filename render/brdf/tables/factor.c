@@ -13,14 +13,14 @@
 /* What is 0 or almost has the logarithm of this share of the mean. */
 #define BLACK_SHARE 1e-4
 /* Weight of second differences against the mean weight of the samples at a texel. */
-#define SMOOTHNESS 1e-4
+#define SMOOTHNESS 1e-3
 #define LEVELS     3
 #define STEPS      6 /* linearisations of a level */
 
 static const int factor_inputs[FACTORS][2] = {[AT_LIGHT] = {TL_AXIS_L_U, TL_AXIS_L_V},
                                               [AT_VIEWER] = {TL_AXIS_V_U, TL_AXIS_V_V},
                                               [AT_HALF] = {TL_AXIS_H_U, TL_AXIS_H_V},
-                                              [AT_ANGLE] = {TL_AXIS_H_DOT_L, TL_AXIS_NONE}};
+                                              [AT_ANGLE] = {TL_AXIS_H_DOT_L, TL_AXIS_H_RADIUS}};
 static const int factor_grids[FACTORS] = {GRID_DIRECTION, GRID_DIRECTION, GRID_HALF, GRID_ANGLE};
 static const struct tl_brdf_frame own_frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
 
@@ -28,7 +28,7 @@ static const struct tl_brdf_frame own_frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1,
 
 static float low_of(int input)
 {
-    return input == TL_AXIS_H_DOT_L ? 0 : -1;
+    return input == TL_AXIS_H_DOT_L || input == TL_AXIS_H_RADIUS ? 0 : -1;
 }
 
 /* Maps [low, 1] to the centres of the first and the last texel, as in tables.c. */
@@ -50,8 +50,8 @@ static float place_of(int input, float value, int count, int *texel)
     return place - (float)*texel;
 }
 
-static void place_factor(const struct factor_grid *grid, const int inputs[2], const float values[TL_AXIS_COUNT],
-                         uint32_t *texels, float *shares)
+static void place_factor(const struct factor_grid *grid, const int inputs[2],
+                         const float values[TL_AXIS_COUNT], uint32_t *texels, float *shares)
 {
     int x, y = 0;
     float right = place_of(inputs[0], values[inputs[0]], grid->width, &x);
@@ -69,8 +69,8 @@ static struct factor_problem problem_of(const struct tl_reflectance_samples *sam
     struct factor_problem problem = {
         .grids = {[GRID_DIRECTION] = {(int)half, (int)half, 0},
                   [GRID_HALF] = {size, size, half * half},
-                  [GRID_ANGLE] = {size, 1, half * half + whole * whole}},
-        .unknowns = half * half + whole * whole + whole,
+                  [GRID_ANGLE] = {(int)half, (int)half, half * half + whole * whole}},
+        .unknowns = 2 * half * half + whole * whole,
         .row_count = samples->count,
         .rows = TL_NEW_ARRAY(struct factor_row, samples->count),
     };
@@ -87,26 +87,28 @@ static struct factor_problem problem_of(const struct tl_reflectance_samples *sam
 /* ---- One channel ---- */
 
 struct channel {
-    double *wanted;                       /* the samples' values, > 0 */
-    double *log_weights, *value_weights;  /* of squared errors of the logarithms, of the values */
-    double *logs;             /* of the texels of the last level */
+    double *wanted;                     /* the samples' values, > 0 */
+    double *log_weights, *root_weights; /* of squared errors of the logarithms, of the roots */
+    double *logs;                       /* of the texels of the last level */
 };
 
 static struct channel channel_of(const struct tl_reflectance_samples *samples, int channel)
 {
     struct channel out = {.wanted = TL_NEW_ARRAY(double, samples->count),
                           .log_weights = TL_NEW_ARRAY(double, samples->count),
-                          .value_weights = TL_NEW_ARRAY(double, samples->count)};
+                          .root_weights = TL_NEW_ARRAY(double, samples->count)};
     double mean = 0;
     for (size_t i = 0; i < samples->count; i++)
-        mean += (double)(samples->items[i].value.raw[channel] * samples->items[i].l.z) / (double)samples->count;
+        mean +=
+            (double)(samples->items[i].value.raw[channel] * samples->items[i].l.z) / (double)samples->count;
     mean = fmax(mean, 1e-12);
     for (size_t i = 0; i < samples->count; i++) {
         const struct tl_reflectance_sample *sample = &samples->items[i];
-        double cosine = (double)sample->l.z, value = (double)sample->value.raw[channel], seen = value * cosine;
+        double cosine = (double)sample->l.z, value = (double)sample->value.raw[channel],
+               seen = value * cosine;
         out.wanted[i] = fmax(value, BLACK_SHARE * mean);
         out.log_weights[i] = fmax(seen, BLACK_SHARE * mean) / (seen + DARK_SHARE * mean);
-        out.value_weights[i] = cosine * cosine / (mean * (seen + DARK_SHARE * mean));
+        out.root_weights[i] = 4 * cosine / mean;
     }
     return out;
 }
@@ -175,10 +177,11 @@ static double sum_of(const double *values, size_t count)
 static void solve_level(const struct factor_problem *problem, const struct channel *channel,
                         enum factor_measure measure)
 {
-    const double share = SMOOTHNESS * sum_of(channel->log_weights, problem->row_count) / (double)problem->unknowns;
+    const double share =
+        SMOOTHNESS * sum_of(channel->log_weights, problem->row_count) / (double)problem->unknowns;
     const struct factor_aim aim = {measure, channel->wanted,
-                                   measure == FACTOR_LOGS ? channel->log_weights : channel->value_weights, share,
-                                   STEPS};
+                                   measure == FACTOR_LOGS ? channel->log_weights : channel->root_weights,
+                                   share, STEPS};
     factor_solve(problem, &aim, channel->logs);
 }
 
@@ -193,7 +196,7 @@ static void solve_channel(const struct factor_problem problems[LEVELS], struct c
             free(channel->logs);
             channel->logs = finer;
         }
-        solve_level(&problems[level], channel, FACTOR_VALUES);
+        solve_level(&problems[level], channel, FACTOR_ROOTS);
     }
 }
 
@@ -228,21 +231,6 @@ static struct tl_brdf_table table_of(const struct factor_problem *problem, int f
                                   .y = axis_of(factor_inputs[factor][1], grid->height)};
 }
 
-static double error_of(const struct tl_brdf_tables *tables, const struct tl_reflectance_samples *samples)
-{
-    double off = 0, all = 0;
-    for (size_t i = 0; i < samples->count; i++) {
-        const struct tl_reflectance_sample *sample = &samples->items[i];
-        float values[TL_AXIS_COUNT];
-        tl_brdf_inputs(&own_frame, sample->l, sample->v, values);
-        vec3s drawn = tl_brdf_tables_gloss(tables, values);
-        vec3s wanted = glms_vec3_scale(sample->value, sample->v.z > 0 ? sample->l.z : 0);
-        off += (double)glms_vec3_norm2(glms_vec3_sub(drawn, wanted));
-        all += (double)glms_vec3_norm2(wanted);
-    }
-    return sqrt(off / fmax(all, 1e-30));
-}
-
 static double bridged_share(const struct factor_problem *problem, const bool *reached)
 {
     const struct factor_grid *grid = &problem->grids[GRID_DIRECTION];
@@ -268,8 +256,17 @@ static bool *reached_texels(const struct factor_problem *problem)
     return reached;
 }
 
+int tl_factor_size(size_t samples)
+{
+    int size = TL_FACTOR_SIZE_MIN;
+    while (size < TL_FACTOR_SIZE_MAX &&
+           samples >= (size_t)24 * (size_t)size * (size_t)size) /* of twice the size: 6 size^2 texels */
+        size *= 2;
+    return size;
+}
+
 struct tl_brdf_tables tl_brdf_tables_factor(const struct tl_reflectance_samples *samples, int size,
-                                            struct tl_factor_report *report)
+                                            double *bridged)
 {
     assert(size >= TL_FACTOR_SIZE_MIN);
     struct tl_brdf_tables tables = {.count = FACTORS, .times_cos_a = true};
@@ -288,12 +285,12 @@ struct tl_brdf_tables tl_brdf_tables_factor(const struct tl_reflectance_samples 
     }
     for (int f = 0; f < FACTORS; f++)
         tables.tables[f] = table_of(last, f, channels, count);
-    if (report)
-        *report = (struct tl_factor_report){error_of(&tables, samples), bridged_share(last, reached)};
+    if (bridged)
+        *bridged = bridged_share(last, reached);
     for (int c = 0; c < count; c++) {
         free(channels[c].wanted);
         free(channels[c].log_weights);
-        free(channels[c].value_weights);
+        free(channels[c].root_weights);
         free(channels[c].logs);
     }
     for (int level = 0; level < LEVELS; level++)

@@ -1,18 +1,19 @@
-/* Tables factored numerically out of samples of reflectance, by homomorphic factorisation [McCool, Ang and Ahmad
- * 2001, "Homomorphic factorization of BRDFs for high-performance rendering"]:
+/* Tables factored numerically out of samples of reflectance, by homomorphic factorisation [McCool, Ang and
+ * Ahmad 2001, "Homomorphic factorization of BRDFs for high-performance rendering"]:
  *
- *     f_r(l, v) = p(l) p(v) q(h) r(h.l)
+ *     f_r(l, v) = p(l) p(v) q(h) r(h.l, n.h)
  *
  * The logarithm of the product is a sum, so the logarithms of all texels follow from one sparse least-squares
- * problem. r is added to the three factors of the paper; it holds what Fresnel's term does. p and q are over
- * directions, on paraboloid maps (tables.h); whatever the samples, the product is reciprocal and positive.
- * Ward's published model has this form, and Torrance and Sparrow's nearly; r.l of Phong's model has not.
+ * problem. p and q are over directions, on paraboloid maps (tables.h). r is added to the paper's factors: it
+ * has what Fresnel's term does, and lobes that get narrower or wider towards grazing light. Whatever the
+ * samples, the product is reciprocal and positive. Ward's published model has this form, Torrance and
+ * Sparrow's and the cosine lobe nearly; models that are not reciprocal have not.
  *
- * The problem is solved on tables of a quarter, half and the whole of their size, each time by a few
- * linearisations (Gauss and Newton) about the interpolation that is drawn, of texels and not of their
- * logarithms, each by conjugate gradients. A sample counts by its size next to the mean: the error of the dark
- * is not seen. Where no sample lies, second differences of the logarithms are smallest, so gaps are bridged
- * smoothly.
+ * The first guess is the solution by logarithms on tables of a quarter of the size. From there the roots of
+ * f_r cos a are brought near those of the samples, whose squared errors lie between absolute and relative
+ * ones of f_r cos a, on tables of a quarter, half and the whole size, interpolated as they are drawn: by
+ * Levenberg and Marquardt's method, each step by conjugate gradients. Where no sample lies, second
+ * differences of the logarithms are smallest, so gaps are bridged smoothly.
  *
  * Pure; the result is the same at any number of threads. */
 #ifndef TOILE_RENDER_BRDF_TABLES_FACTOR_H
@@ -22,20 +23,25 @@
 #include "render/brdf/tables/tables.h"
 
 #define TL_FACTOR_SIZE_MIN 16
+#define TL_FACTOR_SIZE_MAX 128
 
-struct tl_factor_report {
-    double rel_rmse; /* of f_r cos a over the samples, all channels together */
-    double bridged;  /* share of the directions' map, within the hemisphere, that no sample reaches */
-};
+/* The size of tables that so many samples determine: 16, 32, 64 or 128, with four samples or more a texel
+ * where there are that many. */
+int tl_factor_size(size_t samples);
 
-/* Makes the four tables, in float: q has size x size texels, p half as many along each side, r size x 1;
- * `size` at least TL_FACTOR_SIZE_MIN. The samples must have passed tl_reflectance_samples_load or be as those
- * are. `report` may be NULL. The caller releases the tables. */
+/* Makes the four tables, in float: q has size x size texels, p and r have half as many along each side;
+ * `size` is at least TL_FACTOR_SIZE_MIN. The samples must have passed tl_reflectance_samples_load or be as
+ * those are. *bridged, unless NULL: the share of directions that no sample reaches. The caller releases the
+ * tables. */
 struct tl_brdf_tables tl_brdf_tables_factor(const struct tl_reflectance_samples *samples, int size,
-                                            struct tl_factor_report *report);
+                                            double *bridged);
 
 /* Samples of a model's gloss: pairs of directions that fill all half vectors and differences evenly, from a
  * fixed sequence. The caller releases them. */
 struct tl_reflectance_samples tl_brdf_model_samples(const struct tl_brdf *brdf, size_t count);
+
+/* The four tables of a model's gloss, factored out of 12 size^2 samples; `size` is limited to
+ * TL_FACTOR_SIZE_MIN to TL_FACTOR_SIZE_MAX. */
+struct tl_brdf_tables tl_brdf_tables_refactor(const struct tl_brdf *brdf, int size);
 
 #endif

@@ -7,7 +7,7 @@
 
 /* The factors of a sample: p at l and at v, q, r; and how many texels each interpolates. */
 enum { AT_LIGHT, AT_VIEWER, AT_HALF, AT_ANGLE, FACTORS };
-enum { TEXELS = 14 };
+enum { TEXELS = 16 };
 static const int factor_first[FACTORS + 1] = {0, 4, 8, 12, TEXELS};
 
 /* Texels of one table among the unknowns, rows from v = 0 up. */
@@ -28,9 +28,10 @@ struct factor_problem {
     struct factor_row *rows;
 };
 
-/* What is fitted: errors are those of logarithms, which makes a first guess unnecessary, or of the values
- * themselves, by which the bright parts are right where the product cannot have the form of the samples. */
-enum factor_measure { FACTOR_LOGS, FACTOR_VALUES };
+/* What is fitted: errors are those of logarithms, which makes a first guess unnecessary, or of square roots,
+ * by which the bright parts are right where the product cannot have the form of the samples. The square of an
+ * error of the root of f is a quarter of (f^ - f)^2 / f, between an absolute and a relative error. */
+enum factor_measure { FACTOR_LOGS, FACTOR_ROOTS };
 struct factor_aim {
     enum factor_measure measure;
     const double *wanted;  /* values of the samples, > 0 */

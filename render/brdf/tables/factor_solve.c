@@ -3,12 +3,16 @@
 #include "config/memory.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Damping at the start, and that at which no step is left to try. */
+#define DAMPING     1e-2
+#define DAMPING_MAX 1e6
+/* A step that improves by less than this share is the last. */
+#define ENOUGH 1e-3
 /* Conjugate gradients end after so many steps, or when the residual has fallen to this share. */
-#define STEPS_MAX 60
+#define STEPS_MAX 20
 #define DONE      1e-6
 
 /* Products beyond this are cut, so that their squares stay finite. */
@@ -18,8 +22,10 @@
 struct linear {
     const struct factor_problem *problem;
     const struct factor_aim *aim;
-    double *weights; /* of squared errors of logarithms */
-    float *slopes;   /* TEXELS a row */
+    double *weights;  /* of squared errors of logarithms */
+    double *diagonal; /* of the matrix, nearly */
+    double damping;   /* share of the diagonal that is added to it [Levenberg and Marquardt] */
+    float *slopes;    /* TEXELS a row */
 };
 
 /* The logarithm of one factor, with the slopes by its texels where `slopes` is not NULL. */
@@ -79,7 +85,7 @@ static void add_smoothness(const struct factor_grid *grid, double smoothness, co
 
 /* ---- The normal equations ---- */
 
-/* out = (B^T W B + smoothness D^T D) x */
+/* out = (B^T W B + smoothness D^T D + damping) x */
 static void multiply(const struct linear *linear, const double *x, double *out)
 {
     const struct factor_problem *problem = linear->problem;
@@ -96,18 +102,21 @@ static void multiply(const struct linear *linear, const double *x, double *out)
     }
     for (int g = 0; g < GRIDS; g++)
         add_smoothness(&problem->grids[g], linear->aim->smoothness, x, out);
+    for (size_t i = 0; i < problem->unknowns; i++)
+        out[i] += linear->damping * linear->diagonal[i] * x[i];
 }
 
 /* The error of row i where the product has logarithm `value`. */
 static double error_at(const struct factor_aim *aim, size_t i, double value)
 {
     return aim->measure == FACTOR_LOGS ? log(aim->wanted[i]) - value
-                                       : aim->wanted[i] - exp(fmin(value, LOG_MAX));
+                                       : sqrt(aim->wanted[i]) - exp(fmin(value, LOG_MAX) / 2);
 }
 
-/* right = B^T W (wanted - value at logs) - smoothness D^T D logs; diagonal: that of the matrix, nearly. */
-static void begin(struct linear *linear, const double *logs, double *right, double *diagonal)
+/* right = B^T W (wanted - value at logs) - smoothness D^T D logs */
+static void begin(struct linear *linear, const double *logs, double *right)
 {
+    double *diagonal = linear->diagonal;
     const struct factor_aim *aim = linear->aim;
     const struct factor_problem *problem = linear->problem;
     memset(right, 0, problem->unknowns * sizeof *right);
@@ -121,7 +130,8 @@ static void begin(struct linear *linear, const double *logs, double *right, doub
         double value = 0;
         for (int f = 0; f < FACTORS; f++)
             value += log_of_factor(row, logs, f, slopes);
-        double gain = aim->measure == FACTOR_LOGS ? 1 : exp(fmin(value, LOG_MAX)); /* of a value by its logarithm */
+        double gain =
+            aim->measure == FACTOR_LOGS ? 1 : exp(fmin(value, LOG_MAX) / 2) / 2; /* root by logarithm */
         linear->weights[i] = aim->weights[i] * gain * gain;
         for (int k = 0; k < TEXELS; k++) {
             double weighted = linear->weights[i] * (double)slopes[k];
@@ -139,10 +149,11 @@ static double dot(const double *a, const double *b, size_t count)
     return sum;
 }
 
-/* change = the solution, by conjugate gradients with the diagonal as preconditioner. `residual` holds the right
- * side. */
-static void solve_linear(const struct linear *linear, const double *diagonal, double *residual, double *change)
+/* change = the solution, by conjugate gradients with the diagonal as preconditioner. `residual` holds the
+ * right side. */
+static void solve_linear(const struct linear *linear, double *residual, double *change)
 {
+    const double *diagonal = linear->diagonal;
     size_t count = linear->problem->unknowns;
     double *direction = TL_NEW_ARRAY(double, count), *product = TL_NEW_ARRAY(double, count),
            *scaled = TL_NEW_ARRAY(double, count);
@@ -191,32 +202,34 @@ static double badness(const struct linear *linear, const double *logs, double *s
 void factor_solve(const struct factor_problem *problem, const struct factor_aim *aim, double *logs)
 {
     size_t count = problem->unknowns;
-    struct linear linear = {problem, aim, TL_NEW_ARRAY(double, problem->row_count),
-                            TL_NEW_ARRAY(float, TEXELS *problem->row_count)};
-    double *right = TL_NEW_ARRAY(double, count), *diagonal = TL_NEW_ARRAY(double, count),
-           *change = TL_NEW_ARRAY(double, count), *tried = TL_NEW_ARRAY(double, count);
+    struct linear linear = {problem,
+                            aim,
+                            TL_NEW_ARRAY(double, problem->row_count),
+                            TL_NEW_ARRAY(double, count),
+                            DAMPING,
+                            TL_NEW_ARRAY(float, TEXELS * problem->row_count)};
+    double *right = TL_NEW_ARRAY(double, count), *change = TL_NEW_ARRAY(double, count),
+           *tried = TL_NEW_ARRAY(double, count);
     double now = badness(&linear, logs, right);
-    for (int step = 0; step < aim->steps; step++) {
-        begin(&linear, logs, right, diagonal);
-        solve_linear(&linear, diagonal, right, change);
-        double next = INFINITY, before = now;
-        for (double share = 1; !(next < now) && share > 0.05; share /= 2) { /* never to a worse place */
-            for (size_t i = 0; i < count; i++)
-                tried[i] = logs[i] + share * change[i];
-            next = badness(&linear, tried, right);
-        }
+    for (int step = 0; step < aim->steps && linear.damping < DAMPING_MAX; step++) {
+        begin(&linear, logs, right);
+        solve_linear(&linear, right, change);
+        for (size_t i = 0; i < count; i++)
+            tried[i] = logs[i] + change[i];
+        double next = badness(&linear, tried, right);
+        linear.damping *= next < now ? 0.25 : 16;
         if (!(next < now))
-            break;
+            continue;
         memcpy(logs, tried, count * sizeof *logs);
+        bool is_done = now - next < ENOUGH * now;
         now = next;
-        if (getenv("FACTOR_TRACE")) fprintf(stderr, "%zu step %d: %g\n", count, step, now);
-        if (before - now < 1e-3 * before)
+        if (is_done)
             break;
     }
     free(linear.weights);
+    free(linear.diagonal);
     free(linear.slopes);
     free(right);
-    free(diagonal);
     free(change);
     free(tried);
 }

@@ -22,12 +22,14 @@ static void sequence(size_t i, double out[4])
 static vec3s half_at(double radius, double turn)
 {
     double map = radius * radius, square = map * map, plane = 2 * map / (1 + square);
-    return (vec3s){{(float)(plane * cos(turn)), (float)(plane * sin(turn)), (float)((1 - square) / (1 + square))}};
+    return (vec3s){
+        {(float)(plane * cos(turn)), (float)(plane * sin(turn)), (float)((1 - square) / (1 + square))}};
 }
 
 static vec3s around(vec3s axis, double cosine, double turn)
 {
-    vec3s t = glms_vec3_normalize(glms_vec3_cross(fabsf(axis.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}}, axis));
+    vec3s t = glms_vec3_normalize(
+        glms_vec3_cross(fabsf(axis.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}}, axis));
     vec3s b = glms_vec3_cross(axis, t);
     double sine = sqrt(fmax(1 - cosine * cosine, 0));
     vec3s sum = glms_vec3_scale(axis, (float)cosine);
@@ -48,8 +50,19 @@ struct tl_reflectance_samples tl_brdf_model_samples(const struct tl_brdf *brdf, 
         if (!(l.z > LOWEST && v.z > LOWEST))
             continue;
         vec3s gloss = tl_brdf_gloss(brdf, &frame, l, v);
-        out.items[out.count++] =
-            (struct tl_reflectance_sample){l, v, glms_vec3_scale(gloss, 1 / l.z)};
+        out.items[out.count++] = (struct tl_reflectance_sample){l, v, glms_vec3_scale(gloss, 1 / l.z)};
     }
     return out;
+}
+
+struct tl_brdf_tables tl_brdf_tables_refactor(const struct tl_brdf *brdf, int size)
+{
+    int limited = size < TL_FACTOR_SIZE_MIN   ? TL_FACTOR_SIZE_MIN
+                  : size > TL_FACTOR_SIZE_MAX ? TL_FACTOR_SIZE_MAX
+                                              : size;
+    struct tl_reflectance_samples samples =
+        tl_brdf_model_samples(brdf, (size_t)12 * (size_t)limited * (size_t)limited);
+    struct tl_brdf_tables tables = tl_brdf_tables_factor(&samples, limited, NULL);
+    tl_reflectance_samples_release(&samples);
+    return tables;
 }

@@ -57,6 +57,7 @@ enum tl_table_input {
     TL_AXIS_V_V,
     TL_AXIS_H_U,
     TL_AXIS_H_V,
+    TL_AXIS_H_RADIUS, /* the length of these two */
     TL_AXIS_COUNT
 };
 

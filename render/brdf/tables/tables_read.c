@@ -41,6 +41,7 @@ void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float i
     map_own(frame, l, &inputs[TL_AXIS_L_U]);
     map_own(frame, v, &inputs[TL_AXIS_V_U]);
     map_half(at.h, &inputs[TL_AXIS_H_U]);
+    inputs[TL_AXIS_H_RADIUS] = hypotf(inputs[TL_AXIS_H_U], inputs[TL_AXIS_H_V]);
 }
 
 static float texel(const struct tl_brdf_table *table, int x, int y, int channel)
