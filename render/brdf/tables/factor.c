@@ -150,22 +150,6 @@ static double *first_guess(const struct factor_problem *problem, const struct ch
     return logs;
 }
 
-/* Texels that no sample reaches are extrapolated; their logarithms stay within those of the others. */
-static void limit_bridges(const struct factor_problem *problem, const bool *reached, double *logs)
-{
-    for (int g = 0; g < GRIDS; g++) {
-        const struct factor_grid *grid = &problem->grids[g];
-        size_t end = grid->first + (size_t)grid->width * (size_t)grid->height;
-        double low = INFINITY, high = -INFINITY;
-        for (size_t i = grid->first; i < end; i++) {
-            low = reached[i] ? fmin(low, logs[i]) : low;
-            high = reached[i] ? fmax(high, logs[i]) : high;
-        }
-        for (size_t i = grid->first; i < end; i++)
-            logs[i] = fmin(fmax(logs[i], low), high);
-    }
-}
-
 static double sum_of(const double *values, size_t count)
 {
     double sum = 0;
@@ -256,6 +240,13 @@ static bool *reached_texels(const struct factor_problem *problem)
     return reached;
 }
 
+/* No level is so coarse that a lobe falls between its texels. */
+static int level_size(int size, int level)
+{
+    int coarse = size >> (LEVELS - 1 - level);
+    return coarse < TL_FACTOR_SIZE_MIN ? TL_FACTOR_SIZE_MIN : coarse;
+}
+
 int tl_factor_size(size_t samples)
 {
     int size = TL_FACTOR_SIZE_MIN;
@@ -274,14 +265,13 @@ struct tl_brdf_tables tl_brdf_tables_factor(const struct tl_reflectance_samples 
     struct channel channels[3];
     int count = is_grey(samples) ? 1 : 3;
     for (int level = 0; level < LEVELS; level++)
-        problems[level] = problem_of(samples, size >> (LEVELS - 1 - level));
+        problems[level] = problem_of(samples, level_size(size, level));
     const struct factor_problem *last = &problems[LEVELS - 1];
     bool *reached = reached_texels(last);
 #pragma omp parallel for schedule(dynamic, 1)
     for (int c = 0; c < count; c++) {
         channels[c] = channel_of(samples, c);
         solve_channel(problems, &channels[c]);
-        limit_bridges(last, reached, channels[c].logs);
     }
     for (int f = 0; f < FACTORS; f++)
         tables.tables[f] = table_of(last, f, channels, count);

@@ -9,7 +9,8 @@
  * samples, the product is reciprocal and positive. Ward's published model has this form, Torrance and
  * Sparrow's and the cosine lobe nearly; models that are not reciprocal have not.
  *
- * The first guess is the solution by logarithms on tables of a quarter of the size. From there the roots of
+ * The first guess is the solution by logarithms on tables of a quarter of the size, but of 16 texels
+ * at least. From there the roots of
  * f_r cos a are brought near those of the samples, whose squared errors lie between absolute and relative
  * ones of f_r cos a, on tables of a quarter, half and the whole size, interpolated as they are drawn: by
  * Levenberg and Marquardt's method, each step by conjugate gradients. Where no sample lies, second

@@ -155,6 +155,37 @@ static void gaps_are_bridged(void **state)
     tl_reflectance_samples_release(&samples);
 }
 
+/* Samples near the normal only, which get brighter towards their border by e for every two degrees: beyond it
+ * the tables do not go on rising, by e^30, as a line through the logarithms would. */
+static void nothing_rises_where_nothing_was_measured(void **state)
+{
+    (void)state;
+    struct tl_reflectance_samples samples = {TL_NEW_ARRAY(struct tl_reflectance_sample, 2000), 2000};
+    float most = 0;
+    for (size_t i = 0; i < samples.count; i++) {
+        float a = glm_rad(20 * sqrtf((float)(i % 50) / 50)),
+              b = glm_rad(20 * sqrtf((float)(i * 7 % 41) / 41));
+        float turn = 2.4f * (float)i, other = 1.7f * (float)i, value = expf(glm_deg(a + b) / 2);
+        samples.items[i] =
+            (struct tl_reflectance_sample){{{sinf(a) * cosf(turn), sinf(a) * sinf(turn), cosf(a)}},
+                                           {{sinf(b) * cosf(other), sinf(b) * sinf(other), cosf(b)}},
+                                           {{value, value, value}}};
+        most = fmaxf(most, value);
+    }
+    struct tl_brdf_tables tables = tl_brdf_tables_factor(&samples, 16, NULL);
+    float highest = 0;
+    for (int i = 0; i < 500; i++) {
+        float turn = 0.7f * (float)i, height = 0.1f + 0.001f * (float)i, plane = sqrtf(1 - height * height);
+        vec3s l = {{plane * cosf(turn), plane * sinf(turn), height}},
+              v = {{plane * cosf(3 * turn), plane * sinf(3 * turn), height}};
+        highest = fmaxf(highest, from_tables(&tables, l, v).x);
+    }
+    print_message("outside of the samples: %.3g, largest sample %.3g\n", (double)highest, (double)most);
+    assert_true(highest < 1e4f * most);
+    tl_brdf_tables_release(&tables);
+    tl_reflectance_samples_release(&samples);
+}
+
 /* One value repeated, values of six orders, samples at the horizon: whatever they are, what is read is finite
  * and not negative in every direction, and the same when it is made again. */
 static void tables_are_finite_and_the_same_again(void **state)
@@ -200,6 +231,7 @@ int main(void)
         cmocka_unit_test(models_come_back),
         cmocka_unit_test(a_product_is_found_again),
         cmocka_unit_test(gaps_are_bridged),
+        cmocka_unit_test(nothing_rises_where_nothing_was_measured),
         cmocka_unit_test(tables_are_finite_and_the_same_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -79,6 +79,7 @@ static void planes_have_the_closed_form(void **state)
                 coarse.mesh.tangents[i] = (vec4s){{-1, 0, 0, -1}};
             }
             test_shape_refresh(&coarse);
+            test_shape_refresh(&fine);
             struct tl_transfer maps;
             tl_error error = {0};
             const struct tl_transfer_params params = {100, 100, 0.05f};
@@ -108,6 +109,7 @@ static void reach_and_gaps(void **state)
     struct tl_transfer maps;
     tl_error error = {0};
     test_shape_refresh(&coarse);
+    test_shape_refresh(&fine);
     struct tl_transfer_params params = {64, 64, 0.5f * (float)BUMP_M};
     assert_ok(tl_transfer_make(&coarse.surface, &fine.surface, &params, &maps, &error), error);
     print_message("half of the bumps' height within reach: %zu of %zu missed\n", maps.missed, maps.covered);
@@ -145,9 +147,9 @@ static void refusals(void **state)
     struct tl_transfer maps;
     tl_error error = {0};
     const struct tl_transfer_params params = {16, 16, 0.05f};
-    for (int kind = 0; kind < 3; kind++) {
+    for (int kind = 0; kind < 4; kind++) { /* the last: the finer mesh's back */
         static const char *const words[] = {"leave the unit square", "has no texture coordinates",
-                                            "nowhere within reach"};
+                                            "nowhere within reach", "nowhere within reach"};
         for (size_t i = 0; i < coarse.mesh.vertex_count; i++) {
             if (kind == 0 && i == 3)
                 coarse.mesh.uvs[i].x = 1.5f;
@@ -155,7 +157,10 @@ static void refusals(void **state)
                 coarse.mesh.uvs[i] = (vec2s){{0, 0}};
             coarse.mesh.positions[i].z = kind == 2 ? 1 : 0;
         }
+        for (size_t i = 0; kind == 3 && i < fine.mesh.vertex_count; i++)
+            fine.mesh.normals[i] = glms_vec3_negate(fine.mesh.normals[i]);
         test_shape_refresh(&coarse);
+        test_shape_refresh(&fine);
         assert_false(tl_transfer_make(&coarse.surface, &fine.surface, &params, &maps, &error));
         print_message("%s\n", error.message);
         assert_non_null(strstr(error.message, words[kind]));
