@@ -67,6 +67,11 @@ static const struct tl_command commands[] = {
      "Writes a frame: the garment and its avatar as .glb, the garment as .obj; or with --frames the "
      "garment's motion as .pc2 or .mdd.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_FRAMES, tl_command_export},
+    {"bake", "bake COARSE FINE -o OUT.png|OUT.exr [--size N] [--reach-mm MM]",
+     "Bakes a finer mesh of a garment into a map over the texture coordinates of a coarser one: its normals "
+     "as .png, for "
+     "detail.normals, or its heights in metres as .exr, for detail.heights.",
+     TL_FLAGS_OUTPUT | TL_FLAGS_BAKE, tl_command_bake},
     {"measure", "measure [SCENE] [-o OUT.csv] [--frame N] [--json] [OPTIONS]",
      "Measures a garment as it is worn: strain (warp, weft, shear) and area of each panel, its openings, and "
      "its girths beside its body's; -o writes the same as CSV.",

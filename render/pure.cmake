@@ -19,8 +19,13 @@ add_library(toile_light STATIC
   brdf/power.c
   construction/options.c
   construction/tables.c
+  brdf/tables/factor.c
+  brdf/tables/factor_solve.c
+  brdf/tables/measured.c
+  brdf/tables/model_samples.c
   brdf/tables/table_error.c
   brdf/tables/tables.c
+  brdf/tables/tables_read.c
   env/convert.c
   env/cube.c
   env/emitters.c
@@ -81,6 +86,7 @@ add_library(toile_light STATIC
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
+  transfer/transfer.c
   visibility/fit.c
   visibility/map_order.c
 )

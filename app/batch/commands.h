@@ -19,6 +19,8 @@ bool tl_command_export(const struct tl_arguments *arguments, tl_error *error);
 bool tl_command_env(const struct tl_arguments *arguments, tl_error *error);
 /* Prints strains and areas of a garment's panels, its openings and girths; writes them as CSV. */
 bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error);
+/* Writes normals or heights of a finer mesh as a map of a coarser one. */
+bool tl_command_bake(const struct tl_arguments *arguments, tl_error *error);
 /* Prints what a file holds, or what is built in. */
 bool tl_command_info(const struct tl_arguments *arguments, tl_error *error);
 

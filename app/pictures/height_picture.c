@@ -6,6 +6,7 @@
 #include "render/detail/bake.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Larger than any GL here draws. */
 #define SIDE_MAX 8192
@@ -28,8 +29,8 @@ bool tl_height_picture_load(const char *path, tl_image *out, tl_error *error)
     return true;
 }
 
-/* Converts heights to metres above the fabric's middle plane. */
-static tl_image heights_of(const tl_image *picture, float depth_m)
+/* The first channel from 0, its lowest value, to 1, its highest; *range is how far these are apart. */
+static tl_image spread(const tl_image *picture, float *range)
 {
     tl_image heights = tl_bake_heights(picture, 0, 1);
     float *values = tl_image_floats(&heights), low = INFINITY, high = -INFINITY;
@@ -38,9 +39,51 @@ static tl_image heights_of(const tl_image *picture, float depth_m)
         low = fminf(low, values[i]);
         high = fmaxf(high, values[i]);
     }
+    *range = high - low;
     for (size_t i = 0; i < count; i++)
-        values[i] = high > low ? depth_m * ((values[i] - low) / (high - low) - 0.5f) : 0;
+        values[i] = high > low ? (values[i] - low) / (high - low) : 0.5f;
     return heights;
+}
+
+/* Converts heights to metres above the fabric's middle plane. */
+static tl_image heights_of(const tl_image *picture, float depth_m)
+{
+    float range;
+    tl_image heights = spread(picture, &range);
+    size_t count = (size_t)heights.width * (size_t)heights.height;
+    for (size_t i = 0; i < count; i++)
+        tl_image_floats(&heights)[i] = depth_m * (tl_image_floats(&heights)[i] - 0.5f);
+    return heights;
+}
+
+bool tl_height_picture_metres(const char *path, tl_image *out, float *depth_m, tl_error *error)
+{
+    tl_image picture;
+    if (!tl_path_has_extension(path, "exr"))
+        return tl_fail(error, TL_INPUT, "%s: heights in metres are an .exr file: `toile bake` writes one",
+                       path);
+    if (!tl_height_picture_load(path, &picture, error))
+        return false;
+    *out = spread(&picture, depth_m);
+    tl_image_release(&picture);
+    return true;
+}
+
+bool tl_normal_picture_load(const char *path, tl_image *out, tl_error *error)
+{
+    tl_image picture;
+    if (!tl_image_load(path, &picture, error))
+        return false;
+    if (picture.channels < 3) {
+        tl_image_release(&picture);
+        return tl_fail(error, TL_INPUT, "%s: has no colours: a normal map has three", path);
+    }
+    size_t texels = (size_t)picture.width * (size_t)picture.height, channels = (size_t)picture.channels;
+    *out = tl_image_create(picture.width, picture.height, 3, TL_IMAGE_U8);
+    for (size_t i = 0; i < texels; i++)
+        memcpy(tl_image_bytes(out) + 3 * i, tl_image_bytes(&picture) + channels * i, 3);
+    tl_image_release(&picture);
+    return true;
 }
 
 bool tl_height_picture_weave(const struct tl_weave_params *params, tl_weave *out, tl_error *error)

@@ -1,5 +1,6 @@
 #include "app/scene/appearance.h"
 
+#include "app/pictures/height_picture.h"
 #include "assets/garment.h"
 #include "config/memory.h"
 #include "config/words.h"
@@ -173,6 +174,29 @@ static bool take_weave(struct tl_appearance *appearance, const struct tl_weave_p
     return true;
 }
 
+/* The measured reflectance of a material, if it has any. */
+static bool take_measured(struct tl_appearance *appearance, const struct tl_material_params *params,
+                          tl_material *material, tl_error *error)
+{
+    if (!params->samples[0])
+        return true;
+    if (!tl_measured_take(params->samples, &material->measured, error))
+        return false;
+    appearance->measured =
+        tl_resize((void *)appearance->measured, appearance->measured_count + 1, sizeof *appearance->measured);
+    appearance->measured[appearance->measured_count++] = material->measured;
+    return true;
+}
+
+/* Adds an image that the appearance owns. */
+static const tl_image *keep_image(struct tl_appearance *appearance, const tl_image *image)
+{
+    tl_image *kept = TL_NEW(tl_image);
+    *kept = *image;
+    appearance->images = tl_resize(appearance->images, appearance->image_count + 1, sizeof(tl_image *));
+    return appearance->images[appearance->image_count++] = kept;
+}
+
 /* Replaces a colour map by its alpha alone: a material without its print keeps its holes. */
 static void drop_print(struct tl_appearance *appearance, tl_material *material)
 {
@@ -180,14 +204,12 @@ static void drop_print(struct tl_appearance *appearance, tl_material *material)
     material->diffuse_map.image = NULL;
     if (!print || !(material->alpha_cutoff > 0) || print->channels != 4)
         return;
-    tl_image *plain = TL_NEW(tl_image);
-    *plain = tl_image_create(print->width, print->height, 4, TL_IMAGE_U8);
+    tl_image plain = tl_image_create(print->width, print->height, 4, TL_IMAGE_U8);
     size_t texels = (size_t)print->width * (size_t)print->height;
-    memset(plain->texels, 255, 4 * texels);
+    memset(plain.texels, 255, 4 * texels);
     for (size_t i = 0; i < texels; i++)
-        tl_image_bytes(plain)[4 * i + 3] = tl_image_bytes(print)[4 * i + 3];
-    appearance->images = tl_resize(appearance->images, appearance->image_count + 1, sizeof(tl_image *));
-    material->diffuse_map.image = appearance->images[appearance->image_count++] = plain;
+        tl_image_bytes(&plain)[4 * i + 3] = tl_image_bytes(print)[4 * i + 3];
+    material->diffuse_map.image = keep_image(appearance, &plain);
 }
 
 /* A fabric replaces how the surface reflects, and a print, unless it is to be tinted or kept. */
@@ -233,6 +255,7 @@ static struct making begin(const struct tl_settings *settings, const tl_material
     if (making.is_file) {
         making.params = params_of(file);
         memcpy(making.params.back, settings->material.back, sizeof making.params.back);
+        memcpy(making.params.samples, settings->material.samples, sizeof making.params.samples);
     }
     return making;
 }
@@ -272,6 +295,8 @@ static bool finish(struct tl_appearance *appearance, const struct tl_settings *s
         drop_print(appearance, &made);
     if (making->is_dyed || making->is_plain)
         made.diffuse = even_colour(&making->params);
+    if (!take_measured(appearance, &making->params, &made, error))
+        return false;
     set_back(&making->params, &made);
     set_construction(&settings->construction, &made);
     if (making->is_changed)
@@ -283,6 +308,38 @@ static bool finish(struct tl_appearance *appearance, const struct tl_settings *s
 static bool is_meant(const struct tl_swatch *swatch, const tl_material *material)
 {
     return strcmp(swatch->material, TL_SWATCH_ALL) == 0 || strcmp(swatch->material, material->name) == 0;
+}
+
+/* The maps of detail.normals and detail.heights in place of all materials' own. */
+static bool set_baked_maps(struct tl_appearance *appearance, const struct tl_detail_params *detail,
+                           tl_error *error)
+{
+    const struct tl_map lying = {.transform = {.scale = {1, 1}}, .clamp_u = true, .clamp_v = true};
+    struct tl_map normals = lying, heights = lying;
+    float depth_m = 0;
+    tl_image image;
+    if (detail->normals[0]) {
+        if (!tl_normal_picture_load(detail->normals, &image, error))
+            return false;
+        normals.image = keep_image(appearance, &image);
+    }
+    if (detail->heights[0]) {
+        if (!tl_height_picture_metres(detail->heights, &image, &depth_m, error))
+            return false;
+        heights.image = keep_image(appearance, &image);
+    }
+    for (size_t i = 0; i < appearance->garment.material_count; i++) {
+        tl_material *material = &appearance->garment.materials[i];
+        if (normals.image) {
+            material->normal_map = normals;
+            material->normal_scale = 1;
+        }
+        if (heights.image) {
+            material->height_map = heights;
+            material->height_m = depth_m;
+        }
+    }
+    return true;
 }
 
 /* Cover and specular of a fabric's pictures, which a weave has not, are maps of the material. They lie to
@@ -324,7 +381,7 @@ static bool make_materials(const struct tl_settings *settings, const tl_model *m
         if (making.pictures)
             place_pictures(&appearance->garment, model, i, making.pictures);
     }
-    return true;
+    return set_baked_maps(appearance, &settings->detail, error);
 }
 
 /* ---- The colourway ---- */
@@ -444,6 +501,8 @@ void tl_appearance_release(struct tl_appearance *appearance)
 {
     for (size_t i = 0; i < appearance->weave_count; i++)
         tl_weaves_give(appearance->weaves[i]);
+    for (size_t i = 0; i < appearance->measured_count; i++)
+        tl_measured_give(appearance->measured[i]);
     for (size_t i = 0; i < appearance->image_count; i++) {
         tl_image_release(appearance->images[i]);
         free(appearance->images[i]);
@@ -456,6 +515,7 @@ void tl_appearance_release(struct tl_appearance *appearance)
         free(dressings[i]->parts);
     }
     free((void *)appearance->weaves);
+    free((void *)appearance->measured);
     free((void *)appearance->images);
     free((void *)appearance->names);
     *appearance = (struct tl_appearance){0};

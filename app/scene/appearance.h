@@ -1,7 +1,8 @@
 /* The appearance of garment and avatar: the materials of their files, what the settings' fabric makes of the
  * garment's, and what scene.colourway changes: the swatches of the scene (app/settings/colourway.h) and the
- * files' own variants. Never how anything moves. Reads the files of weave.picture and weave.pictures and
- * no other.
+ * files' own variants. Never how anything moves. Reads the files of weave.picture, weave.pictures and
+ * material.samples,
+ * detail.normals and detail.heights and no other.
  *
  * Threads: pure, but for reading that file; an appearance may be made on any thread while the models are not
  * written to. */
@@ -9,6 +10,7 @@
 #define TOILE_APP_SCENE_APPEARANCE_H
 
 #include "app/drawn/moving.h"
+#include "app/pictures/measured_files.h"
 #include "app/pictures/weaves.h"
 #include "app/settings/settings.h"
 
@@ -17,6 +19,8 @@ struct tl_appearance {
     const struct tl_fabric_pictures *
         *weaves; /* the garment's materials point to these, which are shared ... */
     size_t weave_count;
+    const struct tl_measured **measured; /* ... these, shared too ... */
+    size_t measured_count;
     tl_image **images; /* ... and to these: colour maps without their print */
     size_t image_count;
     char **names; /* colourways: the scene's, then the variants of garment and avatar; each once */
@@ -25,7 +29,7 @@ struct tl_appearance {
 
 /* Makes the appearance of the models, either of which may be NULL.
  * Errors: TL_USAGE when neither the scene nor a model has the colourway, or the garment has no material of a
- * name that the colourway gives; those of tl_weaves_take. `out` is then empty.
+ * name that the colourway gives; those of tl_weaves_take and tl_measured_take. `out` is then empty.
  * Lifetime: the caller releases `out`; it refers to the models' maps, so it is released before they are. */
 bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garment, const tl_model *avatar,
                         struct tl_appearance *out, tl_error *error);

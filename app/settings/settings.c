@@ -429,7 +429,7 @@ static void warn_of_unused_options(const struct tl_settings *settings)
 /* The material's options that hold for a file's own materials too. */
 static bool is_of_file_too(const char *assignment)
 {
-    static const char *const keys[] = {"material.use_file=", "material.back="};
+    static const char *const keys[] = {"material.use_file=", "material.back=", "material.samples="};
     for (size_t i = 0; i < TL_COUNT(keys); i++)
         if (strncmp(assignment, keys[i], strlen(keys[i])) == 0)
             return true;

@@ -126,6 +126,9 @@ struct tl_thread {
     float width_warp;
 };
 
+/* Measured reflectance as tables: render/brdf/tables/measured.h. */
+struct tl_measured;
+
 typedef struct tl_material {
     char name[64];
     vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
@@ -154,7 +157,9 @@ typedef struct tl_material {
     const tl_weave *weave;               /* detail, or NULL */
     struct tl_construction construction; /* of surfaces that have borders (tl_surface) */
     struct tl_back back;
-    struct tl_fuzz fuzz; /* over everything else */
+    struct tl_fuzz fuzz;                /* over everything else */
+    const struct tl_measured *measured; /* reflects the light of lamps in place of diffuse, specular and
+                                           threads; NULL: none */
 } tl_material;
 
 /* Matt mid-grey, no maps. */

@@ -81,6 +81,10 @@ static const struct tl_option material_rows[] = {
         material_params, fuzz_follow, AFFECTS, 0, 1, "",
         "0: these fibres stand on the smooth surface, over the weave; 1: they lean with a pile, so "
         "that its patches shine by turns"),
+    TL_OPTION_PATH(
+        material_params, samples, AFFECTS,
+        "measured reflectance, a text file of samples: under lamps tables that are factored out of it "
+        "take the place of diffuse, thread, specular and model; empty: none"),
     TL_OPTION_ENUM(
         material_params, on_print, AFFECTS, on_print_names,
         "what becomes of a printed picture of the garment's file under a fabric: replace: the fabric's "

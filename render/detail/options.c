@@ -29,6 +29,13 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, minify_names,
                    "widening of the gloss by bumps smaller than a pixel; none: they vanish, and distant "
                    "cloth looks like plastic"),
+    TL_OPTION_PATH(
+        params, normals, TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE,
+        "normal map over the garment's texture coordinates, a picture, as `toile bake` makes it of a finer "
+        "mesh; empty: that of its file"),
+    TL_OPTION_PATH(
+        params, heights, TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE,
+        "heights over them in metres, an .exr, for parallax, relief and shadows; empty: those of its file"),
 };
 const struct tl_option_table tl_detail_options = TL_OPTION_TABLE(
     "detail", "fabric detail: bumps, their depth and their shadows", rows, params, .steps = 32, .refine = 5,

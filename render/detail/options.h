@@ -31,6 +31,7 @@ struct tl_detail_params { /* table "detail" */
     float height_scale;
     bool silhouette; /* relief ends at the border of a map that does not repeat */
     int minify;      /* enum tl_detail_minify */
+    char normals[TL_STRING_SIZE], heights[TL_STRING_SIZE]; /* files of maps of the garment, or "" */
 };
 extern const struct tl_option_table tl_detail_options;
 

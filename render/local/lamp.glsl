@@ -30,6 +30,8 @@ struct Cosines {
     float mirror, mirror_sine2;    // r.l
     vec2 half_plane;               // h along tangent and bitangent
     vec2 thread;                   // t.l, t.v
+    vec2 across;                   // b.l, b.v
+    float hand;                    // -1 where b is opposite to the bitangent of the surface (plane_side)
 };
 
 struct Frame {
@@ -68,11 +70,13 @@ Cosines cosines_of(Frame frame, vec3 l, vec3 v, vec3 h)
     c.mirror_sine2 = dot(across, across);
     c.half_plane = vec2(dot(frame.t, h), dot(frame.b, h));
     c.thread = vec2(dot(frame.t, l), dot(frame.t, v));
+    c.across = vec2(dot(frame.b, l), dot(frame.b, v));
+    c.hand = 1.0;
     return c;
 }
 
 // The cosines of vectors that are nearly unit: everything is derived from dot products.
-Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, float l_dot_v)
+Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, vec2 across, float l_dot_v)
 {
     Cosines c;
     c.a = a_b_half_t.x;
@@ -84,6 +88,8 @@ Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, float l_dot_v)
     c.mirror_sine2 = 1.0 - c.mirror * c.mirror;
     c.half_plane = half_plane_thread.xy;
     c.thread = half_plane_thread.zw;
+    c.across = across;
+    c.hand = 1.0;
     return c;
 }
 
@@ -91,5 +97,6 @@ Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, float l_dot_v)
 Cosines cosines_near(Frame frame, vec3 l, vec3 v, vec3 h)
 {
     return cosines_from(vec4(dot(frame.n, l), dot(frame.n, v), dot(frame.n, h), dot(h, l)),
-                        vec4(dot(frame.t, h), dot(frame.b, h), dot(frame.t, l), dot(frame.t, v)), dot(l, v));
+                        vec4(dot(frame.t, h), dot(frame.b, h), dot(frame.t, l), dot(frame.t, v)),
+                        vec2(dot(frame.b, l), dot(frame.b, v)), dot(l, v));
 }

@@ -3,6 +3,7 @@
 #include "config/memory.h"
 #include "render/brdf/brdf.h"
 #include "render/brdf/coat.h"
+#include "render/brdf/tables/measured.h"
 #include "render/env/exponent.h"
 #include "render/trace/cutout.h"
 
@@ -15,6 +16,7 @@ struct lit {
     const tl_material *material;
     vec3s viewer;
     float base, coat; /* fractions of the material below the coat and of the reflection by the coat */
+    bool is_measured; /* tables in place of diffuse light and gloss, in `frame` */
     bool faceted;     /* gloss is `gloss` instead of K_s about the mirror direction */
     struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame;
@@ -35,8 +37,9 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
     float cosine = fmaxf(glms_vec3_dot(sample->smooth, lit.viewer), 0);
     lit.coat = lit.material->coat > 0 ? lit.material->coat * tl_coat_reflectance(cosine) : 0;
     lit.base = 1 - lit.coat;
+    lit.is_measured = lit.material->measured != NULL;
     lit.faceted = lit.material->gloss.model != TL_REFLECT_PHONG;
-    if (lit.faceted) {
+    if (lit.faceted || lit.is_measured) {
         const vec4s tangent = tl_sample_tangent(sample, request->ranges);
         float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
         lit.gloss = tl_brdf_sum_of(lit.material, sample->specular, sample->diffuse, sample->glossiness,
@@ -54,6 +57,14 @@ static vec3s gloss_of(const struct lit *lit, vec3s l)
         return tl_brdf_sum_gloss(&lit->gloss, &lit->frame, l, lit->viewer);
     return glms_vec3_scale(sample->specular, tl_lobe_cosine(tl_lobe_exponent(sample->glossiness),
                                                             glms_vec3_dot(sample->mirror, l)));
+}
+
+static vec3s reflected(const struct lit *lit, vec3s l)
+{
+    if (lit->is_measured)
+        return tl_measured_reflected(lit->material->measured, &lit->frame, l, lit->viewer);
+    float matt = fmaxf(glms_vec3_dot(lit->sample->normal, l), 0) / (float)M_PI;
+    return glms_vec3_add(glms_vec3_scale(lit->sample->diffuse, matt), gloss_of(lit, l));
 }
 
 static float coat_of(const struct lit *lit, vec3s l)
@@ -94,9 +105,7 @@ static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size
                                                lit.sample, request->ranges, request->ground, &l);
         if (!(arriving.x > 0 || arriving.y > 0 || arriving.z > 0))
             continue;
-        float matt = fmaxf(glms_vec3_dot(lit.sample->normal, l), 0) / (float)M_PI, coat = coat_of(&lit, l);
-        vec3s sent = glms_vec3_add(glms_vec3_scale(lit.sample->diffuse, matt), gloss_of(&lit, l));
-        sent = glms_vec3_adds(glms_vec3_scale(sent, lit.base), coat);
+        vec3s sent = glms_vec3_adds(glms_vec3_scale(reflected(&lit, l), lit.base), coat_of(&lit, l));
         sum = glms_vec3_add(sum, glms_vec3_mul(arriving, sent));
     }
     return sum;

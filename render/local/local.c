@@ -25,14 +25,15 @@ enum {
     LAMP_LAYER,
     LAMP_GROUND,
     LAMP_LAYERS,
-    TABLE_AXES = 80,
     TABLE_SCALES = 83,
     EMISSION = 84,
     EMISSION_ROWS = 85,
     LAMP_FUZZ = 87,
     THREAD_WIDTHS = 88, /* two of each */
     THREAD_RATIOS = 90,
-    LAMP_FUZZ_FOLLOW = 93
+    LAMP_FUZZ_FOLLOW = 93,
+    TABLE_AXES = 94, /* four */
+    MEASURED_DIFFUSE = 98
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -42,7 +43,8 @@ enum {
     TABLE_UNIT,
     POWER_UNIT = 23,
     PRODUCT_UNIT,
-    EMISSION_UNIT
+    EMISSION_UNIT,
+    TABLE_3_UNIT
 };
 
 /* The work of one draw call: everything, or its part of several passes. */
@@ -125,6 +127,8 @@ static void define_tables(const struct tl_gloss_tables *tables, const struct pas
     }
     if (tables && tables->times_cos_a)
         define(defines, "TIMES_COS_A");
+    if (tables && tables->measured)
+        define(defines, "MEASURED");
 }
 
 static void define_all(const struct tl_local_request *request, const struct lit_part *part,
@@ -155,7 +159,7 @@ static void define_all(const struct tl_local_request *request, const struct lit_
         define(defines, "COAT");
     if (tl_material_has_fuzz(part->material))
         define(defines, "FUZZ");
-    if (part->material->thread_count > 0)
+    if (part->material->thread_count > 0 && !part->material->measured)
         define(defines, part->material->thread_count > 1 ? "THREADS 2" : "THREADS 1");
     if (pass->define)
         define(defines, pass->define);
@@ -220,7 +224,9 @@ static void set_gloss(const tl_material *material)
     glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
                 1 - material->openness);
     glUniform2f(GLOSS_OPTICS, gloss->index, gloss->extinction);
-    for (int i = 0; i < material->thread_count; i++) {
+    if (material->measured)
+        glUniform3fv(MEASURED_DIFFUSE, 1, material->measured->diffuse.raw);
+    for (int i = 0; i < material->thread_count && !material->measured; i++) {
         const struct tl_thread *thread = &material->threads[i];
         glUniform2f(THREAD_WIDTHS + i, thread->width_weft, thread->width_warp);
         glUniform3fv(THREAD_RATIOS + i, 1, thread->ratio.raw);
@@ -242,15 +248,16 @@ static void bind_shadow(const struct tl_lamp_shadows *shadows, enum tl_lamp_shad
 
 static void set_tables(const struct lit_part *part)
 {
-    float axes[TL_GLOSS_TABLES_MAX][4] = {{0}}, scales[3] = {1, 1, 1};
+    static const GLuint units[] = {TABLE_UNIT, TABLE_UNIT + 1, TABLE_UNIT + 2, TABLE_3_UNIT};
+    float axes[TL_GLOSS_TABLES_MAX][4] = {{0}}, scales[TL_GLOSS_TABLES_MAX] = {1, 1, 1, 1};
     for (int i = 0; part->tables && i < part->tables->count; i++) {
         const struct tl_gloss_table *table = &part->tables->tables[i];
         memcpy(axes[i], table->axes, sizeof axes[i]);
         scales[i] = table->scale;
-        glBindTextureUnit(TABLE_UNIT + (GLuint)i, table->texture.id);
+        glBindTextureUnit(units[i], table->texture.id);
     }
     glUniform4fv(TABLE_AXES, TL_GLOSS_TABLES_MAX, axes[0]);
-    glUniform3fv(TABLE_SCALES, 1, scales);
+    glUniform4fv(TABLE_SCALES, 1, scales);
     if (part->power)
         glBindTextureUnit(POWER_UNIT, part->power->id);
 }
@@ -311,7 +318,9 @@ static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local
     const struct tl_shading_params *params = request->params;
     const tl_material *material = part->material;
     const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
-    if (params->reflectance == TL_REFLECTANCE_TABLE)
+    if (material->measured)
+        part->tables = tl_table_textures_measured(&local->tables, gpu, material->measured);
+    else if (params->reflectance != TL_REFLECTANCE_DIRECT)
         part->tables = tl_table_textures_gloss(&local->tables, gpu, &brdf, params);
     else if (params->power == TL_POWER_TABLE)
         part->power = tl_table_textures_power(

@@ -18,6 +18,10 @@ layout(location = 87) uniform vec4 lamp_fuzz; // colour, roughness
 layout(location = 93) uniform float lamp_fuzz_follow;
 #endif
 
+#ifdef MEASURED
+layout(location = 98) uniform vec3 measured_diffuse;
+#endif
+
 #ifdef EMISSION
 layout(location = 84) uniform vec3 emission;
 #ifdef EMISSION_MAP
@@ -50,6 +54,7 @@ in vec4 lit_front, lit_back;
 #elif defined(COSINES)
 in vec4 cosines_normal;
 in vec4 cosines_plane;
+in vec2 cosines_across;
 in float cosine_lamp;
 #elif defined(VECTORS)
 in vec3 to_lamp, to_eye, halfway;
@@ -122,6 +127,19 @@ void find_detail(mat3 frame, float side, vec3 smooth_normal)
         bumps = bumps_at(place.uv);
 }
 
+// On which side of u the second axis of Cosines.half_plane lies: 1 where it is the bitangent of the surface.
+float plane_side(float side)
+{
+    float handed = tangent.w < 0.0 ? -1.0 : 1.0;
+#if defined(COSINES)
+    return handed;
+#elif defined(TANGENT_SPACE)
+    return side;
+#else
+    return side * handed;
+#endif
+}
+
 #ifndef GOURAUD
 // The normal with bumps, not normalised after interpolation and map.
 vec3 bumped_normal(vec3 smooth_normal)
@@ -141,7 +159,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 {
 #if defined(COSINES)
     facing = side * cosines_normal.x;
-    return cosines_from(cosines_normal * vec4(side, side, side, 1.0), cosines_plane, cosine_lamp);
+    return cosines_from(cosines_normal * vec4(side, side, side, 1.0), cosines_plane, cosines_across, cosine_lamp);
 #elif defined(TANGENT_SPACE)
     vec3 up = vec3(0.0, 0.0, 1.0);
     vec3 l = made_unit(to_lamp, up), v = made_unit(to_eye, up), h = made_unit(halfway, up);
@@ -166,19 +184,6 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 #endif
 }
 #endif
-
-// On which side of u the second axis of Cosines.half_plane lies: 1 where it is the bitangent of the surface.
-float plane_side(float side)
-{
-    float handed = tangent.w < 0.0 ? -1.0 : 1.0;
-#if defined(COSINES)
-    return handed;
-#elif defined(TANGENT_SPACE)
-    return side;
-#else
-    return side * handed;
-#endif
-}
 
 // What maps and bumps add to squared widths along weft and warp, and to their product.
 vec3 thread_widening_here(float side)
@@ -205,7 +210,11 @@ vec3 widening_here(float rough, float side)
 // Unshadowed reflected light divided by the irradiance.
 vec3 reflected(float side, vec3 smooth_normal)
 {
+#ifdef MEASURED
+    vec3 kd = measured_diffuse;
+#else
     vec3 kd = diffuse(surface_colour(place.uv).rgb, place.uv);
+#endif
     if (bumpy)
         kd *= bumps.length; // the mean normal, which is shorter than 1, receives the light
 #ifdef GOURAUD
@@ -214,6 +223,7 @@ vec3 reflected(float side, vec3 smooth_normal)
 #else
     float facing;
     Cosines c = cosines_here(side, smooth_normal, facing);
+    c.hand = plane_side(side);
     float shown = self_shadow(facing);
 #ifdef PASS_LAST
     vec3 shine = tables_gloss(c, texelFetch(product, ivec2(gl_FragCoord.xy), 0).rgb);
@@ -296,7 +306,9 @@ void main()
         discard;
 #ifdef PASS_PRODUCT
     float facing;
-    out_light = vec4(tables_product(cosines_here(side, smooth_normal, facing)), 1.0);
+    Cosines c = cosines_here(side, smooth_normal, facing);
+    c.hand = plane_side(side);
+    out_light = vec4(tables_product(c), 1.0);
 #elif defined(EMISSION)
 #ifdef COAT
     vec3 n = side * smooth_normal;

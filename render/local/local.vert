@@ -24,6 +24,7 @@ out vec4 lit_front, lit_back; // gloss; diffuse
 #elif defined(COSINES)
 out vec4 cosines_normal; // of the front face: n.l, n.v, n.h; h.l
 out vec4 cosines_plane;  // t.h, b.h, t.l, t.v
+out vec2 cosines_across; // b.l, b.v
 out float cosine_lamp;   // l.v
 #elif defined(VECTORS)
 out vec3 to_lamp, to_eye, halfway;
@@ -50,6 +51,7 @@ vec4 lit(vec3 n, float side, vec3 l, vec3 v, vec3 h)
 {
     Frame frame = frame_of(n, vertex_tangent.xyz, side);
     Cosines c = cosines_of(frame, l, v, h);
+    c.hand = side * (vertex_tangent.w < 0.0 ? -1.0 : 1.0);
     vec3 light = gloss(c, material_specular, lobe_exponent(material_scalars.x), vec3(0.0));
 #ifdef STEP
     float shown = c.a > 0.0 ? 1.0 : 0.0;
@@ -79,6 +81,7 @@ void main()
     Frame frame = frame_of(n, vertex_tangent.xyz, 1.0);
     cosines_normal = vec4(dot(n, l), dot(n, v), dot(n, h), dot(h, l));
     cosines_plane = vec4(dot(frame.t, h), dot(frame.b, h), dot(frame.t, l), dot(frame.t, v));
+    cosines_across = vec2(dot(frame.b, l), dot(frame.b, v));
     cosine_lamp = dot(l, v);
 #elif defined(VECTORS)
 #ifdef TANGENT_SPACE

@@ -4,7 +4,7 @@
 
 static const char *const frequency_names[] = {"gouraud", "fast_phong", "phong", NULL};
 static const char *const coordinates_names[] = {"matrix", "vertex", "pixel", NULL};
-static const char *const reflectance_names[] = {"direct", "table", NULL};
+static const char *const reflectance_names[] = {"direct", "table", "factored", NULL};
 static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL};
 static const char *const range_names[] = {"clamped", "scaled", NULL};
 const char *const tl_pass_target_names[] = {"fixed8", "float", NULL};
@@ -23,8 +23,10 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(params, coordinates, AFFECTS, coordinates_names,
                    "origin of the cosines: one matrix, for a distant light and viewer; interpolation from "
                    "vertices, without bumps; vectors at pixels"),
-    TL_OPTION_ENUM(params, reflectance, AFFECTS, reflectance_names,
-                   "gloss by its formula, or from tables of the material, which ignore gloss maps"),
+    TL_OPTION_ENUM(
+        params, reflectance, AFFECTS, reflectance_names,
+        "gloss by its formula; or from tables of the material, which ignore gloss maps: factors of the "
+        "formula, or factored numerically out of samples of it"),
     TL_OPTION_INT(params, table_size, AFFECTS, 8, 512, "texels", "side of a table; larger: more exact"),
     TL_OPTION_ENUM(params, table_precision, AFFECTS, precision_names, "precision of the values of a table"),
     TL_OPTION_ENUM(params, table_range, AFFECTS, range_names,

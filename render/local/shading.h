@@ -16,7 +16,7 @@ enum tl_frequency { TL_FREQUENCY_GOURAUD, TL_FREQUENCY_FAST_PHONG, TL_FREQUENCY_
 /* The origin of the cosines: from the normal by one matrix, with constant light and view directions [000, eq.
  * 2 and 3]; computed at vertices and interpolated; from vectors at pixels. */
 enum tl_coordinates { TL_COORDINATES_MATRIX, TL_COORDINATES_VERTEX, TL_COORDINATES_PIXEL };
-enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE };
+enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE, TL_REFLECTANCE_FACTORED };
 enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };
 extern const char *const tl_pass_target_names[]; /* ends with NULL */
 enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT };

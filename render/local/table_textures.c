@@ -71,19 +71,21 @@ void tl_table_textures_end(struct tl_table_textures *textures)
             tl_texture_destroy(&textures->cubes[i]);
 }
 
-/* Scales the texels of a float table into [0, 1], too, so that passes of 8 bits can hold them. */
-static void bound_floats(struct tl_brdf_table *table)
+/* The texels of a float table, scaled into [0, 1] too, so that passes of 8 bits can hold them. New array. */
+static float *bounded_floats(const struct tl_brdf_table *table, float *scale)
 {
-    float *texels = table->texels, max = 0;
+    const float *texels = table->texels;
     size_t count = (size_t)table->width * (size_t)table->height * (size_t)table->channels;
+    float *bounded = TL_NEW_ARRAY(float, count), max = 0;
     for (size_t i = 0; i < count; i++)
         max = texels[i] > max ? texels[i] : max;
-    for (size_t i = 0; i < count && max > 0; i++)
-        texels[i] /= max;
-    table->scale *= max > 0 ? max : 1;
+    for (size_t i = 0; i < count; i++)
+        bounded[i] = max > 0 ? texels[i] / max : 0;
+    *scale = table->scale * (max > 0 ? max : 1);
+    return bounded;
 }
 
-static struct tl_gloss_table upload(tl_gpu *gpu, struct tl_brdf_table *table)
+static struct tl_gloss_table upload(tl_gpu *gpu, const struct tl_brdf_table *table)
 {
     static const GLenum formats[][2] = {[TL_PRECISION_FIXED8] = {GL_R8, GL_RGBA8},
                                         [TL_PRECISION_FIXED16] = {GL_R16, GL_RGBA16},
@@ -91,66 +93,100 @@ static struct tl_gloss_table upload(tl_gpu *gpu, struct tl_brdf_table *table)
     static const GLenum types[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT};
     static const GLint grey[] = {GL_RED, GL_RED, GL_RED, GL_ONE};
     bool coloured = table->channels == 3;
-    if (table->precision == TL_PRECISION_FLOAT)
-        bound_floats(table);
+    float scale = table->scale;
+    float *bounded = table->precision == TL_PRECISION_FLOAT ? bounded_floats(table, &scale) : NULL;
     struct tl_gloss_table made = {
         .texture = tl_texture_create(gpu, GL_TEXTURE_2D, formats[table->precision][coloured], table->width,
                                      table->height, 1, 1),
-        .scale = table->scale,
+        .scale = scale,
         .axes = {table->x.scale, table->x.bias, table->y.scale, table->y.bias},
         .x = table->x.input,
         .y = table->y.input,
         .angles = table->x.angle,
     };
     glTextureSubImage2D(made.texture.id, 0, 0, 0, table->width, table->height, coloured ? GL_RGB : GL_RED,
-                        types[table->precision], table->texels);
+                        types[table->precision], bounded ? bounded : table->texels);
+    free(bounded);
     if (!coloured)
         glTextureParameteriv(made.texture.id, GL_TEXTURE_SWIZZLE_RGBA, grey);
     return made;
 }
 
-static struct tl_gloss_tables make_gloss(tl_gpu *gpu, const struct tl_brdf *brdf,
-                                         const struct tl_shading_params *params)
+static void upload_all(tl_gpu *gpu, const struct tl_brdf_tables *tables, struct tl_gloss_tables *out)
 {
-    const struct tl_brdf_table_params wanted = {.size = params->table_size,
-                                                .precision = params->table_precision,
-                                                .range = params->table_range,
-                                                .angles = true};
-    struct tl_brdf_tables tables = tl_brdf_tables_make(brdf, &wanted);
-    struct tl_gloss_tables made = {.brdf = *brdf,
-                                   .size = params->table_size,
-                                   .precision = params->table_precision,
-                                   .range = params->table_range,
-                                   .count = tables.count,
-                                   .times_cos_a = tables.times_cos_a};
-    for (int i = 0; i < tables.count; i++)
-        made.tables[i] = upload(gpu, &tables.tables[i]);
+    out->count = tables->count;
+    out->times_cos_a = tables->times_cos_a;
+    for (int i = 0; i < tables->count; i++)
+        out->tables[i] = upload(gpu, &tables->tables[i]);
+}
+
+static void make_gloss(tl_gpu *gpu, struct tl_gloss_tables *gloss)
+{
+    const struct tl_brdf_table_params wanted = {
+        .size = gloss->size, .precision = gloss->precision, .range = gloss->range, .angles = true};
+    struct tl_brdf_tables tables = gloss->reflectance == TL_REFLECTANCE_FACTORED
+                                       ? tl_brdf_tables_refactor(&gloss->brdf, gloss->size)
+                                       : tl_brdf_tables_make(&gloss->brdf, &wanted);
+    upload_all(gpu, &tables, gloss);
     tl_brdf_tables_release(&tables);
-    return made;
+}
+
+/* A bitwise comparison: values that are equal but differ in their bits (0 and -0) only cause an additional
+ * table. */
+static bool is_same(const struct tl_gloss_tables *a, const struct tl_gloss_tables *b)
+{
+    return a->measured == b->measured && a->reflectance == b->reflectance && a->size == b->size &&
+           a->precision == b->precision && a->range == b->range &&
+           memcmp(&a->brdf, &b->brdf, sizeof a->brdf) == 0; // NOLINT(bugprone-suspicious-memory-comparison)
+}
+
+static struct tl_gloss_tables *find_gloss(struct tl_table_textures *textures,
+                                          const struct tl_gloss_tables *key)
+{
+    for (size_t i = 0; i < textures->gloss_count; i++)
+        if (is_same(&textures->gloss[i], key)) {
+            textures->gloss[i].used = true;
+            return &textures->gloss[i];
+        }
+    return NULL;
+}
+
+static struct tl_gloss_tables *add_gloss(struct tl_table_textures *textures,
+                                         const struct tl_gloss_tables *key)
+{
+    textures->gloss = tl_resize(textures->gloss, textures->gloss_count + 1, sizeof(struct tl_gloss_tables));
+    struct tl_gloss_tables *added = &textures->gloss[textures->gloss_count++];
+    *added = *key;
+    added->used = true;
+    return added;
 }
 
 const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
                                                       const struct tl_brdf *brdf,
                                                       const struct tl_shading_params *params)
 {
-    struct tl_gloss_tables *found = NULL;
-    for (size_t i = 0; i < textures->gloss_count && !found; i++) {
-        struct tl_gloss_tables *gloss = &textures->gloss[i];
-        bool same = gloss->size == params->table_size && gloss->precision == params->table_precision &&
-                    gloss->range == params->table_range;
-        /* A bitwise comparison: values that are equal but differ in their bits (0 and -0) only cause an
-         * additional table. */
-        if (same &&
-            memcmp(&gloss->brdf, brdf, sizeof *brdf) == 0) // NOLINT(bugprone-suspicious-memory-comparison)
-            found = gloss;
-    }
+    const struct tl_gloss_tables key = {.brdf = *brdf,
+                                        .reflectance = params->reflectance,
+                                        .size = params->table_size,
+                                        .precision = params->table_precision,
+                                        .range = params->table_range};
+    struct tl_gloss_tables *found = find_gloss(textures, &key);
     if (!found) {
-        textures->gloss =
-            tl_resize(textures->gloss, textures->gloss_count + 1, sizeof(struct tl_gloss_tables));
-        found = &textures->gloss[textures->gloss_count++];
-        *found = make_gloss(gpu, brdf, params);
+        found = add_gloss(textures, &key);
+        make_gloss(gpu, found);
     }
-    found->used = true;
+    return found;
+}
+
+const struct tl_gloss_tables *tl_table_textures_measured(struct tl_table_textures *textures, tl_gpu *gpu,
+                                                         const struct tl_measured *measured)
+{
+    const struct tl_gloss_tables key = {.measured = measured->hash};
+    struct tl_gloss_tables *found = find_gloss(textures, &key);
+    if (!found) {
+        found = add_gloss(textures, &key);
+        upload_all(gpu, &measured->tables, found);
+    }
     return found;
 }
 

@@ -4,10 +4,11 @@
 #define TOILE_RENDER_LOCAL_TABLE_TEXTURES_H
 
 #include "render/brdf/brdf.h"
+#include "render/brdf/tables/measured.h"
 #include "render/gpu/gpu.h"
 #include "render/local/shading.h"
 
-#define TL_GLOSS_TABLES_MAX 3 /* TL_BRDF_TABLES_MAX */
+#define TL_GLOSS_TABLES_MAX 4 /* TL_BRDF_TABLES_MAX */
 
 struct tl_gloss_table {
     tl_texture texture;
@@ -17,11 +18,12 @@ struct tl_gloss_table {
     bool angles;   /* axes are acos of the inputs */
 };
 
-/* The tables of a material with constant gloss. */
+/* The tables of a material with constant gloss, or of a measured one. */
 struct tl_gloss_tables {
-    struct tl_brdf brdf; /* the key, with the next line */
-    int size, precision, range;
-    bool used; /* in this frame */
+    struct tl_brdf brdf; /* the key, with the next two lines */
+    int reflectance, size, precision, range;
+    uint64_t measured; /* its hash; 0: not measured, else the rest of the key is 0 */
+    bool used;         /* in this frame */
     int count;
     struct tl_gloss_table tables[TL_GLOSS_TABLES_MAX];
     bool times_cos_a;
@@ -49,10 +51,14 @@ size_t tl_table_textures_bytes(const struct tl_table_textures *textures);
 void tl_table_textures_begin(struct tl_table_textures *textures);
 void tl_table_textures_end(struct tl_table_textures *textures);
 
-/* The tables of a material; the pointer is valid until the next call of a function of this header. */
+/* The tables of a material, factors of the formula or factored numerically; the pointer is valid until the
+ * next call of a function of this header. */
 const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
                                                       const struct tl_brdf *brdf,
                                                       const struct tl_shading_params *params);
+/* The same of a material that was measured. */
+const struct tl_gloss_tables *tl_table_textures_measured(struct tl_table_textures *textures, tl_gpu *gpu,
+                                                         const struct tl_measured *measured);
 /* The table of an exponent; valid as above. */
 const tl_texture *tl_table_textures_power(struct tl_table_textures *textures, tl_gpu *gpu, float exponent);
 /* The normalisation cube map for CUBE8 or CUBE16; valid as above. */

@@ -2,6 +2,7 @@
 
 #include "render/brdf/brdf.h"
 #include "render/brdf/fuzz.h"
+#include "render/brdf/tables/measured.h"
 #include "render/env/exponent.h"
 
 #include <float.h>
@@ -29,7 +30,9 @@ static vec3s reflected(const struct tl_shading_point *point, const struct tl_brd
     const struct tl_shading_layers *layers = &point->layers;
     float matt = fmaxf(glms_vec3_dot(point->normal, l), 0) / (float)M_PI;
     vec3s gloss = tl_brdf_sum_gloss(brdfs, frame, l, point->viewer);
-    vec3s sent = glms_vec3_add(glms_vec3_scale(point->albedo, matt), gloss);
+    vec3s sent = point->material->measured
+                     ? tl_measured_reflected(point->material->measured, frame, l, point->viewer)
+                     : glms_vec3_add(glms_vec3_scale(point->albedo, matt), gloss);
     if (!point->layered)
         return sent;
     float coat = layers->coat > 0 ? layers->coat * tl_lobe_cosine(layers->coat_exponent,

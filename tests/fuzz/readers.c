@@ -6,6 +6,7 @@
 #include "assets/environment.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
+#include "assets/measured/samples.h"
 #include "assets/model.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern_cut.h"
@@ -13,6 +14,7 @@
 #include "config/file.h"
 #include "config/log.h"
 #include "config/memory.h"
+#include "render/brdf/tables/measured.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -148,6 +150,26 @@ static bool read_picture(const char *path)
     return true;
 }
 
+static bool read_samples(const char *path)
+{
+    struct tl_reflectance_samples samples;
+    tl_error error = {0};
+    if (!tl_reflectance_samples_load(path, &samples, &error))
+        return refused(&error);
+    require(samples.count >= TL_REFLECTANCE_SAMPLES_MIN, "there are samples enough");
+    struct tl_measured measured = tl_measured_make(&samples);
+    for (size_t i = 0; i < samples.count; i++) {
+        const struct tl_reflectance_sample *sample = &samples.items[i];
+        const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
+        require(sample->l.z >= 0 && sample->v.z >= 0, "a direction is above the surface");
+        require(isfinite(glms_vec3_norm(tl_measured_reflected(&measured, &frame, sample->l, sample->v))),
+                "tables give finite light");
+    }
+    tl_measured_release(&measured);
+    tl_reflectance_samples_release(&samples);
+    return true;
+}
+
 /* ---- Settings and fabrics ---- */
 
 static bool read_scene(const char *path)
@@ -196,25 +218,16 @@ static bool read_path(const char *path)
 }
 
 const struct fuzz_reader fuzz_readers[] = {
-    {"gltf", "gltf", read_model},
-    {"glb", "glb", read_model},
-    {"obj", "obj", read_model},
-    {"ply", "ply", read_model},
-    {"stl", "stl", read_model},
-    {"off", "off", read_model},
-    {"pattern", "json", read_pattern},
-    {"pc2", "pc2", read_motion},
-    {"mdd", "mdd", read_motion},
-    {"exr", "exr", read_environment},
-    {"hdr", "hdr", read_environment},
-    {"picture", "png", read_picture},
-    {"scene", "yaml", read_scene},
-    {"fabric", "yaml", read_fabric},
-    {"path", "yaml", read_path},
-    {"u3m", "u3m", read_fabric},
-    {"u3ma", "u3ma", read_fabric},
-    {"fab", "json", read_fabric},
-    {NULL, NULL, NULL},
+    {"gltf", "gltf", read_model},      {"glb", "glb", read_model},
+    {"obj", "obj", read_model},        {"ply", "ply", read_model},
+    {"stl", "stl", read_model},        {"off", "off", read_model},
+    {"pattern", "json", read_pattern}, {"pc2", "pc2", read_motion},
+    {"mdd", "mdd", read_motion},       {"exr", "exr", read_environment},
+    {"hdr", "hdr", read_environment},  {"picture", "png", read_picture},
+    {"samples", "csv", read_samples},  {"scene", "yaml", read_scene},
+    {"fabric", "yaml", read_fabric},   {"path", "yaml", read_path},
+    {"u3m", "u3m", read_fabric},       {"u3ma", "u3ma", read_fabric},
+    {"fab", "json", read_fabric},      {NULL, NULL, NULL},
 };
 
 const struct fuzz_reader *fuzz_reader_named(const char *name)

@@ -116,6 +116,11 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([toile, "env", source, "-o", target, "--layout", "latlong", "--size", "2", "--quiet"], check=True)
     put("exr", "zip.exr", open(target, "rb").read())
 
+directions = [(0, 0), (20, 40), (45, 120), (70, 250)]
+put("samples", "angles.csv", "# measured\ntheta_l,phi_l,theta_v,phi_v,r,g,b\n" + "".join(
+    f"{a},{b},{c},{d},{0.1 + a / 100},{0.2 + c / 100},0.1\n" for a, b in directions for c, d in directions for _ in range(2)))
+put("samples", "vectors.txt", "l_x l_y l_z v_x v_y v_z value\n" + "0.6 0 0.8 0 0.6 0.8 1e-1\n" * 16 + "0 0 1 0 -0.6 0.8 0.3\n" * 16)
+
 # ---- Models ----
 
 with tempfile.TemporaryDirectory() as folder:

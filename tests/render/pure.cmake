@@ -10,6 +10,7 @@ foreach(name
     plan/cost
     env/cube
     env/emitters
+    brdf/factor
     brdf/fuzz
     brdf/lobe_fit
     metrics/flip

@@ -65,6 +65,21 @@ static const struct tl_technique seams[] = {
     {.picture = "bound in tape", .id = "A14", SET("construction.seam=bound", "construction.hem=bound")},
 };
 
+#define ELONGATED "material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1"
+
+static const struct tl_technique factored[] = {
+    {.picture = "Ward, 16 texels", .id = "A15", SET(ELONGATED, "shading.table_size=16")},
+    {.picture = "Ward, 32 texels", .id = "A15", SET(ELONGATED, "shading.table_size=32")},
+    {.picture = "Ward", .id = "A15", SET(ELONGATED)},
+    {.picture = "Ward, two tables a pass", .id = "A15", SET(ELONGATED, "shading.max_textures_per_pass=2")},
+    {.picture = "Torrance-Sparrow",
+     .golden = "brdf_factored",
+     .id = "A15",
+     SET("material.model=torrance_sparrow", "material.width_weft=0.3")},
+    {.picture = "cosine lobe", .id = "A15", SET("material.model=cosine_lobe")},
+    {.picture = "Phong", .id = "A15", SET("material.model=phong")},
+};
+
 static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "a13",
@@ -103,6 +118,24 @@ static const struct tl_experiment experiments[] = {
      .side = 384,
      .ids = {"A14"},
      TECHNIQUES(seams)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "a15",
+     .scene = "gallery",
+     .title = "A15  Tables factored out of samples",
+     .text =
+         "Samples of each model, 12 for each texel along and across, are factored numerically into four "
+         "tables: of "
+         "the light, of the viewer, of the half vector, and of its angles to light and normal [McCool, Ang "
+         "and "
+         "Ahmad 2001]. Tables have 64 texels a side unless stated. Phong's model is not reciprocal, as every "
+         "product of this form is. Measured reflectance, material.samples, is drawn in the same way.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
+     .solid = "torus",
+     .base = {LAMPLIT, "shading.reflectance=factored", "shading.table_size=64", "material.glossiness=0.9",
+              "material.specular=[0.15, 0.15, 0.15]"},
+     .reference = {.assignments = {"shading.reflectance=direct"}},
+     .ids = {"A15"},
+     TECHNIQUES(factored)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "coat",
      .title = "A clear coat",

@@ -48,6 +48,16 @@ enum tl_table_input {
     TL_AXIS_T_DOT_L,
     TL_AXIS_T_DOT_V,
     TL_AXIS_GROOVES, /* min(1, 2 n.h min(n.l, n.v) / h.l); not affine, so no texture matrix yields it */
+    /* Coordinates on a paraboloid map, x / (1 + z) and y / (1 + z), of a vector with components x, y, z along
+     * tangent, bitangent and normal. Those of h are divided by the root of their length, so that texels are
+     * small where lobes are narrow. Not affine either. */
+    TL_AXIS_L_U,
+    TL_AXIS_L_V,
+    TL_AXIS_V_U,
+    TL_AXIS_V_V,
+    TL_AXIS_H_U,
+    TL_AXIS_H_V,
+    TL_AXIS_H_RADIUS, /* the length of these two */
     TL_AXIS_COUNT
 };
 
@@ -85,8 +95,8 @@ struct tl_brdf_table_params {
     vec3s ambient, diffuse; /* folded tables only */
 };
 
-/* The factors of one model. */
-#define TL_BRDF_TABLES_MAX 3
+/* The factors of one model, or of measured reflectance (factor.h). */
+#define TL_BRDF_TABLES_MAX 4
 struct tl_brdf_tables {
     int count;
     struct tl_brdf_table tables[TL_BRDF_TABLES_MAX];
@@ -100,7 +110,8 @@ void tl_brdf_tables_release(struct tl_brdf_tables *tables);
 /* Size of all texels. */
 size_t tl_brdf_tables_bytes(const struct tl_brdf_tables *tables);
 
-/* The value of every enum tl_table_input for unit vectors. Not clamped: T_DOT_L and the like may be
+/* From here to tl_brdf_tables_gloss: render/brdf/tables/tables_read.c.
+ * The value of every enum tl_table_input for unit vectors. Not clamped: T_DOT_L and the like may be
  * negative. */
 void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_AXIS_COUNT]);
 

@@ -125,6 +125,10 @@ refuse "zero-sized image" 'zero\.hdr' render -o a.png --env zero.hdr
 refuse "sequence without frames" 'sky\.##\.exr.*no file' render -o a.png --env 'sky.##.exr'
 refuse "sequence with a gap" 'gap\.2\.hdr.*missing' render -o a.png --env 'gap.#.hdr'
 refuse "sequence with a broken frame" 'torn\.2\.hdr' render -o a.png --env 'torn.#.hdr' --garment none --avatar ball $cheap_light --frame 1
+printf 'theta_l,phi_l,theta_v,phi_v,r,g,b\n1,2,3,4,5,6\n' >short.csv
+refuse "samples without a number" 'short\.csv.*line 2.*6 numbers, not 7' render -o a.png --set material.samples=short.csv
+refuse "samples that are a model" 'good\.obj.*columns' render -o a.png --set material.samples=good.obj
+refuse "missing samples" 'nowhere\.csv' render -o a.png --set material.samples=nowhere.csv
 refuse "unknown key" 'key\.yaml:2.*regionz.*regions' render key.yaml -o a.png
 refuse "value out of range" 'range\.yaml:2.*light\.regions' render range.yaml -o a.png
 refuse "wrong type" 'type\.yaml:2.*light\.regions' render type.yaml -o a.png
