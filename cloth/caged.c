@@ -7,6 +7,7 @@
 #include "cloth/advance.h"
 #include "cloth/build.h"
 #include "cloth/coarser.h"
+#include "config/log.h"
 #include "config/memory.h"
 
 #include <stdlib.h>
@@ -22,21 +23,23 @@ static bool is_heavy(const tl_cloth *cloth)
            cloth->params.solver != TL_CLOTH_REFERENCE && cloth->seams.pair_count == 0;
 }
 
-void tl_cloth_make_cage(tl_cloth *cloth)
+static void make_cage(tl_cloth *cloth)
 {
-    if (!is_heavy(cloth) || cloth->cage)
-        return;
+    struct tl_progress progress = tl_progress_begin("making a cage to move the cloth by");
+    tl_progress_update(&progress, 0, 1);
     cloth->cage = tl_coarser_create(cloth, CAGE_VERTICES);
     cloth->destroy_cage = tl_coarser_destroy;
     cloth->has_no_cage = !cloth->cage;
     cloth->caged_cloth = cloth->cage ? tl_coarser_cloth(cloth->cage) : NULL;
     cloth->cage_revision++;
+    tl_progress_end(&progress);
 }
 
 /* False when no cage can be made. */
 static bool prepare(tl_cloth *cloth)
 {
-    tl_cloth_make_cage(cloth);
+    if (!cloth->cage)
+        make_cage(cloth);
     if (cloth->cage && !cloth->cage_is_current)
         tl_coarser_restart(cloth->cage, cloth);
     cloth->cage_is_current = cloth->cage != NULL;
@@ -92,7 +95,8 @@ bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error
 uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out)
 {
     const size_t count = cloth->topology.render_count;
-    uint32_t *vertices = out && cloth->cage ? TL_NEW_ARRAY(uint32_t, cloth->particles.count) : NULL;
+    const bool is_moved = cloth->cage && cloth->cage_is_current;
+    uint32_t *vertices = out && is_moved ? TL_NEW_ARRAY(uint32_t, cloth->particles.count) : NULL;
     for (size_t i = count; vertices && i-- > 0;) /* the first vertex at each place */
         vertices[cloth->topology.weld[i]] = (uint32_t)i;
     for (size_t i = 0; vertices && i < count; i++) {
@@ -102,5 +106,5 @@ uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out)
             out->from[i][k] = vertices[corners[k]];
     }
     free(vertices);
-    return cloth->cage ? cloth->cage_revision : 0;
+    return is_moved ? cloth->cage_revision : 0;
 }

@@ -34,7 +34,7 @@ static void measure_heights(const tl_cloth *cloth, const tl_collider *collider, 
         vec3d x = cloth->particles.x[i];
         bool is_known = contacts->collider && contacts->caches[i].query_phase <= 1;
         bool is_near = is_known ? tl_contacts_height(contacts, i, x, 1, &at)
-                                : tl_contacts_height_asked(collider, x, &at);
+                                : collider && tl_contacts_height_asked(collider, x, &at);
         out[i].up = is_near ? vec3d_to_float(at.up) : (vec3s){{0, 1, 0}};
         out[i].height_m = is_near ? (float)at.height_m : INFINITY;
     }

@@ -163,9 +163,6 @@ void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
  * the cloth, valid until the next call that is not const. */
 const uint32_t *tl_cloth_weld(const tl_cloth *cloth);
 
-/* Makes the cage of a heavy cloth now, not in its first step: 120,000 vertices take some seconds. */
-void tl_cloth_make_cage(tl_cloth *cloth);
-
 /* Where a cloth that is moved by a cage lies on it. */
 struct tl_cage_places {
     uint32_t (*from)[3]; /* [mesh.vertex_count] render vertices: the corners of the triangle on which each
@@ -173,7 +170,7 @@ struct tl_cage_places {
     float (*shares)[3];  /* [mesh.vertex_count] of them; their sum is 1 */
 };
 /* Fills `out`, or only asks with NULL. Returns a number that changes with the cage; 0, and fills nothing,
- * where no cage is made. */
+ * where a cage has not moved the cloth since it was created, reset or set. */
 uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out);
 
 /* Measures the state; penetration only against a collider that is not NULL. Takes longer than a substep. */

@@ -106,7 +106,6 @@ static bool drape(tl_session *session, tl_error *error)
     session->cloth = tl_drape(&request, session->collider, error);
     if (!session->cloth)
         return false;
-    tl_cloth_make_cage(session->cloth);
     if (session->authored && body &&
         !(session->tucked = tl_tuck_find(&session->garment->model.mesh, body, error)))
         return false;
@@ -520,12 +519,14 @@ static const struct tl_light_mesh *light_mesh_of_garment(tl_session *session)
 {
     const uint64_t revision = session->cloth ? tl_cloth_cage(session->cloth, NULL) : 0;
     const tl_mesh *mesh = &session->garment->model.mesh;
-    if (revision > 0 && revision != session->cage.revision) {
+    if (revision != session->cage.revision) {
         struct tl_light_mesh *light_mesh = &session->cage.light_mesh;
         tl_light_mesh_release(light_mesh);
-        *light_mesh = tl_light_mesh_make(mesh->vertex_count);
-        tl_cloth_cage(session->cloth, &(struct tl_cage_places){light_mesh->from, light_mesh->shares});
-        tl_light_mesh_number(light_mesh, mesh->indices, mesh->index_count);
+        if (revision > 0) {
+            *light_mesh = tl_light_mesh_make(mesh->vertex_count);
+            tl_cloth_cage(session->cloth, &(struct tl_cage_places){light_mesh->from, light_mesh->shares});
+            tl_light_mesh_number(light_mesh, mesh->indices, mesh->index_count);
+        }
         session->appearance_revision = ++session->appearances_made;
     }
     session->cage.revision = revision;

@@ -1,0 +1,219 @@
+/* Heavy cloth that is moved by a cage: it falls as it is, hangs where it is pinned, follows a pull, crosses
+ * neither itself nor the ground, and moves the same way again after a reset. */
+#include "tests/testing.h"
+
+#include "cloth/state.h"
+#include "config/memory.h"
+#include "tests/cloth/sheets.h"
+
+#include <string.h>
+
+#define SIDE 0.8 /* m */
+enum { SQUARES = 100, CORNERS = SQUARES + 1, COUNT = CORNERS * CORNERS, FRAMES = 20 };
+
+/* Bent about an axis along v, without strain. */
+static vec3s bent(double u, double v)
+{
+    const double radius = 0.3, angle = (u - SIDE / 2) / radius;
+    return (vec3s){{(float)(radius * sin(angle)), (float)(1 + radius * cos(angle)), (float)v}};
+}
+
+static struct tl_cloth_params heavy(void)
+{
+    struct tl_cloth_params params = params_defaults();
+    params.caged_above = 5000;
+    params.self_contact = true;
+    return params;
+}
+
+static tl_cloth *make_cloth(tl_garment *garment, const struct tl_cloth_params *params, bool pinned)
+{
+    const struct sheet_shape shape = {.columns = SQUARES, .rows = SQUARES, .width = SIDE, .height = SIDE};
+    const struct tl_cloth_fabric fabric = fabric_defaults();
+    tl_error error;
+    *garment = sheet_make(&shape, bent);
+    for (uint32_t i = 0; i < CORNERS && pinned; i++)
+        sheet_pin(garment, i);
+    tl_cloth *cloth = tl_cloth_create(garment, &fabric, params, &error);
+    assert_non_null(cloth);
+    return cloth;
+}
+
+static void step(tl_cloth *cloth, const tl_collider *collider, int frames)
+{
+    tl_error error = {0};
+    for (int i = 0; i < frames; i++)
+        assert_ok(tl_cloth_step(cloth, collider, &error), error);
+}
+
+/* In free fall it keeps its shape but for its own stiffness, and its clock runs. */
+static void it_falls_as_it_is(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    const struct tl_cloth_params params = heavy();
+    tl_cloth *cloth = make_cloth(&garment, &params, false);
+    vec3d *start = TL_NEW_ARRAY(vec3d, COUNT);
+    memcpy(start, cloth->particles.x, COUNT * sizeof *start);
+    assert_int_equal(tl_cloth_cage(cloth, NULL), 0);
+    step(cloth, NULL, 6);
+    assert_true(tl_cloth_cage(cloth, NULL) > 0);
+    assert_near(cloth->time_s, 6 / params.frame_rate, 1e-12);
+    const double fallen = start[0].y - cloth->particles.x[0].y;
+    assert_near(fallen, 0.5 * 9.81 * 0.2 * 0.2, 0.02);
+    double worst = 0;
+    for (size_t i = 0; i < COUNT; i++)
+        worst = fmax(worst, fabs(start[i].y - cloth->particles.x[i].y - fallen));
+    print_message("bent by %.2f mm\n", 1000 * worst);
+    assert_near(worst, 0, 0.002);
+    assert_near(cloth->particles.v[COUNT / 2].y, -9.81 * 0.2, 0.3);
+    free(start);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+}
+
+/* Where each vertex lies on the cage, and that the corners are such as lie on themselves. */
+static void places_are_on_the_cage(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    const struct tl_cloth_params params = heavy();
+    tl_cloth *cloth = make_cloth(&garment, &params, true);
+    struct tl_cage_places places = {tl_alloc(COUNT, sizeof *places.from),
+                                    tl_alloc(COUNT, sizeof *places.shares)};
+    step(cloth, NULL, 1);
+    assert_int_equal(tl_cloth_cage(cloth, &places), tl_cloth_cage(cloth, NULL));
+    size_t corners = 0;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        vec3d sum = {0};
+        float all = 0;
+        corners += places.from[i][0] == i;
+        for (int k = 0; k < 3; k++) {
+            const uint32_t from = places.from[i][k];
+            assert_int_equal(places.from[from][0], from);
+            assert_true(places.shares[i][k] >= 0);
+            all += places.shares[i][k];
+            sum = vec3d_muladd(sum, cloth->particles.x[from], (double)places.shares[i][k]);
+        }
+        assert_near(all, 1, 1e-5);
+        assert_true(vec3d_distance(sum, cloth->particles.x[i]) < 0.005); /* a straightened border */
+    }
+    assert_in_range(corners, 2500, 4000);
+    free(places.from);
+    free(places.shares);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+}
+
+static double apart_rms(tl_cloth *const cloths[2])
+{
+    double sum = 0;
+    for (size_t i = 0; i < COUNT; i++) {
+        const double apart = vec3d_distance(cloths[0]->particles.x[i], cloths[1]->particles.x[i]);
+        sum += apart * apart;
+    }
+    return sqrt(sum / COUNT);
+}
+
+/* Hung from a border, over the ground. The sheet itself, all simulated, is the oracle of where it swings. */
+static void it_hangs(void **state)
+{
+    (void)state;
+    tl_garment garments[2];
+    tl_cloth *cloths[2];
+    tl_error error = {0};
+    tl_collider *ground = tl_collider_create(NULL, true, &error);
+    assert_ok(ground != NULL, error);
+    for (int caged = 0; caged < 2; caged++) {
+        struct tl_cloth_params params = heavy();
+        params.caged_above = caged ? params.caged_above : 0;
+        cloths[caged] = make_cloth(&garments[caged], &params, true);
+        for (int i = 0; i < FRAMES; i++) {
+            step(cloths[caged], ground, 1);
+            const struct tl_cloth_report report = tl_cloth_measure(cloths[caged], ground);
+            assert_int_equal(report.inside_count, 0);
+            assert_true(report.max_strain < 0.3);
+            assert_in_range(report.crossing_count, 0, caged ? 2 : 0); /* across folds of the cage */
+        }
+    }
+    print_message("caged and not: %.1f mm root mean square\n", 1000 * apart_rms(cloths));
+    assert_true(apart_rms(cloths) < 0.05);
+    for (size_t i = 0; i < CORNERS; i++)
+        assert_near(
+            vec3d_distance(cloths[1]->particles.x[i], vec3d_from(garments[1].model.mesh.positions[i])), 0,
+            1e-6);
+    for (int caged = 0; caged < 2; caged++) {
+        tl_cloth_destroy(&cloths[caged]);
+        sheet_free(&garments[caged]);
+    }
+    tl_collider_destroy(&ground);
+}
+
+/* A corner follows the hand, without gravity; the vertex that is held need not be one of the cage's. */
+static void it_is_pulled(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    struct tl_cloth_params params = heavy();
+    params.gravity = 0;
+    tl_cloth *cloth = make_cloth(&garment, &params, true);
+    const vec3d from = cloth->particles.x[COUNT - 2];
+    const vec3s target = {{(float)from.x, (float)from.y + 0.05f, (float)from.z}};
+    for (int i = 0; i < FRAMES; i++) {
+        tl_cloth_grab(cloth, COUNT - 2, target);
+        step(cloth, NULL, 1);
+    }
+    const double held = vec3d_distance(cloth->particles.x[COUNT - 2], vec3d_from(target));
+    print_message("held to within %.1f of 50 mm\n", 1000 * held);
+    assert_true(held < 0.01);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+}
+
+static void a_reset_repeats(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    const struct tl_cloth_params params = heavy();
+    tl_cloth *cloth = make_cloth(&garment, &params, true);
+    vec3d *first = TL_NEW_ARRAY(vec3d, COUNT);
+    tl_cloth_mark_start(cloth);
+    step(cloth, NULL, 5);
+    memcpy(first, cloth->particles.x, COUNT * sizeof *first);
+    tl_cloth_pin(cloth, COUNT - 1); /* and moved on otherwise, in between */
+    step(cloth, NULL, 3);
+    assert_true(vec3d_distance(cloth->particles.x[COUNT - 1], first[COUNT - 1]) < 1e-9);
+    tl_cloth_reset(cloth);
+    step(cloth, NULL, 5);
+    assert_memory_equal(first, cloth->particles.x, COUNT * sizeof *first);
+    free(first);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+}
+
+/* The reference solver simulates all of it, and so does every other when the option says so. */
+static void others_move_themselves(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        tl_garment garment;
+        struct tl_cloth_params params = heavy();
+        params.solver = i == 0 ? TL_CLOTH_REFERENCE : TL_CLOTH_PREVIEW;
+        params.caged_above = i == 0 ? params.caged_above : 0;
+        tl_cloth *cloth = make_cloth(&garment, &params, true);
+        step(cloth, NULL, 1);
+        assert_int_equal(tl_cloth_cage(cloth, NULL), 0);
+        tl_cloth_destroy(&cloth);
+        sheet_free(&garment);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_falls_as_it_is), cmocka_unit_test(places_are_on_the_cage),
+        cmocka_unit_test(it_hangs),          cmocka_unit_test(it_is_pulled),
+        cmocka_unit_test(a_reset_repeats),   cmocka_unit_test(others_move_themselves),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
