@@ -1,12 +1,16 @@
 /* Measured reflectance as a list of samples, from a text file: what a gonioreflectometer or another program
  * writes, one pair of directions a line.
  *
- *     theta_l, phi_l, theta_v, phi_v, r, g, b          degrees from the normal, and from the weft towards the
- * warp l_x, l_y, l_z, v_x, v_y, v_z, r, g, b            unit vectors: along weft, warp, normal
+ *     theta_l, phi_l, theta_v, phi_v, r, g, b
  *
- * The first line names the columns, in any order; others are skipped. l points to the light, v to the viewer.
- * r, g, b, or `value` alone, are the reflectance f_r, 1/sr, not multiplied by a cosine. Columns are separated
- * by commas, semicolons or blanks; lines that begin with # are comments.
+ * are degrees from the normal, and from the weft towards the warp;
+ *
+ *     l_x, l_y, l_z, v_x, v_y, v_z, r, g, b
+ *
+ * are unit vectors along weft, warp and normal. The first line names the columns, in any order; others are
+ * skipped. l points to the light, v to the viewer. r, g, b, or `value` alone, are the reflectance f_r, 1/sr,
+ * not multiplied by a cosine. Columns are separated by commas, semicolons or blanks; lines that begin with #
+ * are comments.
  *
  * Errors: TL_INPUT, one line that names file and line: a missing column, a word that is no finite number, a
  * negative or a huge value, a direction under the surface, a vector that is not of unit length, more than
