@@ -1,9 +1,10 @@
 /* One frame of the cloth: by itself, or by a cage.
  *
  * A garment of 100,000 vertices takes seconds a frame when all of them are simulated. Cloth of more than
- * params.caged_above vertices is therefore moved by a cage of CAGE_VERTICES (coarser.h), which has its
- * weight, its pins and its contacts, and which it follows; it is the cloth itself that settles. The reference
- * solver moves every cloth itself, and cloth whose seams are open moves itself until they are closed. */
+ * params.caged_above vertices is moved by a cage of CAGE_VERTICES (coarser.h), which has its weight, its pins
+ * and its contacts, and which it follows; it is the cloth itself that settles. The cage does not cross
+ * itself; of what follows it a few triangles may, at sharp folds. The reference solver moves every cloth
+ * itself, and cloth whose seams are open moves itself until they are closed. */
 #include "cloth/advance.h"
 #include "cloth/build.h"
 #include "cloth/coarser.h"

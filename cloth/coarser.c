@@ -333,15 +333,16 @@ static void clamp_shares(const double weights[3], double shares[3])
         shares[k] = fmax(weights[k], 0) / sum;
 }
 
-/* The share of an offset that is kept where the corners of its triangle have turned it differently: all where
- * they agree, nothing where two of them are a sixth of a turn apart, as in a fold of the cage. In folds
- * offsets of either side would reach through each other. */
+/* The share of an offset that is kept where the corners of its triangle have turned it differently: all up to
+ * 45 degrees between two of them, nothing from 90 degrees on, as across a fold of the cage, where offsets of
+ * either side would reach through each other. */
 static double share_of_turns(const vec3d turned[3], double length)
 {
     double apart = 0;
     for (int k = 0; k < 3; k++)
         apart = fmax(apart, vec3d_distance(turned[k], turned[(k + 1) % 3]));
-    return length > 0 ? fmax(1 - 2 * apart / length, 0) : 0;
+    const double all = 0.765, none = 1.414; /* of the length: chords of these angles */
+    return length > 0 ? fmin(fmax((none - apart / length) / (none - all), 0), 1) : 1;
 }
 
 /* A particle's place on the cage, and its way from there. */
