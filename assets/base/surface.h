@@ -12,7 +12,8 @@
 struct tl_borders;
 
 /* Where light is computed on a surface that is drawn finer than light varies: at some of its vertices, from
- * which the others take means. Vertices of one place need not be one vertex. */
+ * which the others take means. Vertices of one place need not be one vertex. It owns its arrays:
+ * tl_light_mesh_release. */
 struct tl_light_mesh {
     uint32_t (*from)[3]; /* [vertex_count]; of a vertex with light of its own, three times that vertex */
     float (*shares)[3];  /* [vertex_count] of the three; their sum is 1 */

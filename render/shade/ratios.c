@@ -155,6 +155,26 @@ static void list_corner(struct tl_vertex_ratios *ratios, const struct tl_ratios_
                surface->indices[at], (int)(at % 3));
 }
 
+/* A triangle that is seen. */
+struct seen_triangle {
+    const tl_surface *surface;
+    size_t surface_index, number; /* in its surface */
+    size_t first;                 /* place of its surface's vertex 0 on the side that is seen */
+    uint32_t corners[3];
+    bool back;
+};
+
+static struct seen_triangle find_seen(const struct tl_vertex_ratios *ratios,
+                                      const struct tl_ratios_request *request, size_t i)
+{
+    const uint32_t number = request->ids->seen[i] & ~TL_SAMPLE_BACK;
+    struct seen_triangle seen = {.back = request->ids->seen[i] & TL_SAMPLE_BACK};
+    seen.surface = tl_triangle_find(request->ranges, number, seen.corners, &seen.surface_index);
+    seen.number = number - request->ranges->first[seen.surface_index];
+    seen.first = 2 * ratios->first_vertex[seen.surface_index] + (seen.back ? 1 : 0);
+    return seen;
+}
+
 /* Vertices that triangles share are listed once, for the first of these. */
 static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
@@ -165,23 +185,19 @@ static void list_corners(struct tl_vertex_ratios *ratios, const struct tl_ratios
     struct corner_lanes lanes = {0};
     const bool sparse = tl_points_are_sparse(request->points);
     for (size_t i = 0; i < request->ids->seen_count; i++) {
-        const uint32_t seen = request->ids->seen[i], back = seen & TL_SAMPLE_BACK ? 1u : 0u;
-        uint32_t corners[3];
-        size_t index;
-        const tl_surface *surface =
-            tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
-        const size_t first = 2 * ratios->first_vertex[index] + back;
-        const size_t triangle = (seen & ~TL_SAMPLE_BACK) - request->ranges->first[index];
+        const struct seen_triangle seen = find_seen(ratios, request, i);
+        const struct tl_light_mesh *mesh = seen.surface->light_mesh;
         for (size_t k = 0; k < 3; k++) {
-            if (!sparse || tl_has_own_light(surface, corners[k])) {
-                if (list_place(ratios, first + 2 * (size_t)corners[k], all))
-                    list_corner(ratios, request, &lanes, index, 3 * triangle + k, back);
+            if (!sparse || tl_has_own_light(seen.surface, seen.corners[k])) {
+                if (list_place(ratios, seen.first + 2 * (size_t)seen.corners[k], all))
+                    list_corner(ratios, request, &lanes, seen.surface_index, 3 * seen.number + k, seen.back);
                 continue;
             }
-            const uint32_t *from = surface->light_mesh->from[corners[k]];
+            const uint32_t *from = mesh->from[seen.corners[k]];
             for (int j = 0; j < 3; j++)
-                if (list_place(ratios, first + 2 * (size_t)from[j], all))
-                    list_corner(ratios, request, &lanes, index, surface->light_mesh->corners[from[j]], back);
+                if (list_place(ratios, seen.first + 2 * (size_t)from[j], all))
+                    list_corner(ratios, request, &lanes, seen.surface_index, mesh->corners[from[j]],
+                                seen.back);
         }
     }
     place_samples(ratios, request, &lanes);
@@ -219,18 +235,13 @@ static void take_mean(struct tl_vertex_ratios *ratios, const struct tl_light_mes
 static void fill_seen(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
     for (size_t i = 0; i < request->ids->seen_count; i++) {
-        const uint32_t seen = request->ids->seen[i], back = seen & TL_SAMPLE_BACK ? 1u : 0u;
-        uint32_t corners[3];
-        size_t index;
-        const tl_surface *surface =
-            tl_triangle_find(request->ranges, seen & ~TL_SAMPLE_BACK, corners, &index);
-        const size_t first = 2 * ratios->first_vertex[index] + back;
+        const struct seen_triangle seen = find_seen(ratios, request, i);
         for (int k = 0; k < 3; k++) {
-            uint32_t *stamp = &ratios->stamps[first + 2 * (size_t)corners[k]];
-            if (tl_has_own_light(surface, corners[k]) || *stamp == ratios->update)
+            uint32_t *stamp = &ratios->stamps[seen.first + 2 * (size_t)seen.corners[k]];
+            if (tl_has_own_light(seen.surface, seen.corners[k]) || *stamp == ratios->update)
                 continue;
             *stamp = ratios->update;
-            take_mean(ratios, surface->light_mesh, corners[k], first);
+            take_mean(ratios, seen.surface->light_mesh, seen.corners[k], seen.first);
         }
     }
 }

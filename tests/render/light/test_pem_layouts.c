@@ -101,7 +101,7 @@ static struct difference compare(const tl_image *image, const tl_image *expected
 #define GLOSSES 8
 static const float glosses[GLOSSES] = {0, 0.8f, 0.9f, 0.95f, 0.98f, 0.99f, 0.997f, 1};
 
-/* One layout after the other, since each is made anew. */
+/* One layout after the other: each replaces the one before. */
 static void draw_all(const struct test_device *device, struct scene *scene, tl_image images[2][GLOSSES])
 {
     for (int layout = TL_PEM_CUBE; layout <= TL_PEM_PARABOLOID; layout++) {
