@@ -183,9 +183,11 @@ static void a_reset_repeats(void **state)
     tl_cloth_pin(cloth, COUNT - 1); /* and moved on otherwise, in between */
     step(cloth, NULL, 3);
     assert_true(vec3d_distance(cloth->particles.x[COUNT - 1], first[COUNT - 1]) < 1e-9);
-    tl_cloth_reset(cloth);
-    step(cloth, NULL, 5);
-    assert_memory_equal(first, cloth->particles.x, COUNT * sizeof *first);
+    for (int i = 0; i < 2; i++) { /* from cloth that was pinned by hand, and from cloth that only moved */
+        tl_cloth_reset(cloth);
+        step(cloth, NULL, 5);
+        assert_memory_equal(first, cloth->particles.x, COUNT * sizeof *first);
+    }
     free(first);
     tl_cloth_destroy(&cloth);
     sheet_free(&garment);
