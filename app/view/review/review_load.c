@@ -220,13 +220,15 @@ void tl_review_load(struct tl_review *review)
 
 bool tl_review_stop_loading(struct tl_review *review)
 {
-    if (!review->loader || (!review->drapes_again && !is_slow(review, &review->wanted)))
-        return false; /* the loader, if any, is stopped already, or prepares what nothing waits for */
+    struct tl_settings kept = review->wanted;
+    if (review->loader && !review->drapes_again)
+        keep_present(review, &kept);
+    if (!review->loader || (!review->drapes_again && tl_settings_equal(&kept, &review->wanted)))
+        return false; /* the loader, if any, prepares what was not asked for, or is stopped already */
     tl_loader_stop(review->loader);
+    review->wanted = kept;
     if (review->drapes_again)
         review->draped = review->wanted.fabric;
-    else
-        keep_present(review, &review->wanted);
     review->changed = true;
     tl_review_report(review, review->drapes_again ? "draping was stopped: the garment hangs as before"
                                                   : "loading was stopped: the scene is unchanged");
