@@ -249,6 +249,12 @@ static struct tl_work work_of(int job, const struct tl_work_sizes *sizes)
     return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(sizes) : (struct tl_work){{0}};
 }
 
+static double predict_job(const tl_renderer *renderer, int job, const struct tl_work *work)
+{
+    double slowness = renderer->slowness > 0 ? renderer->slowness : 1;
+    return tl_cost_expect(&renderer->costs[job], work, tl_machine_load_factor(&renderer->load), slowness);
+}
+
 static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *input,
                       const struct tl_render_settings *settings, tl_plan *plan)
 {
@@ -257,8 +263,7 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, settings);
     for (int i = 0; i < tl_frame_job_count; i++) {
         struct tl_work work = work_of(i, &sizes);
-        predicted_ms[i] =
-            tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
+        predicted_ms[i] = predict_job(renderer, i, &work);
     }
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, predicted_ms, plan);
 }
@@ -267,23 +272,24 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
  * jobs down alike and is learned separately, from the jobs whose cost is known. */
 static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions)
 {
-    const int known = 3; /* runs */
     struct tl_work_sizes sizes =
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, &renderer->settings);
     sizes.new_regions = new_regions; /* counted before the jobs made them */
     double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
+    struct tl_work work[TL_JOBS_MAX] = {{{0}}}; /* of the jobs that ran */
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         struct tl_cost_job *cost = &renderer->costs[i];
-        const struct tl_work work = work_of(i, &sizes);
-        plan->rows[i].work_ms = tl_work_sum(&work);
-        if (cost->runs >= known) {
-            predicted_ms += tl_cost_predict(cost, &work, load);
+        work[i] = work_of(i, &sizes);
+        plan->rows[i].work_ms = tl_work_sum(&work[i]);
+        if (cost->runs >= TL_COST_KNOWN) {
+            predicted_ms += tl_cost_predict(cost, &work[i], load);
             took_ms += plan->rows[i].took_ms;
         }
-        tl_cost_learn(cost, &work, load, plan->rows[i].took_ms);
+        tl_cost_learn(cost, &work[i], load, plan->rows[i].took_ms);
     }
+    renderer->slowness = tl_cost_slowness(renderer->costs, work, plan->count);
     tl_machine_load_follow(&renderer->load, predicted_ms, took_ms);
 }
 
@@ -616,7 +622,7 @@ double tl_renderer_predict_ms(const tl_renderer *renderer, const struct tl_rende
         if (!(jobs & (tl_bits)1 << i))
             continue;
         struct tl_work work = work_of(i, &sizes);
-        double ms = tl_cost_predict(&renderer->costs[i], &work, tl_machine_load_factor(&renderer->load));
+        double ms = predict_job(renderer, i, &work);
         sum_ms += isfinite(ms) ? ms : 0;
     }
     return sum_ms;

@@ -20,6 +20,7 @@ struct tl_renderer {
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];
     struct tl_machine_load load;
+    double slowness; /* tl_cost_slowness of the last frame; 0 before the first */
     uint64_t shaders_stamp;
 };
 

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #define WAIT_MIN 8    /* frames */
+#define WAIT_NEW 2    /* ... while the governor is new: its first choices follow from costs of first runs */
+#define NEW      12   /* frames for which it is new */
 #define WAIT_MAX 32   /* also the delay until the end of a load is noticed */
 #define GAIN_MIN 0.95 /* a step up leaves at most this much of the error */
 #define HEADROOM 0.94 /* ... and costs at most this much of what may be planned with */
@@ -115,7 +117,8 @@ static enum tl_governed change(struct tl_governor *governor, const uint8_t level
     if (memcmp(governor->levels, levels, sizeof governor->levels) == 0)
         return TL_GOVERNED_KEPT;
     memcpy(governor->levels, levels, sizeof governor->levels);
-    if (how == TL_GOVERNED_DOWN && governor->is_trial && governor->settled < 2 * governor->wait)
+    if (how == TL_GOVERNED_DOWN && governor->is_trial && governor->age >= NEW &&
+        governor->settled < 2 * governor->wait)
         governor->wait = 2 * governor->wait < WAIT_MAX ? 2 * governor->wait : WAIT_MAX;
     governor->is_trial = how == TL_GOVERNED_UP;
     governor->settled = 0;
@@ -133,6 +136,7 @@ enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct t
     bool within = keep_within(governor, budget);
     double limit_ms = budget_ms * governor->share / governor->backoff;
     governor->settled++;
+    governor->age += governor->age < NEW;
     double cost = budget->cost(budget->context, governor->levels);
     if (is_first || !within || cost > limit_ms) {
         if (is_first || !tl_budget_best(budget, HEADROOM * limit_ms, OVER * budget_ms, best))
@@ -141,7 +145,7 @@ enum tl_governed tl_governor_choose(struct tl_governor *governor, const struct t
     }
     if (governor->settled > 4 * WAIT_MAX)
         governor->wait = WAIT_MIN;
-    if (governor->settled < governor->wait || governor->backoff > 1.01)
+    if (governor->settled < (governor->age < NEW ? WAIT_NEW : governor->wait) || governor->backoff > 1.01)
         return TL_GOVERNED_KEPT;
     bool fits = tl_budget_best(budget, HEADROOM * limit_ms, OVER * budget_ms, best);
     double now = budget->error(budget->context, governor->levels);
@@ -155,7 +159,8 @@ void tl_governor_learn(struct tl_governor *governor, double budget_ms, double to
 {
     if (!isfinite(took_ms))
         return;
-    bool is_over = took_ms > OVER * budget_ms;
+    /* In the first frames jobs do what is done once: their time says nothing of the frames that follow. */
+    bool is_over = took_ms > OVER * budget_ms && governor->age >= NEW;
     if (!is_over) {
         governor->share = fmin(governor->share + SHARE_STEP * OVER_RATE / (1 - OVER_RATE), SHARE_MAX);
         governor->backoff = 1 + BACKOFF_DECAY * (governor->backoff - 1);

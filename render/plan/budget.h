@@ -41,6 +41,7 @@ struct tl_governor {
     int control_count; /* number of controls at the last choice; 0: no choice yet */
     int settled;       /* frames since the last change */
     int wait;          /* frames to wait before the next step up */
+    int age;           /* choices so far, up to those after which it is no longer new */
     bool is_trial;     /* the last change was one up */
     bool was_over;     /* the last frame exceeded the budget; a second one in a row means wrong costs */
     double budget_ms;  /* for which `share` was initialised */

@@ -11,6 +11,7 @@
 #define OUTLIER           3.0 /* standard deviations, beyond which a run is an outlier */
 #define FIRST_RUNS        2   /* the first runs also allocate and compile: they weigh little */
 #define BELIEVED_RUNS     5   /* ... and of the next ones none is taken for an outlier */
+#define ONCE              0.8 /* ... but one that takes less of what was predicted: earlier ones did more */
 #define FACTOR_MIN        0.02
 #define UNIT_MIN_MS       0.05
 
@@ -56,6 +57,26 @@ double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work
     return load * ms;
 }
 
+double tl_cost_slowness(const struct tl_cost_job *jobs, const struct tl_work *work, int count)
+{
+    double table_ms = 0, ms = 0;
+    for (int i = 0; i < count; i++) {
+        if (jobs[i].runs == 0 || tl_work_sum(&work[i]) <= 0)
+            continue;
+        table_ms += tl_work_sum(&work[i]);
+        ms += tl_cost_predict(&jobs[i], &work[i], 1);
+    }
+    return table_ms > 0 ? ms / table_ms : 1;
+}
+
+double tl_cost_expect(const struct tl_cost_job *job, const struct tl_work *work, double load, double slowness)
+{
+    double ms = tl_cost_predict(job, work, load), table_ms = slowness * load * tl_work_sum(work);
+    if (job->runs >= TL_COST_KNOWN || table_ms <= 0)
+        return ms;
+    return job->runs > 0 ? fmin(ms, table_ms) : table_ms;
+}
+
 /* Process noise of the filter: all factors drift together by DRIFT, and each alone by PART_DRIFT until its
  * deviation reaches PART_DEVIATION. */
 static void drift(struct tl_cost_job *job)
@@ -69,13 +90,23 @@ static void drift(struct tl_cost_job *job)
     }
 }
 
+/* What is done once, such as compiling, makes runs slower and never faster. So an early run that is much
+ * faster than predicted shows that those before it did such work, or that another program slowed them down:
+ * they are forgotten. Averaged with the later ones, they would make all levels look expensive for ten runs
+ * more. */
+static bool shows_work_done_once(const struct tl_cost_job *job, const struct tl_work *work, double ms)
+{
+    return job->runs < BELIEVED_RUNS && ms < ONCE * tl_cost_predict(job, work, 1);
+}
+
 /* One step of the filter, with the part of the covariance along the work. */
 void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms)
 {
     if (!isfinite(ms) || ms < 0)
         return;
-    if (job->runs++ < FIRST_RUNS)
+    if (job->runs < FIRST_RUNS || shows_work_done_once(job, work, ms / load))
         begin(job, ms / load);
+    job->runs++;
     struct tl_work used = known(job, work);
     drift(job);
     double along[TL_WORK_PARTS] = {0}, predicted = 0, variance = 0;

@@ -28,6 +28,16 @@ struct tl_cost_job {
 
 /* Predicted ms. NaN for a job that never ran and has no work in the table. */
 double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load);
+
+/* How many times slower than the table's machine this one is, by jobs that ran and their work; jobs that
+ * never ran, or have no work in the table, are left out. 1 when none is left. */
+double tl_cost_slowness(const struct tl_cost_job *jobs, const struct tl_work *work, int count);
+/* tl_cost_predict for a frame to come. A job of fewer than TL_COST_KNOWN runs is not expected to take longer
+ * than the table says for a machine of this slowness: its first runs also did what is done once. */
+#define TL_COST_KNOWN 3
+double tl_cost_expect(const struct tl_cost_job *job, const struct tl_work *work, double load,
+                      double slowness);
+
 /* Learns from a run that took `ms` while the machine was slowed down by `load`. Ignores times that are NaN or
  * negative. */
 void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms);

@@ -11,6 +11,7 @@ foreach(name
     env/cube
     env/emitters
     brdf/factor
+    plan/first_second
     brdf/fuzz
     brdf/lobe_fit
     metrics/flip

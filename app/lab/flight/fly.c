@@ -205,6 +205,15 @@ static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_f
     return true;
 }
 
+/* Prepares the regions of all levels, as the window does while it loads: no frame of the motion has to. */
+static void prepare_levels(struct recorder *recorder)
+{
+    const struct tl_settings wanted = settings_at(recorder->headless, recorder->flight, 0);
+    const tl_frame shown = tl_session_frame(recorder->headless->session);
+    while (tl_quality_governor_prepare(recorder->governor, recorder->headless->renderer, &shown, &wanted)) {
+    }
+}
+
 static bool record_frame(struct recorder *recorder, int number, tl_error *error)
 {
     struct tl_flight *flight = recorder->flight;
@@ -214,6 +223,8 @@ static bool record_frame(struct recorder *recorder, int number, tl_error *error)
     const tl_plan *plan = tl_renderer_last_plan(recorder->headless->renderer);
     if (recorder->governor)
         tl_quality_governor_learn(recorder->governor, plan, frame.cloth_ms, frame.total_ms);
+    if (recorder->governor && number == 0)
+        prepare_levels(recorder);
     record_jobs(flight, plan, &frame);
     frame.memory_bytes = tl_renderer_memory(recorder->headless->renderer).total;
     flight->frames[number] = frame;
