@@ -33,7 +33,7 @@ static const struct tl_command commands[] = {
      tl_command_fly},
     {"plan", "plan [SCENE] [--json] [OPTIONS]",
      "Prints what would run for a frame, why, at what cost and in how much memory.",
-     TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET, tl_command_plan},
+     TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET | TL_FLAGS_PLAN, tl_command_plan},
     {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
      "Compares methods in one run. light: CPU time and error of the presets in motion; cloth: steps per "
      "second of the solvers and of a plain loop, normals and tangents, a dress that comes to rest.",

@@ -1,5 +1,6 @@
 /* toile plan: prints which jobs a frame runs, why, and what they cost in time and memory. */
 #include "app/batch/commands.h"
+#include "app/budget/back_end.h"
 #include "app/budget/governor.h"
 #include "app/cli/json.h"
 #include "app/measure/cost.h"
@@ -190,8 +191,17 @@ static void add_clocks(cJSON *object, const struct tl_gpu_clocks *clocks)
     cJSON_AddBoolToObject(clock, "timer_is_trusted", clocks->timer_is_trusted);
 }
 
+static void add_back_end(cJSON *object, const struct tl_back_end *back_end)
+{
+    cJSON *visibility = cJSON_AddObjectToObject(object, "visibility");
+    cJSON_AddStringToObject(visibility, "reason", back_end->reason);
+    cJSON_AddItemToObject(visibility, "rays_ms", number_or_null(back_end->rays_ms));
+    cJSON_AddItemToObject(visibility, "maps_ms", number_or_null(back_end->maps_ms));
+}
+
 static void print_report(const struct tl_headless *headless, const tl_plan *plan,
-                         const struct budgeted *budgeted, const struct tl_gpu_clocks *clocks, bool json)
+                         const struct budgeted *budgeted, const struct tl_back_end *back_end,
+                         const struct tl_gpu_clocks *clocks, bool json)
 {
     struct tl_cloth_report report = tl_session_report(headless->session);
     if (json) {
@@ -200,6 +210,7 @@ static void print_report(const struct tl_headless *headless, const tl_plan *plan
         add_memory(object, headless->renderer);
         if (budgeted->budget_ms > 0)
             add_budget(object, budgeted);
+        add_back_end(object, back_end);
         add_clocks(object, clocks);
         if (report.vertex_count > 0)
             add_cloth(object, &headless->settings, &report);
@@ -210,6 +221,7 @@ static void print_report(const struct tl_headless *headless, const tl_plan *plan
     print_memory(headless->renderer);
     if (budgeted->budget_ms > 0)
         print_budget(budgeted);
+    printf("visibility: %s\n", back_end->reason);
     print_clocks(clocks);
     if (report.vertex_count > 0)
         print_cloth(&headless->settings, &report);
@@ -258,6 +270,22 @@ static bool choose_levels(struct tl_headless *headless, int number, struct budge
     return done;
 }
 
+static bool calibrate(struct tl_headless *headless, const struct tl_arguments *arguments,
+                      struct tl_back_end *out, tl_error *error)
+{
+    if (arguments->calibrate && arguments->budget_ms <= 0)
+        return tl_fail(error, TL_USAGE,
+                       "--calibrate: whether maps are needed depends on a budget: add --budget MS");
+    const tl_frame first = tl_session_frame(headless->session);
+    const struct tl_back_end_start start = {.renderer = headless->renderer,
+                                            .frame = &first,
+                                            .budget_ms = arguments->budget_ms,
+                                            .is_software = tl_gpu_is_software(headless->gpu),
+                                            .measures_both = arguments->calibrate};
+    return tl_back_end_calibrate(&start, &headless->settings, out, error) &&
+           tl_session_apply(headless->session, &headless->settings, error);
+}
+
 /* Plans frame N as a part of an animation: draws the frame before it, so that its results can be reused and
  * its costs are known. Frame 0 is the first, for which everything is computed. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
@@ -266,9 +294,10 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
     struct budgeted budgeted = {.budget_ms = arguments->budget_ms};
     if (!tl_headless_create(&headless, arguments, error))
         return false;
-    bool done = true;
+    struct tl_back_end back_end;
+    bool done = calibrate(&headless, arguments, &back_end, error);
     int frame = arguments->first_frame;
-    if (budgeted.budget_ms > 0)
+    if (done && budgeted.budget_ms > 0)
         done = choose_levels(&headless, frame, &budgeted, error);
     if (done && frame > 0)
         done = tl_session_go_to(headless.session, frame - 1, error) && tl_headless_draw(&headless, error) &&
@@ -282,7 +311,7 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         struct tl_gpu_clocks clocks;
         done = done && tl_gpu_compare_clocks(headless.gpu, &clocks, error);
         if (done)
-            print_report(&headless, &plan, &budgeted, &clocks, arguments->json);
+            print_report(&headless, &plan, &budgeted, &back_end, &clocks, arguments->json);
     }
     tl_headless_release(&headless);
     return done;

@@ -63,6 +63,7 @@ struct tl_settings tl_quality_apply(const struct tl_quality *levels, const struc
     const struct tl_render_settings full = tl_settings_render(settings);
     struct tl_render_settings applied = tl_quality_at(levels, &full);
     changed.light = applied.light;
+    changed.light.visibility = settings->light.visibility; /* auto stays */
     changed.detail = applied.detail;
     changed.image = applied.image;
     return changed;

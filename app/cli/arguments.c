@@ -138,6 +138,9 @@ static const struct flag flags_known[] = {
      "what it found"},
     {"--budget", TL_FLAGS_BUDGET, FLAG_MS, AT(budget_ms), NULL, "MS",
      "time for a frame, in milliseconds; else every frame is drawn in full"},
+    {"--calibrate", TL_FLAGS_PLAN, FLAG_SWITCH, AT(calibrate), NULL, NULL,
+     "time both rays and shadow maps for light.visibility auto, also where GL runs on the CPU; needs "
+     "--budget"},
     {"--frames", TL_FLAGS_FLY, FLAG_WHOLE, AT(frame_count), NULL, "N",
      "number of frames; else 600, or all of the path's"},
     {"--path", TL_FLAGS_FLY, FLAG_TEXT, AT(path), NULL, "FILE.yaml", "camera path; else one round the scene"},

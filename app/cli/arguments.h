@@ -35,6 +35,7 @@ enum tl_flag_set {
     TL_FLAGS_SHARD = 1 << 19,   /* --shard I/N */
     TL_FLAGS_STRICT = 1 << 20,  /* --strict */
     TL_FLAGS_BAKE = 1 << 21,    /* --size N --reach-mm MM */
+    TL_FLAGS_PLAN = 1 << 22,    /* --calibrate */
 };
 
 struct tl_arguments {
@@ -56,6 +57,7 @@ struct tl_arguments {
     /* 0: not given */
     uint64_t memory_bytes;
     double budget_ms;
+    bool calibrate;
     double repeat_mm, height_mm, reach_mm;
     int first_frame, last_frame;
     int frame_count, every, oracle_every;

@@ -185,12 +185,15 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
 
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
-    return (struct tl_render_settings){.light = settings->light,
+    struct tl_render_settings drawn = {.light = settings->light,
                                        .detail = settings->detail,
                                        .maps = settings->maps,
                                        .shading = settings->shading,
                                        .image = settings->image,
                                        .reference = settings->reference};
+    if (drawn.light.visibility == TL_VISIBILITY_AUTO)
+        drawn.light.visibility = TL_VISIBILITY_RAYS;
+    return drawn;
 }
 
 static bool apply_preset(const struct tl_binding *all, const char *name, tl_error *error)
@@ -403,13 +406,28 @@ static bool is_layered(const struct tl_material_params *look)
            look->transmission[2] > 0;
 }
 
+static bool has_more_than_maps_show(const struct tl_settings *settings)
+{
+    return is_more_than_maps_show(&settings->material) || is_more_than_maps_show(&settings->overlay);
+}
+
+static bool has_layers(const struct tl_settings *settings)
+{
+    return is_layered(&settings->material) || is_layered(&settings->overlay);
+}
+
+bool tl_settings_need_rays(const struct tl_settings *settings)
+{
+    return has_more_than_maps_show(settings) || has_layers(settings);
+}
+
 /* Warns of options that the chosen method does not use. */
 static void warn_of_unused_options(const struct tl_settings *settings)
 {
-    const struct tl_light_params *light = &settings->light;
+    const struct tl_render_settings drawn = tl_settings_render(settings);
+    const struct tl_light_params *light = &drawn.light;
     bool by_maps = light->method == TL_METHOD_MAPS;
-    bool layers = is_layered(&settings->material) || is_layered(&settings->overlay);
-    bool others = is_more_than_maps_show(&settings->material) || is_more_than_maps_show(&settings->overlay);
+    bool layers = has_layers(settings), others = has_more_than_maps_show(settings);
     bool shows_all =
         light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
     if (by_maps && others)

@@ -92,7 +92,10 @@ uint64_t tl_settings_hash(const struct tl_settings *settings, struct tl_option_f
  * waits until it is released. Pure. */
 bool tl_settings_differ_slowly(const struct tl_settings *a, const struct tl_settings *b);
 
-/* The part of the settings that the renderer takes. Pure. */
+/* Whether the fabrics have parts that shadow maps do not show: more than two plain lobes. Pure. */
+bool tl_settings_need_rays(const struct tl_settings *settings);
+
+/* The part of the settings that the renderer takes; light.visibility auto is rays. Pure. */
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings);
 
 /* The parts of the command line that settings are loaded from. */

@@ -1,6 +1,7 @@
 /* toile view: opens the review window, runs its loop, closes it.
  *
  * The loop sleeps while nothing happens, so that an idle window uses no processor time. */
+#include "app/budget/back_end.h"
 #include "app/scene/headless.h"
 #include "app/view/commands.h"
 #include "app/view/review/review_draw.h"
@@ -154,6 +155,18 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
     return tl_review_load_first(review, error);
 }
 
+/* Chooses what light.visibility auto means here, before anything is shown. */
+static bool calibrate(struct tl_review *review, tl_error *error)
+{
+    const tl_frame first = tl_session_frame(review->session);
+    const struct tl_back_end_start start = {.renderer = review->renderer,
+                                            .frame = &first,
+                                            .budget_ms = (double)review->params.budget_ms,
+                                            .is_software = tl_gpu_is_software(review->gpu)};
+    struct tl_back_end chosen;
+    return tl_back_end_calibrate(&start, &review->wanted, &chosen, error);
+}
+
 static bool open_review(struct tl_review *review, tl_error *error)
 {
     const struct tl_arguments *arguments = review->arguments;
@@ -169,7 +182,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     bool is_draft = !is_restored && needs_draft(review);
     if (is_draft && !tl_settings_apply_preset(&review->wanted, "draft", error))
         return false;
-    if (!open_scene(review, is_restored, error))
+    if (!open_scene(review, is_restored, error) || !calibrate(review, error))
         return false;
     if (!review->history)
         review->history = tl_history_create(&review->wanted);

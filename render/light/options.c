@@ -11,7 +11,7 @@ static const char *const lobe_names[] = {"single", "dual", NULL};
 static const char *const cut_names[] = {"faces", "sphere", NULL};
 static const char *const prefilter_names[] = {"chain", "slices", NULL};
 static const char *const pem_layout_names[] = {"cube", "paraboloid", NULL};
-static const char *const visibility_names[] = {"vsm", "depth", "rays", NULL};
+static const char *const visibility_names[] = {"vsm", "depth", "rays", "auto", NULL};
 static const char *const moments_names[] = {"float", "half", NULL};
 static const char *const ratio_at_names[] = {"samples", "vertices", NULL};
 static const char *const bounce_names[] = {"off", "one", "all", NULL};
@@ -46,9 +46,11 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_ENUM(light_params, pem_layout, TL_AFFECTS_APPEARANCE | TL_AFFECTS_PASSES, pem_layout_names,
                    "cube: a PEM is a cube map; paraboloid: parts of paraboloid maps, cropped to where it is "
                    "not black: a thirteenth of the memory at 96 regions, slightly softer, a third slower"),
-    TL_OPTION_ENUM(light_params, visibility,
-                   TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT | TL_AFFECTS_SHADOW_MAPS, visibility_names,
-                   "vsm: variance shadow maps; depth: plain shadow maps; rays: rays cached at vertices"),
+    TL_OPTION_ENUM(
+        light_params, visibility, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT | TL_AFFECTS_SHADOW_MAPS,
+        visibility_names,
+        "vsm: variance shadow maps; depth: plain shadow maps; rays: rays cached at vertices; auto: rays, "
+        "or vsm where a few frames at start show that rays cannot hold the budget and maps can"),
     TL_OPTION_ENUM(light_params, composition, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, composition_names,
                    "sum: shadowed light of all regions; difference: exact light minus the occluded light; "
                    "ratio: exact light times its visible fraction (rays: always)"),

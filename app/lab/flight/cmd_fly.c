@@ -1,4 +1,5 @@
 /* toile fly: records a flight around the garment, and reports its results. */
+#include "app/budget/back_end.h"
 #include "app/cli/json.h"
 #include "app/lab/flight/commands.h"
 #include "app/lab/flight/fly_account.h"
@@ -261,10 +262,24 @@ static bool report(const struct flying *flying, const struct tl_headless *headle
     return check_replay(&account, error);
 }
 
+/* A replay draws with what its settings name, whatever this machine would choose. */
+static bool calibrate(struct flying *flying, struct tl_headless *headless, tl_error *error)
+{
+    const tl_frame first = tl_session_frame(headless->session);
+    const struct tl_back_end_start start = {.renderer = headless->renderer,
+                                            .frame = &first,
+                                            .budget_ms = flying->options.budget_ms,
+                                            .is_software = tl_gpu_is_software(headless->gpu)};
+    struct tl_back_end chosen;
+    bool done = flying->options.replay || tl_back_end_calibrate(&start, &headless->settings, &chosen, error);
+    flying->settings.light.visibility = headless->settings.light.visibility;
+    return done;
+}
+
 static bool fly(struct flying *flying, struct tl_headless *headless, tl_error *error)
 {
     struct tl_path path = {0};
-    if (!prepare(flying, headless, &path, error)) {
+    if (!prepare(flying, headless, &path, error) || !calibrate(flying, headless, error)) {
         tl_path_release(&path);
         return false;
     }

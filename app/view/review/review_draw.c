@@ -197,7 +197,7 @@ static void choose_rest(struct tl_review *review, struct tl_settings *settings, 
         settings->image.supersample = asked > REST_SIDE ? asked : REST_SIDE;
         struct tl_quality_rest chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
         *rest = (struct tl_review_rest){.samples = settings->image.supersample};
-        if (chosen.is_slow && settings->light.visibility == TL_VISIBILITY_RAYS) {
+        if (chosen.is_slow && tl_settings_render(settings).light.visibility == TL_VISIBILITY_RAYS) {
             *rest = (struct tl_review_rest){.samples = asked, .is_shifted = true};
             settings->image.supersample = asked;
             chosen = tl_quality_governor_rest(review->renderer, &coming, settings);

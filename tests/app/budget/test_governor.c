@@ -1,3 +1,4 @@
+#include "app/budget/back_end.h"
 #include "app/budget/governor.h"
 
 #include "tests/testing.h"
@@ -330,6 +331,64 @@ static void regions_are_prepared_at_rest(void **state)
     tl_renderer_destroy(&fresh);
 }
 
+static tl_image picture_of(tl_renderer *renderer, const tl_frame *frame, const struct tl_settings *settings)
+{
+    tl_image image = {0};
+    tl_error error = {0};
+    const struct tl_render_settings drawn = tl_settings_render(settings);
+    assert_ok(tl_renderer_draw(renderer, frame, &drawn, &error), error);
+    assert_ok(tl_renderer_read(renderer, &image, &error), error);
+    return image;
+}
+
+static bool has_run(const tl_plan *plan, const char *name)
+{
+    for (int i = 0; i < plan->count; i++)
+        if (strcmp(plan->rows[i].name, name) == 0)
+            return plan->rows[i].action == TL_JOB_RUN;
+    return false;
+}
+
+/* Both back-ends are timed by frames that are really drawn; the picture after them is that of a new renderer,
+ * by rays and by maps. */
+static void calibration_leaves_no_trace(void **state)
+{
+    (void)state;
+    struct device *device = *state;
+    tl_error error = {0};
+    const tl_frame frame = frame_of(device);
+    const double budgets_ms[] = {1e6, 1e-3};
+    for (size_t i = 0; i < 2; i++) {
+        tl_renderer *used = tl_renderer_create(device->gpu, &error),
+                    *fresh = tl_renderer_create(device->gpu, &error);
+        assert_true(used && fresh);
+        struct tl_settings settings = small_settings();
+        settings.image.width = settings.image.height = 64;
+        settings.material.model = TL_REFLECT_PHONG;
+        assert_int_equal(settings.light.visibility, TL_VISIBILITY_AUTO);
+        const struct tl_back_end_start start = {.renderer = used,
+                                                .frame = &frame,
+                                                .budget_ms = budgets_ms[i],
+                                                .is_software = true,
+                                                .measures_both = true};
+        struct tl_back_end chosen;
+        assert_ok(tl_back_end_calibrate(&start, &settings, &chosen, &error), error);
+        assert_true(chosen.rays_ms > 0 && chosen.rays_ms < INFINITY);
+        assert_true(chosen.maps_ms > 0 && chosen.maps_ms < INFINITY);
+        assert_true(i > 0 || settings.light.visibility == TL_VISIBILITY_AUTO);
+        assert_true(has_run(tl_renderer_last_plan(used), "maps")); /* maps are timed last, as in motion */
+        for (int visibility = TL_VISIBILITY_VSM; visibility <= TL_VISIBILITY_AUTO; visibility++) {
+            settings.light.visibility = visibility;
+            tl_image a = picture_of(used, &frame, &settings), b = picture_of(fresh, &frame, &settings);
+            assert_memory_equal(a.texels, b.texels, sizeof(float) * 4 * 64 * 64);
+            tl_image_release(&a);
+            tl_image_release(&b);
+        }
+        tl_renderer_destroy(&used);
+        tl_renderer_destroy(&fresh);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -337,6 +396,7 @@ int main(void)
         cmocka_unit_test(levels_end_somewhere),          cmocka_unit_test(what_is_asked_for_errs_least),
         cmocka_unit_test(budgets_are_kept_to),           cmocka_unit_test(rest_gives_everything_back),
         cmocka_unit_test(regions_are_prepared_at_rest),  cmocka_unit_test(steps_tell_what_a_level_is_worth),
+        cmocka_unit_test(calibration_leaves_no_trace),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }

@@ -56,3 +56,8 @@ for knob in tight["knobs"]: # much error is not accepted for little time, so tha
 assert any(k["level"] > 0 for k in tight["knobs"][1:])
 END
 check "text" grep -q "levels for 50 ms" <($TOILE plan ${fast%--json} --budget 50)
+fast=${fast/--frame 4 --json/--fabric cotton_plain --budget 50}
+check "rays without a measurement" grep -q "^visibility: rays: GL runs on the CPU" <($TOILE plan $fast)
+check "both measured" grep -q "^visibility: .* rays take [0-9.]* ms, shadow maps [0-9.]* ms, of 30.0 ms" \
+    <($TOILE plan $fast --calibrate)
+refuse "calibration without a budget" "--calibrate: .*add --budget" plan ${fast/--budget 50/} --calibrate
