@@ -1,10 +1,9 @@
 /* light.visibility auto: rays, or shadow maps where rays cannot hold a frame's budget and maps can.
  *
  * Maps err about four times as much as rays (`toile fly --oracle 12 --size 256x256`, default dress in motion:
- * 16 to 18 % relative RMSE next to 4 %; FLIP of the worst 5 %: 0.49 next to 0.22), and no level of rays errs
- * that much. So maps are chosen for their time alone. A few frames of each are drawn at start, with the
- * levels that the governor gives to the budget; ties go to rays. Where GL runs on the CPU maps cost more than
- * rays: nothing is measured there unless asked for. */
+ * 16 to 18 % relative RMSE next to 4 %), and know no bounced light. So they are chosen for their time alone:
+ * a few frames of each are drawn at start, with the levels that the governor gives to the budget; ties go to
+ * rays. Where GL runs on the CPU maps cost more than rays: nothing is measured there unless asked for. */
 #ifndef TOILE_APP_BUDGET_BACK_END_H
 #define TOILE_APP_BUDGET_BACK_END_H
 
