@@ -4,6 +4,7 @@
 #include "cloth/build.h"
 #include "cloth/clearance.h"
 #include "cloth/mesh/rigid.h"
+#include "cloth/mesh/skin.h"
 #include "cloth/timestep.h"
 #include "config/memory.h"
 
@@ -25,6 +26,8 @@ struct tl_coarser {
     struct tl_fans fans; /* corners of the cage's triangles around each of its vertices */
     vec3d *made;         /* [cage's vertex_count] where it was made */
     vec3d *offsets;      /* [cloth's particles] from the cage, where it was made */
+    struct tl_skin skin; /* empty before tl_coarser_restart */
+    vec3d *from;         /* [cloth's particles] m, where that was */
 };
 
 /* ---- The cage ---- */
@@ -229,6 +232,8 @@ void tl_coarser_destroy(tl_coarser **handle)
     tl_fans_release(&coarser->fans);
     free(coarser->made);
     free(coarser->offsets);
+    tl_skin_release(&coarser->skin);
+    free(coarser->from);
     free(coarser);
     *handle = NULL;
 }
@@ -303,6 +308,39 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
 
 /* ---- In motion ---- */
 
+/* Shares of a place that are not negative: where a border was straightened it lies beside the cage. */
+static void clamp_shares(const double weights[3], double shares[3])
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += fmax(weights[k], 0);
+    for (int k = 0; k < 3; k++)
+        shares[k] = fmax(weights[k], 0) / sum;
+}
+
+/* Diffuses the places on the cage into weights of its vertices. */
+static struct tl_skin make_skin(const struct tl_cage *cage, const struct tl_topology *topology)
+{
+    uint32_t(*corners)[3] = tl_alloc(topology->vertex_count, sizeof *corners);
+    double(*shares)[3] = tl_alloc(topology->vertex_count, sizeof *shares);
+    for (size_t i = 0; i < topology->vertex_count; i++) {
+        const struct tl_cage_point *point = &cage->points[i];
+        const bool has_place = point->triangle != TL_NONE;
+        for (int k = 0; k < 3; k++)
+            corners[i][k] = has_place ? cage->triangles[point->triangle][k] : TL_NONE;
+        if (has_place)
+            clamp_shares(point->weights, shares[i]);
+    }
+    const struct tl_skin_source source = {.topology = topology,
+                                          .bone_count = cage->vertex_count,
+                                          .corners = (const uint32_t(*)[3])corners,
+                                          .shares = (const double(*)[3])shares};
+    struct tl_skin skin = tl_skin_make(&source);
+    free(corners);
+    free(shares);
+    return skin;
+}
+
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
 {
     const struct tl_cage *cage = &coarser->cage;
@@ -320,88 +358,11 @@ void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
     tl_cloth_mark_start(coarser->cloth);
     free(coarser->made);
     coarser->made = places_of(coarser);
-    take_offsets(coarser, cloth);
-}
-
-/* Shares of a place that are not negative: where a border was straightened it lies beside the cage. */
-static void clamp_shares(const double weights[3], double shares[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += fmax(weights[k], 0);
-    for (int k = 0; k < 3; k++)
-        shares[k] = fmax(weights[k], 0) / sum;
-}
-
-/* The share of an offset that is kept where the corners of its triangle have turned it differently: all up to
- * 45 degrees between two of them, nothing from 90 degrees on, as across a fold of the cage, where offsets of
- * either side would reach through each other. */
-static double share_of_turns(const vec3d turned[3], double length)
-{
-    double apart = 0;
-    for (int k = 0; k < 3; k++)
-        apart = fmax(apart, vec3d_distance(turned[k], turned[(k + 1) % 3]));
-    const double all = 0.765, none = 1.414; /* of the length: chords of these angles */
-    return length > 0 ? fmin(fmax((none - apart / length) / (none - all), 0), 1) : 1;
-}
-
-/* A particle's place on the cage, and its way from there. */
-struct follower {
-    vec3d flat, way;
-};
-
-/* Fills *out; returns the share of its way that the particle may go, as far as its own triangle knows. */
-static float find_way(const tl_coarser *coarser, size_t particle, const vec3d *places,
-                      const struct tl_rigid *turns, const struct tl_clearance *clearances,
-                      struct follower *out)
-{
-    const struct tl_cage_point *point = &coarser->cage.points[particle];
-    const uint32_t *v = coarser->cage.triangles[point->triangle];
-    const vec3d offset = coarser->offsets[particle];
-    double of[3];
-    vec3d turned[3];
-    clamp_shares(point->weights, of);
-    out->flat = point_of(coarser, point, places);
-    out->way = (vec3d){0};
-    for (int k = 0; k < 3; k++) {
-        turned[k] = tl_rigid_turn(&turns[v[k]], offset);
-        out->way = vec3d_muladd(out->way, turned[k], of[k]);
-    }
-    float share = (float)share_of_turns(turned, vec3d_norm(offset));
-    for (int k = 0; k < 3; k++)
-        share = fminf(share, tl_clearance_share(&clearances[v[k]], vec3d_to_float(places[v[k]]),
-                                                vec3d_to_float(out->flat), vec3d_to_float(out->way)));
-    return share;
-}
-
-static struct tl_clearance *clearances_of(const tl_coarser *coarser, const tl_collider *collider)
-{
-    const struct tl_cage *cage = &coarser->cage;
-    struct tl_clearance *of_particles = TL_NEW_ARRAY(struct tl_clearance, coarser->cloth->particles.count);
-    struct tl_clearance *clearances = TL_NEW_ARRAY(struct tl_clearance, cage->vertex_count);
-    tl_cloth_clearances(coarser->cloth, collider, of_particles);
-    for (size_t i = 0; i < 3 * cage->triangle_count; i++)
-        clearances[cage->triangles[i / 3][i % 3]] = of_particles[particle_of(coarser, i / 3, i % 3)];
-    free(of_particles);
-    return clearances;
-}
-
-/* Each of the cage's vertices has the least share of all that lies in its triangles, so that shares between
- * them change evenly, and none is larger than that of a particle itself. */
-static float *shares_at_vertices(const tl_coarser *coarser, const float *shares, size_t particle_count)
-{
-    const struct tl_cage *cage = &coarser->cage;
-    float *least = TL_NEW_ARRAY(float, cage->vertex_count);
-    for (size_t i = 0; i < cage->vertex_count; i++)
-        least[i] = 1;
-    for (size_t i = 0; i < particle_count; i++) {
-        const uint32_t triangle = cage->points[i].triangle;
-        for (int k = 0; triangle != TL_NONE && k < 3; k++) {
-            float *at = &least[cage->triangles[triangle][k]];
-            *at = fminf(*at, shares[i]);
-        }
-    }
-    return least;
+    if (!coarser->from)
+        coarser->skin = make_skin(cage, &cloth->topology);
+    const size_t count = cloth->particles.count;
+    coarser->from = tl_resize(coarser->from, count, sizeof *coarser->from);
+    memcpy(coarser->from, cloth->particles.x, count * sizeof *coarser->from);
 }
 
 void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider, struct tl_particles *particles)
@@ -409,35 +370,16 @@ void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider, s
     const struct tl_cage *cage = &coarser->cage;
     const size_t count = particles->count;
     vec3d *places = places_of(coarser);
-    struct tl_clearance *clearances = clearances_of(coarser, collider);
-    struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
-    struct follower *followers = tl_alloc(count, sizeof *followers);
-    float *shares = TL_NEW_ARRAY(float, count);
+    struct tl_rigid *motions = tl_alloc(cage->vertex_count, sizeof *motions);
+    (void)collider;
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < cage->vertex_count; i++)
-        turns[i] = turn_at(coarser, i, places);
+        motions[i] = turn_at(coarser, i, places);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < count; i++)
-        shares[i] = cage->points[i].triangle == TL_NONE
-                        ? 1
-                        : find_way(coarser, i, places, turns, clearances, &followers[i]);
-    float *least = shares_at_vertices(coarser, shares, count);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < count; i++) {
-        const struct tl_cage_point *point = &cage->points[i];
-        double of[3], share = 0;
-        if (point->triangle == TL_NONE || !(particles->w[i] > 0))
-            continue;
-        clamp_shares(point->weights, of);
-        for (int k = 0; k < 3; k++)
-            share += of[k] * (double)least[cage->triangles[point->triangle][k]];
-        particles->x[i] = vec3d_muladd(followers[i].flat, followers[i].way, share);
-    }
-    free(least);
-    free(shares);
-    free(followers);
-    free(turns);
-    free(clearances);
+        if (coarser->skin.counts[i] > 0 && particles->w[i] > 0)
+            particles->x[i] = tl_skin_point(&coarser->skin, i, motions, coarser->from[i]);
+    free(motions);
     free(places);
 }
 
