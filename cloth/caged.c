@@ -73,7 +73,7 @@ static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
         return false;
     cloth->good_x = tl_resize(cloth->good_x, count, sizeof *cloth->good_x);
     memcpy(cloth->good_x, particles->x, count * sizeof *cloth->good_x);
-    tl_coarser_follow(cloth->cage, collider, particles);
+    tl_coarser_follow(cloth->cage, collider, cloth, particles);
     for (size_t i = 0; i < count; i++)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], cloth->good_x[i]), cloth->params.frame_rate);
     cloth->grab_from = cloth->grab_target;

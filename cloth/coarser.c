@@ -3,8 +3,8 @@
 #include "assets/halfmesh/halfmesh.h"
 #include "cloth/build.h"
 #include "cloth/clearance.h"
+#include "cloth/follower.h"
 #include "cloth/mesh/rigid.h"
-#include "cloth/mesh/skin.h"
 #include "cloth/timestep.h"
 #include "config/memory.h"
 
@@ -26,8 +26,7 @@ struct tl_coarser {
     struct tl_fans fans; /* corners of the cage's triangles around each of its vertices */
     vec3d *made;         /* [cage's vertex_count] where it was made */
     vec3d *offsets;      /* [cloth's particles] from the cage, where it was made */
-    struct tl_skin skin; /* empty before tl_coarser_restart */
-    vec3d *from;         /* [cloth's particles] m, where that was */
+    tl_follower *follower; /* NULL before tl_coarser_restart */
 };
 
 /* ---- The cage ---- */
@@ -232,8 +231,7 @@ void tl_coarser_destroy(tl_coarser **handle)
     tl_fans_release(&coarser->fans);
     free(coarser->made);
     free(coarser->offsets);
-    tl_skin_release(&coarser->skin);
-    free(coarser->from);
+    tl_follower_destroy(&coarser->follower);
     free(coarser);
     *handle = NULL;
 }
@@ -308,39 +306,6 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
 
 /* ---- In motion ---- */
 
-/* Shares of a place that are not negative: where a border was straightened it lies beside the cage. */
-static void clamp_shares(const double weights[3], double shares[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += fmax(weights[k], 0);
-    for (int k = 0; k < 3; k++)
-        shares[k] = fmax(weights[k], 0) / sum;
-}
-
-/* Diffuses the places on the cage into weights of its vertices. */
-static struct tl_skin make_skin(const struct tl_cage *cage, const struct tl_topology *topology)
-{
-    uint32_t(*corners)[3] = tl_alloc(topology->vertex_count, sizeof *corners);
-    double(*shares)[3] = tl_alloc(topology->vertex_count, sizeof *shares);
-    for (size_t i = 0; i < topology->vertex_count; i++) {
-        const struct tl_cage_point *point = &cage->points[i];
-        const bool has_place = point->triangle != TL_NONE;
-        for (int k = 0; k < 3; k++)
-            corners[i][k] = has_place ? cage->triangles[point->triangle][k] : TL_NONE;
-        if (has_place)
-            clamp_shares(point->weights, shares[i]);
-    }
-    const struct tl_skin_source source = {.topology = topology,
-                                          .bone_count = cage->vertex_count,
-                                          .corners = (const uint32_t(*)[3])corners,
-                                          .shares = (const double(*)[3])shares};
-    struct tl_skin skin = tl_skin_make(&source);
-    free(corners);
-    free(shares);
-    return skin;
-}
-
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
 {
     const struct tl_cage *cage = &coarser->cage;
@@ -358,28 +323,31 @@ void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
     tl_cloth_mark_start(coarser->cloth);
     free(coarser->made);
     coarser->made = places_of(coarser);
-    if (!coarser->from)
-        coarser->skin = make_skin(cage, &cloth->topology);
-    const size_t count = cloth->particles.count;
-    coarser->from = tl_resize(coarser->from, count, sizeof *coarser->from);
-    memcpy(coarser->from, cloth->particles.x, count * sizeof *coarser->from);
+    if (!coarser->follower)
+        coarser->follower = tl_follower_create(cage, &cloth->topology);
+    tl_follower_start(coarser->follower, coarser->made, cloth->particles.x);
 }
 
-void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider, struct tl_particles *particles)
+/* By vertices of the cage, as a new array. */
+static struct tl_clearance *clearances_of(const tl_coarser *coarser, const tl_collider *collider)
 {
     const struct tl_cage *cage = &coarser->cage;
-    const size_t count = particles->count;
+    struct tl_clearance *of_particles = TL_NEW_ARRAY(struct tl_clearance, coarser->cloth->particles.count);
+    struct tl_clearance *clearances = TL_NEW_ARRAY(struct tl_clearance, cage->vertex_count);
+    tl_cloth_clearances(coarser->cloth, collider, of_particles);
+    for (size_t i = 0; i < 3 * cage->triangle_count; i++)
+        clearances[cage->triangles[i / 3][i % 3]] = of_particles[particle_of(coarser, i / 3, i % 3)];
+    free(of_particles);
+    return clearances;
+}
+
+void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const tl_cloth *cloth,
+                       struct tl_particles *particles)
+{
     vec3d *places = places_of(coarser);
-    struct tl_rigid *motions = tl_alloc(cage->vertex_count, sizeof *motions);
-    (void)collider;
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cage->vertex_count; i++)
-        motions[i] = turn_at(coarser, i, places);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < count; i++)
-        if (coarser->skin.counts[i] > 0 && particles->w[i] > 0)
-            particles->x[i] = tl_skin_point(&coarser->skin, i, motions, coarser->from[i]);
-    free(motions);
+    struct tl_clearance *clearances = clearances_of(coarser, collider);
+    tl_follower_move(coarser->follower, &(struct tl_follower_cage){places, clearances, collider, cloth->params.self_contact}, particles);
+    free(clearances);
     free(places);
 }
 
@@ -391,7 +359,7 @@ void tl_coarser_place(const tl_coarser *coarser, uint32_t particle, uint32_t cor
     shares[0] = 1, shares[1] = shares[2] = 0;
     if (point->triangle == TL_NONE)
         return;
-    clamp_shares(point->weights, clamped);
+    tl_cage_point_shares(point, clamped);
     for (int k = 0; k < 3; k++) {
         const uint32_t corner = coarser->cage.vertices[coarser->cage.triangles[point->triangle][k]];
         if (corner == particle) {
