@@ -23,9 +23,9 @@ struct tl_coarser {
     struct tl_cage cage;
     tl_garment garment; /* three vertices a triangle, as each has a rest shape of its own */
     tl_cloth *cloth;
-    struct tl_fans fans; /* corners of the cage's triangles around each of its vertices */
-    vec3d *made;         /* [cage's vertex_count] where it was made */
-    vec3d *offsets;      /* [cloth's particles] from the cage, where it was made */
+    struct tl_fans fans;   /* corners of the cage's triangles around each of its vertices */
+    vec3d *made;           /* [cage's vertex_count] where it was made */
+    vec3d *offsets;        /* [cloth's particles] from the cage, where it was made */
     tl_follower *follower; /* NULL before tl_coarser_restart */
 };
 
@@ -346,7 +346,9 @@ void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const t
 {
     vec3d *places = places_of(coarser);
     struct tl_clearance *clearances = clearances_of(coarser, collider);
-    tl_follower_move(coarser->follower, &(struct tl_follower_cage){places, clearances, collider, cloth->params.self_contact}, particles);
+    tl_follower_move(coarser->follower,
+                     &(struct tl_follower_cage){places, clearances, collider, cloth->params.self_contact},
+                     particles);
     free(clearances);
     free(places);
 }

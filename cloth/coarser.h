@@ -37,7 +37,8 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth);
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth);
 
 /* Moves the free particles of the cloth that it was made of with the coarser cloth (follower.h). */
-void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const tl_cloth *cloth, struct tl_particles *particles);
+void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const tl_cloth *cloth,
+                       struct tl_particles *particles);
 
 /* The corners of the triangle on which a particle lies, as particles of the cloth that it was made of, and
  * their shares, which are not negative; of one without a place, three times itself. */

@@ -25,12 +25,13 @@ struct tl_follower {
     struct tl_fans fans; /* corners of the cage's triangles around each of its vertices */
     struct tl_skin skin;
     struct tl_patches patches;
-    vec3d *made;   /* [cage's vertex_count] at the start */
-    vec3d *from;   /* [topology's vertex_count] the same */
-    double *kept;  /* [cage's vertex_count] share of the way from the cage */
-    bool *lowered; /* [cage's vertex_count] kept was, in this round */
-    bool *changed; /* [cage's triangle_count] one of its corners' was */
-    uint32_t *patch_of; /* [topology's triangle_count] */
+    vec3d *made;         /* [cage's vertex_count] at the start */
+    vec3d *from;         /* [topology's vertex_count] the same */
+    double *lost;        /* [cage's vertex_count] share of the way from the cage that is left out */
+    bool *raised;        /* [cage's vertex_count] it was, in this round */
+    bool *changed;       /* [cage's triangle_count] one of its corners' was */
+    size_t *first_bones; /* [cage's triangle_count + 1] of each patch, in `bones` */
+    uint32_t *bones;     /* that move its triangles */
 };
 
 void tl_cage_point_shares(const struct tl_cage_point *point, double out[3])
@@ -66,6 +67,45 @@ static struct tl_skin make_skin(const struct tl_cage *cage, const struct tl_topo
     return skin;
 }
 
+static struct tl_patches make_patches(const struct tl_cage *cage, const struct tl_topology *topology)
+{
+    uint32_t *patch_of = TL_NEW_ARRAY(uint32_t, topology->triangle_count);
+    for (size_t t = 0; t < topology->triangle_count; t++) /* corners of triangles have a place */
+        patch_of[t] = cage->points[topology->triangles[t][0]].triangle;
+    struct tl_patches patches =
+        tl_patches_make(topology, patch_of, cage->triangle_count, (const uint32_t(*)[3])cage->triangles);
+    free(patch_of);
+    return patches;
+}
+
+/* The bones of each patch, each once. */
+static void list_bones(tl_follower *follower)
+{
+    const struct tl_fans *lists = &follower->patches.lists;
+    const struct tl_skin *skin = &follower->skin;
+    const size_t count = follower->cage->triangle_count;
+    size_t *seen = TL_NEW_ARRAY(size_t, follower->cage->vertex_count), capacity = 0, listed = 0;
+    follower->first_bones = TL_NEW_ARRAY(size_t, count + 1);
+    for (size_t patch = 0; patch < count; patch++) {
+        for (uint32_t n = 3 * lists->first[patch]; n < 3 * lists->first[patch + 1]; n++) {
+            const uint32_t vertex = follower->topology->triangles[lists->items[n / 3]][n % 3];
+            for (size_t k = 0; k < skin->counts[vertex]; k++) {
+                const uint32_t bone = skin->bones[vertex][k];
+                if (seen[bone] == patch + 1)
+                    continue;
+                seen[bone] = patch + 1;
+                if (listed == capacity) {
+                    capacity = 2 * capacity + 64;
+                    follower->bones = tl_resize(follower->bones, capacity, sizeof *follower->bones);
+                }
+                follower->bones[listed++] = bone;
+            }
+        }
+        follower->first_bones[patch + 1] = listed;
+    }
+    free(seen);
+}
+
 tl_follower *tl_follower_create(const struct tl_cage *cage, const struct tl_topology *topology)
 {
     tl_follower *follower = TL_NEW(tl_follower);
@@ -74,15 +114,12 @@ tl_follower *tl_follower_create(const struct tl_cage *cage, const struct tl_topo
     follower->fans =
         tl_fans_build((const uint32_t *)cage->triangles, 3 * cage->triangle_count, cage->vertex_count);
     follower->skin = make_skin(cage, topology);
-    follower->patch_of = TL_NEW_ARRAY(uint32_t, topology->triangle_count);
-    for (size_t t = 0; t < topology->triangle_count; t++) /* all have a place: they are of triangles */
-        follower->patch_of[t] = cage->points[topology->triangles[t][0]].triangle;
-    follower->patches = tl_patches_make(topology, follower->patch_of, cage->triangle_count,
-                                        (const uint32_t(*)[3])cage->triangles);
+    follower->patches = make_patches(cage, topology);
+    list_bones(follower);
     follower->made = TL_NEW_ARRAY(vec3d, cage->vertex_count);
     follower->from = TL_NEW_ARRAY(vec3d, topology->vertex_count);
-    follower->kept = TL_NEW_ARRAY(double, cage->vertex_count);
-    follower->lowered = TL_NEW_ARRAY(bool, cage->vertex_count);
+    follower->lost = TL_NEW_ARRAY(double, cage->vertex_count);
+    follower->raised = TL_NEW_ARRAY(bool, cage->vertex_count);
     follower->changed = TL_NEW_ARRAY(bool, cage->triangle_count);
     return follower;
 }
@@ -97,10 +134,11 @@ void tl_follower_destroy(tl_follower **handle)
     tl_patches_release(&follower->patches);
     free(follower->made);
     free(follower->from);
-    free(follower->kept);
-    free(follower->lowered);
+    free(follower->lost);
+    free(follower->raised);
     free(follower->changed);
-    free(follower->patch_of);
+    free(follower->first_bones);
+    free(follower->bones);
     free(follower);
     *handle = NULL;
 }
@@ -110,7 +148,7 @@ void tl_follower_start(tl_follower *follower, const vec3d *places, const vec3d *
     memcpy(follower->made, places, follower->cage->vertex_count * sizeof *places);
     memcpy(follower->from, x, follower->topology->vertex_count * sizeof *x);
     for (size_t i = 0; i < follower->cage->vertex_count; i++)
-        follower->kept[i] = 1;
+        follower->lost[i] = 0;
 }
 
 /* ---- A frame ---- */
@@ -163,11 +201,12 @@ static vec3d flat_at(const tl_follower *follower, size_t i, const vec3d *places)
     return sum;
 }
 
-static double kept_at(const tl_follower *follower, size_t i)
+/* The share of its way from the cage that a vertex loses. */
+static double lost_at(const tl_follower *follower, size_t i)
 {
     double sum = 0;
     for (size_t k = 0; k < follower->skin.counts[i]; k++)
-        sum += follower->skin.weights[i][k] * follower->kept[follower->skin.bones[i][k]];
+        sum += follower->skin.weights[i][k] * follower->lost[follower->skin.bones[i][k]];
     return sum;
 }
 
@@ -185,36 +224,33 @@ static void place(const tl_follower *follower, const vec3d *places, const vec3d 
     for (size_t i = 0; i < particles->count; i++) {
         if (!is_moved(follower, particles, i))
             continue;
-        const double kept = kept_at(follower, i);
-        particles->x[i] = kept < 1 ? rounded(vec3d_mix(flat_at(follower, i, places), way_ends[i], kept))
-                                   : way_ends[i];
+        const double lost = lost_at(follower, i);
+        particles->x[i] =
+            lost > 0 ? rounded(vec3d_mix(way_ends[i], flat_at(follower, i, places), lost)) : way_ends[i];
     }
 }
 
-static void lower(tl_follower *follower, uint32_t triangle, double to)
+/* Leaves `share` of the ways of what moves a triangle. */
+static void shorten(tl_follower *follower, uint32_t triangle, double share)
 {
     for (int k = 0; k < 3; k++) {
         const uint32_t vertex = follower->topology->triangles[triangle][k];
         for (size_t n = 0; n < follower->skin.counts[vertex]; n++) {
             const uint32_t bone = follower->skin.bones[vertex][n];
-            if (!follower->lowered[bone])
-                follower->kept[bone] *= to;
-            follower->lowered[bone] = true;
+            if (!follower->raised[bone])
+                follower->lost[bone] = 1 - (1 - follower->lost[bone]) * share;
+            follower->raised[bone] = true;
         }
     }
 }
 
-/* All patches that a vertex of the cage moves. */
 static void mark_changed(tl_follower *follower)
 {
-    const struct tl_cage *cage = follower->cage;
-    memset(follower->changed, 0, cage->triangle_count * sizeof *follower->changed);
-    for (size_t t = 0; t < follower->topology->triangle_count; t++)
-        for (int k = 0; k < 3; k++) {
-            const uint32_t vertex = follower->topology->triangles[t][k];
-            for (size_t n = 0; n < follower->skin.counts[vertex]; n++)
-                follower->changed[follower->patch_of[t]] |= follower->lowered[follower->skin.bones[vertex][n]];
-        }
+    for (size_t patch = 0; patch < follower->cage->triangle_count; patch++) {
+        follower->changed[patch] = false;
+        for (size_t n = follower->first_bones[patch]; n < follower->first_bones[patch + 1]; n++)
+            follower->changed[patch] |= follower->raised[follower->bones[n]];
+    }
 }
 
 static void uncross(tl_follower *follower, const vec3d *places, const vec3d *way_ends,
@@ -226,9 +262,9 @@ static void uncross(tl_follower *follower, const vec3d *places, const vec3d *way
                              round > 0 ? follower->changed : NULL, &pairs);
         if (pairs.count == 0)
             break;
-        memset(follower->lowered, 0, follower->cage->vertex_count * sizeof *follower->lowered);
+        memset(follower->raised, 0, follower->cage->vertex_count * sizeof *follower->raised);
         for (size_t i = 0; i < 2 * pairs.count; i++)
-            lower(follower, pairs.pairs[i / 2][i % 2], round < HALVING_ROUNDS ? 0.5 : 0);
+            shorten(follower, pairs.pairs[i / 2][i % 2], round < HALVING_ROUNDS ? 0.5 : 0);
         mark_changed(follower);
         place(follower, places, way_ends, particles);
     }
@@ -244,7 +280,7 @@ void tl_follower_move(tl_follower *follower, const struct tl_follower_cage *cage
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < bone_count; i++) {
         motions[i] = motion_at(follower, i, cage->places);
-        follower->kept[i] = fmin(follower->kept[i] + RETURN, 1);
+        follower->lost[i] = fmax(follower->lost[i] - RETURN, 0);
     }
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < particles->count; i++)

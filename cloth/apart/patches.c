@@ -25,6 +25,7 @@ struct tl_patches tl_patches_make(const struct tl_topology *topology, const uint
                                  .corners = tl_alloc(count, sizeof *patches.corners),
                                  .lists = tl_fans_build(patch_of, topology->triangle_count, count),
                                  .boxes = TL_NEW_ARRAY(struct tl_near_box, topology->triangle_count),
+                                 .normals = TL_NEW_ARRAY(vec3s, topology->triangle_count),
                                  .bounds = TL_NEW_ARRAY(struct tl_patch_bounds, count)};
     memcpy(patches.corners, corners, count * sizeof *corners);
     for (uint32_t i = 0; i < count; i++)
@@ -37,6 +38,7 @@ void tl_patches_release(struct tl_patches *patches)
     tl_fans_release(&patches->lists);
     free(patches->corners);
     free(patches->boxes);
+    free(patches->normals);
     free(patches->bounds);
     *patches = (struct tl_patches){0};
 }
@@ -61,8 +63,8 @@ static const struct tl_near_box EMPTY = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX,
 
 static vec3d normal_of(const uint32_t triangle[3], const vec3d *x)
 {
-    const vec3d normal = vec3d_cross(vec3d_sub(x[triangle[1]], x[triangle[0]]),
-                                     vec3d_sub(x[triangle[2]], x[triangle[0]]));
+    const vec3d normal =
+        vec3d_cross(vec3d_sub(x[triangle[1]], x[triangle[0]]), vec3d_sub(x[triangle[2]], x[triangle[0]]));
     return vec3d_unit_or(normal, (vec3d){0});
 }
 
@@ -72,7 +74,7 @@ static void bound(struct tl_patches *patches, const struct tl_topology *topology
 {
     const uint32_t first = patches->lists.first[out->patch], end = patches->lists.first[out->patch + 1];
     vec3d sum = {0};
-    double lowest = 1;
+    float lowest = 1;
     out->box = EMPTY;
     for (uint32_t n = first; n < end; n++) {
         const uint32_t *v = topology->triangles[patches->lists.items[n]];
@@ -84,12 +86,15 @@ static void bound(struct tl_patches *patches, const struct tl_topology *topology
             widen(box, &corner);
         }
         widen(&out->box, box);
-        sum = vec3d_add(sum, normal_of(v, x));
+        const vec3d normal = normal_of(v, x);
+        patches->normals[n] = vec3d_to_float(normal);
+        sum = vec3d_add(sum, normal);
     }
     out->axis = vec3d_unit_or(sum, (vec3d){0});
+    const vec3s axis = vec3d_to_float(out->axis);
     for (uint32_t n = first; n < end; n++)
-        lowest = fmin(lowest, vec3d_dot(normal_of(topology->triangles[patches->lists.items[n]], x), out->axis));
-    out->angle = acos(fmax(lowest, -1));
+        lowest = fminf(lowest, glms_vec3_dot(patches->normals[n], axis));
+    out->angle = acos(fmax((double)lowest, -1));
 }
 
 static bool are_neighbours(const struct tl_patches *patches, uint32_t a, uint32_t b)
@@ -151,7 +156,8 @@ void tl_patches_crossings(struct tl_patches *patches, const struct tl_topology *
     struct tl_near_pairs *found = TL_NEW_ARRAY(struct tl_near_pairs, patches->count);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < patches->count; i++)
-        bound(patches, topology, x, &patches->bounds[i]);
+        if (!changed || changed[patches->bounds[i].patch])
+            bound(patches, topology, x, &patches->bounds[i]);
     qsort(patches->bounds, patches->count, sizeof *patches->bounds, by_height);
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t i = 0; i < patches->count; i++)

@@ -20,6 +20,7 @@ struct tl_patches {
     uint32_t (*corners)[3];         /* [count] patches with a common corner are neighbours */
     struct tl_fans lists;           /* triangles of each patch */
     struct tl_near_box *boxes;      /* [triangle_count] in the order of the lists */
+    vec3s *normals;                 /* the same */
     struct tl_patch_bounds *bounds; /* [count] */
 };
 
@@ -29,7 +30,7 @@ struct tl_patches tl_patches_make(const struct tl_topology *topology, const uint
 void tl_patches_release(struct tl_patches *patches);
 
 /* Replaces `out` by the pairs of triangles that cross at `x`, in which a patch takes part that is `changed`
- * [count]; NULL: all are. */
+ * [count], which must be all that has moved since the last call; NULL: all are. */
 void tl_patches_crossings(struct tl_patches *patches, const struct tl_topology *topology, const vec3d *x,
                           const bool *changed, struct tl_near_pairs *out);
 

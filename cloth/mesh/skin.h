@@ -29,9 +29,9 @@ struct tl_skin_source {
 
 struct tl_skin {
     size_t vertex_count;
-    uint8_t *counts;                   /* [vertex_count] bones; 0: it does not move */
-    uint32_t (*bones)[TL_SKIN_BONES];  /* [vertex_count] */
-    double (*weights)[TL_SKIN_BONES];  /* [vertex_count] their sum is 1 */
+    uint8_t *counts;                  /* [vertex_count] bones; 0: it does not move */
+    uint32_t (*bones)[TL_SKIN_BONES]; /* [vertex_count] */
+    double (*weights)[TL_SKIN_BONES]; /* [vertex_count] their sum is 1 */
 };
 
 struct tl_skin tl_skin_make(const struct tl_skin_source *source);
