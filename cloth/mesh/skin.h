@@ -4,9 +4,9 @@
  * rigidly.
  *
  * Weights: those of the places on the coarse triangles are hats, whose sides would show as creases of what
- * moves. They are diffused over the fine mesh's edges until they are about as smooth as a quadratic B-spline,
- * for which the second moment sum w_j |x - x_j|^2 is nearly constant: the motion of a surface that bends
- * evenly then has an even error, and no dents. Only the BONES_MAX largest weights of a vertex are kept,
+ * moves. They are diffused over the fine mesh's edges until the second moment sum w_j |x - x_j|^2 is nearly
+ * constant, as that of a B-spline is: the motion of a surface that bends evenly then has an even error, and
+ * no dents. Only the TL_SKIN_BONES largest weights of a vertex are kept,
  * lessened by the next one, so that a bone that comes or goes has the weight 0.
  *
  * Metres. Lifetime: plain structs that own their arrays. Threads: parallel inside, with the same results at
