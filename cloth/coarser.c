@@ -345,8 +345,8 @@ static struct tensor *mean_metrics(const tl_coarser *coarser, const tl_cloth *cl
         struct tensor metric;
         if (!metric_of(places, rest, &metric))
             continue;
-        const double area = fabs(
-            (double)glms_vec2_cross(glms_vec2_sub(rest[1], rest[0]), glms_vec2_sub(rest[2], rest[0])));
+        const double area =
+            fabs((double)glms_vec2_cross(glms_vec2_sub(rest[1], rest[0]), glms_vec2_sub(rest[2], rest[0])));
         means[on].uu += area * metric.uu;
         means[on].uv += area * metric.uv;
         means[on].vv += area * metric.vv;
@@ -354,7 +354,8 @@ static struct tensor *mean_metrics(const tl_coarser *coarser, const tl_cloth *cl
     }
     for (size_t t = 0; t < coarser->cage.triangle_count; t++)
         if (areas[t] > 0)
-            means[t] = (struct tensor){means[t].uu / areas[t], means[t].uv / areas[t], means[t].vv / areas[t]};
+            means[t] =
+                (struct tensor){means[t].uu / areas[t], means[t].uv / areas[t], means[t].vv / areas[t]};
     free(areas);
     return means;
 }
