@@ -110,6 +110,14 @@ static vec3d loop(double u, double v)
     return vec3d_add(straight, (vec3d){-0.09 * t * share, 0, 0.06 * share});
 }
 
+/* Folded flat along a side of patches, and twisted, so that its halves pass through each other from the fold
+ * on: patches that are flat, and neighbours. */
+static vec3d folded(double u, double v)
+{
+    const double past = fmax(u - 0.5, 0);
+    return (vec3d){u - 2 * past + 0.003 * v, v + 0.007 * past, 0.1 * past * (v - 0.513)};
+}
+
 static void crossings_equal_brute_force(void **state)
 {
     (void)state;
@@ -117,11 +125,8 @@ static void crossings_equal_brute_force(void **state)
         const char *name;
         vec3d (*at)(double u, double v);
         size_t at_least;
-    } cases[] = {{"crumpled", crumpled, 100},
-                 {"smooth", smooth, 0},
-                 {"eight", eight, 40},
-                 {"ring", ring, 40},
-                 {"loop", loop, 40}};
+    } cases[] = {{"crumpled", crumpled, 100}, {"smooth", smooth, 0}, {"eight", eight, 40},
+                 {"ring", ring, 40},          {"loop", loop, 40},    {"folded", folded, 10}};
     struct sheet sheet = make_sheet();
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         place(&sheet, cases[i].at);
