@@ -2,6 +2,7 @@
 
 #include "assets/halfmesh/halfmesh.h"
 #include "cloth/build.h"
+#include "cloth/cage_rest.h"
 #include "cloth/clearance.h"
 #include "cloth/follower.h"
 #include "cloth/mesh/rigid.h"
@@ -243,24 +244,6 @@ tl_cloth *tl_coarser_cloth(tl_coarser *coarser)
 
 /* ---- Carrying ---- */
 
-enum { RING = 64 };
-
-/* The rotation of a vertex's neighbourhood from where the cage was made to `places`. */
-static struct tl_rigid turn_at(const tl_coarser *coarser, size_t vertex, const vec3d *places)
-{
-    const struct tl_fans *fans = &coarser->fans;
-    vec3s from[RING], to[RING];
-    size_t count = 0;
-    for (uint32_t n = fans->first[vertex]; n < fans->first[vertex + 1]; n++) {
-        const uint32_t *v = coarser->cage.triangles[fans->items[n] / 3];
-        for (int k = 0; k < 3 && count < RING; k++) {
-            from[count] = vec3d_to_float(coarser->made[v[k]]);
-            to[count++] = vec3d_to_float(places[v[k]]);
-        }
-    }
-    return tl_rigid_fit(from, to, count);
-}
-
 /* Moves the free vertices to their places on the cage, and with `turns` by their turned offsets from there.
  */
 static void place(const tl_coarser *coarser, const vec3d *places, const struct tl_rigid *turns,
@@ -289,7 +272,7 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
     struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < cage->vertex_count; i++)
-        turns[i] = turn_at(coarser, i, places);
+        turns[i] = tl_cage_motion(cage, &coarser->fans, i, coarser->made, places);
     place(coarser, places, NULL, particles);
     const struct tl_cloth_report without = tl_cloth_measure(cloth, NULL);
     memcpy(plain, particles->x, particles->count * sizeof *plain);
@@ -306,97 +289,12 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
 
 /* ---- In motion ---- */
 
-/* A symmetric matrix in a triangle's rest plane. */
-struct tensor {
-    double uu, uv, vv;
-};
-
-/* F^T F, F the gradient from the rest shape to `places`. False for a rest shape without area. */
-static bool metric_of(const vec3d places[3], const vec2s rest[3], struct tensor *out)
-{
-    const vec2s a = glms_vec2_sub(rest[1], rest[0]), b = glms_vec2_sub(rest[2], rest[0]);
-    const double ax = (double)a.x, ay = (double)a.y, bx = (double)b.x, by = (double)b.y;
-    const double area = ax * by - ay * bx;
-    const vec3d p = vec3d_sub(places[1], places[0]), q = vec3d_sub(places[2], places[0]);
-    const vec3d u = vec3d_scale(vec3d_sub(vec3d_scale(p, by), vec3d_scale(q, ay)), 1 / area);
-    const vec3d v = vec3d_scale(vec3d_sub(vec3d_scale(q, ax), vec3d_scale(p, bx)), 1 / area);
-    *out = (struct tensor){vec3d_dot(u, u), vec3d_dot(u, v), vec3d_dot(v, v)};
-    return fabs(area) > 0;
-}
-
-/* The square root of a matrix without negative eigenvalues (Cayley & Hamilton). */
-static struct tensor root_of(struct tensor m)
-{
-    const double det = sqrt(fmax(m.uu * m.vv - m.uv * m.uv, 0)), sum = sqrt(m.uu + m.vv + 2 * det);
-    return (struct tensor){(m.uu + det) / sum, m.uv / sum, (m.vv + det) / sum};
-}
-
-/* The mean metrics of the cloth's triangles on each of the cage's; 0 where there are none. */
-static struct tensor *mean_metrics(const tl_coarser *coarser, const tl_cloth *cloth)
-{
-    struct tensor *means = TL_NEW_ARRAY(struct tensor, coarser->cage.triangle_count);
-    double *areas = TL_NEW_ARRAY(double, coarser->cage.triangle_count);
-    for (size_t t = 0; t < cloth->topology.triangle_count; t++) {
-        const uint32_t *v = cloth->topology.triangles[t];
-        const vec3d places[3] = {cloth->particles.x[v[0]], cloth->particles.x[v[1]],
-                                 cloth->particles.x[v[2]]};
-        const uint32_t on = coarser->cage.points[v[0]].triangle;
-        const vec2s *rest = cloth->rest[t];
-        struct tensor metric;
-        if (!metric_of(places, rest, &metric))
-            continue;
-        const double area =
-            fabs((double)glms_vec2_cross(glms_vec2_sub(rest[1], rest[0]), glms_vec2_sub(rest[2], rest[0])));
-        means[on].uu += area * metric.uu;
-        means[on].uv += area * metric.uv;
-        means[on].vv += area * metric.vv;
-        areas[on] += area;
-    }
-    for (size_t t = 0; t < coarser->cage.triangle_count; t++)
-        if (areas[t] > 0)
-            means[t] =
-                (struct tensor){means[t].uu / areas[t], means[t].uv / areas[t], means[t].vv / areas[t]};
-    free(areas);
-    return means;
-}
-
-/* Changes a rest shape to R^-1 S of it, R and S the roots of the metrics that it is to have and that it has:
- * then its gradient is F S^-1 R. */
-static void give_metric(struct tensor wanted, struct tensor found, vec2s rest[3])
-{
-    const struct tensor r = root_of(wanted), s = root_of(found);
-    const double det = r.uu * r.vv - r.uv * r.uv;
-    if (!(det > 0.01)) /* crushed, or nothing lies there */
-        return;
-    for (int k = 0; k < 3; k++) {
-        const double x = (double)rest[k].x, y = (double)rest[k].y;
-        const double u = s.uu * x + s.uv * y, v = s.uv * x + s.vv * y;
-        rest[k].x = (float)((r.vv * u - r.uv * v) / det);
-        rest[k].y = (float)((r.uu * v - r.uv * u) / det);
-    }
-}
-
-/* Gives the cage's triangles, which cut across folds of the cloth, rest shapes for which they are as strained
- * as the cloth is there: with the cloth's own they would spread the folds, and cloth at rest would move. Its
- * weights stay. */
+/* Lets the cage rest where the cloth does (cage_rest.h). Its weights stay. */
 static void take_rest(tl_coarser *coarser, const tl_cloth *from)
 {
-    const struct tl_cage *cage = &coarser->cage;
     tl_cloth *cloth = coarser->cloth;
     const size_t render_count = cloth->topology.render_count, count = cloth->particles.count;
-    struct tensor *wanted = mean_metrics(coarser, from);
-    for (size_t t = 0; t < cage->triangle_count; t++) {
-        vec2s *rest = &coarser->garment.pattern[3 * t];
-        vec3d places[3];
-        struct tensor found;
-        for (int k = 0; k < 3; k++) {
-            places[k] = coarser->made[cage->triangles[t][k]];
-            rest[k] = (vec2s){{cage->rest[t][k][0], cage->rest[t][k][1]}};
-        }
-        if (metric_of(places, rest, &found))
-            give_metric(wanted[t], found, rest);
-    }
-    free(wanted);
+    tl_cage_rest(&coarser->cage, from, coarser->made, coarser->garment.pattern);
     double *masses = TL_NEW_ARRAY(double, count);
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, render_count);
     memcpy(masses, cloth->energy.masses, count * sizeof *masses);

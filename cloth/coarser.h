@@ -33,7 +33,8 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth);
 
 /* ---- In motion (caged.c) ---- */
 
-/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of. */
+/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of, and is in
+ * balance there (cage_rest.h). */
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth);
 
 /* Moves the free particles of the cloth that it was made of with the coarser cloth (follower.h). */

@@ -43,6 +43,23 @@ void tl_cage_point_shares(const struct tl_cage_point *point, double out[3])
         out[k] = fmax(point->weights[k], 0) / sum;
 }
 
+enum { RING = 64 };
+
+struct tl_rigid tl_cage_motion(const struct tl_cage *cage, const struct tl_fans *fans, size_t vertex,
+                               const vec3d *before, const vec3d *now)
+{
+    vec3s from[RING], to[RING];
+    size_t count = 0;
+    for (uint32_t n = fans->first[vertex]; n < fans->first[vertex + 1]; n++) {
+        const uint32_t *v = cage->triangles[fans->items[n] / 3];
+        for (int k = 0; k < 3 && count < RING; k++) {
+            from[count] = vec3d_to_float(before[v[k]]);
+            to[count++] = vec3d_to_float(now[v[k]]);
+        }
+    }
+    return tl_rigid_fit(from, to, count);
+}
+
 /* ---- What is made once ---- */
 
 static struct tl_skin make_skin(const struct tl_cage *cage, const struct tl_topology *topology)
@@ -153,24 +170,6 @@ void tl_follower_start(tl_follower *follower, const vec3d *places, const vec3d *
 
 /* ---- A frame ---- */
 
-enum { RING = 64 };
-
-/* The motion of a vertex's neighbourhood from the start. */
-static struct tl_rigid motion_at(const tl_follower *follower, size_t vertex, const vec3d *places)
-{
-    const struct tl_fans *fans = &follower->fans;
-    vec3s from[RING], to[RING];
-    size_t count = 0;
-    for (uint32_t n = fans->first[vertex]; n < fans->first[vertex + 1]; n++) {
-        const uint32_t *v = follower->cage->triangles[fans->items[n] / 3];
-        for (int k = 0; k < 3 && count < RING; k++) {
-            from[count] = vec3d_to_float(follower->made[v[k]]);
-            to[count++] = vec3d_to_float(places[v[k]]);
-        }
-    }
-    return tl_rigid_fit(from, to, count);
-}
-
 static bool is_moved(const tl_follower *follower, const struct tl_particles *particles, size_t i)
 {
     return follower->skin.counts[i] > 0 && particles->w[i] > 0;
@@ -279,7 +278,7 @@ void tl_follower_move(tl_follower *follower, const struct tl_follower_cage *cage
     vec3d *way_ends = TL_NEW_ARRAY(vec3d, particles->count);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < bone_count; i++) {
-        motions[i] = motion_at(follower, i, cage->places);
+        motions[i] = tl_cage_motion(follower->cage, &follower->fans, i, follower->made, cage->places);
         follower->lost[i] = fmax(follower->lost[i] - RETURN, 0);
     }
 #pragma omp parallel for schedule(static)

@@ -16,12 +16,18 @@
 #include "assets/halfmesh/halfmesh.h"
 #include "cloth/clearance.h"
 #include "cloth/mesh/particles.h"
+#include "cloth/mesh/rigid.h"
 #include "cloth/mesh/topology.h"
 
 typedef struct tl_follower tl_follower;
 
 /* Shares of a place that are not negative: where a border was straightened it lies beside the cage. */
 void tl_cage_point_shares(const struct tl_cage_point *point, double out[3]);
+
+/* The motion of the neighbourhood of a cage's vertex between two arrays of its vertices' places. `fans`:
+ * corners of its triangles around each. */
+struct tl_rigid tl_cage_motion(const struct tl_cage *cage, const struct tl_fans *fans, size_t vertex,
+                               const vec3d *before, const vec3d *now);
 
 /* `cage`, of the mesh with `topology`, and that are borrowed until tl_follower_destroy. */
 tl_follower *tl_follower_create(const struct tl_cage *cage, const struct tl_topology *topology);

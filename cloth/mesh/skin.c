@@ -29,14 +29,14 @@ static uint32_t neighbour_at(const struct rings *rings, uint32_t item)
 }
 
 /* What a bone's weights spread over: vertices, by number of rounds from where they were not 0. */
-struct patch {
+struct weight_patch {
     uint32_t *slots;    /* [vertex_count] of the vertices in the patch, plus 1; else 0 */
     uint32_t *vertices; /* [slot] */
     double *now, *next; /* [slot] weights */
     size_t count;
 };
 
-static void add(struct patch *patch, uint32_t vertex, double weight)
+static void add(struct weight_patch *patch, uint32_t vertex, double weight)
 {
     if (patch->slots[vertex] == 0) {
         patch->vertices[patch->count] = vertex;
@@ -46,7 +46,7 @@ static void add(struct patch *patch, uint32_t vertex, double weight)
     patch->now[patch->slots[vertex] - 1] += weight;
 }
 
-static void widen(struct patch *patch, const struct rings *rings, size_t rounds)
+static void widen(struct weight_patch *patch, const struct rings *rings, size_t rounds)
 {
     size_t begin = 0;
     for (size_t round = 0; round < rounds; round++) {
@@ -60,7 +60,7 @@ static void widen(struct patch *patch, const struct rings *rings, size_t rounds)
     }
 }
 
-static void diffuse(struct patch *patch, const struct rings *rings)
+static void diffuse(struct weight_patch *patch, const struct rings *rings)
 {
     for (size_t i = 0; i < patch->count; i++) {
         const uint32_t v = patch->vertices[i], first = rings->fans.first[v], end = rings->fans.first[v + 1];
@@ -76,15 +76,14 @@ static void diffuse(struct patch *patch, const struct rings *rings)
     patch->next = swapped;
 }
 
-static void clear(struct patch *patch)
+static void clear(struct weight_patch *patch)
 {
     for (size_t i = 0; i < patch->count; i++)
         patch->slots[patch->vertices[i]] = 0;
     patch->count = 0;
 }
 
-/* A bone's weights. */
-struct column {
+struct bone_weights {
     size_t count;
     uint32_t *vertices;
     float *weights;
@@ -104,8 +103,8 @@ static struct spread spread_of(const struct tl_skin_source *source)
 }
 
 /* `lists`: the vertices of each bone's triangles. */
-static struct column spread_bone(const struct tl_skin_source *source, const struct rings *rings,
-                                 const struct tl_fans *lists, uint32_t bone, struct patch *patch)
+static struct bone_weights spread_bone(const struct tl_skin_source *source, const struct rings *rings,
+                                       const struct tl_fans *lists, uint32_t bone, struct weight_patch *patch)
 {
     const struct spread spread = spread_of(source);
     for (uint32_t n = lists->first[bone]; n < lists->first[bone + 1]; n++)
@@ -113,9 +112,9 @@ static struct column spread_bone(const struct tl_skin_source *source, const stru
     widen(patch, rings, spread.reach);
     for (size_t round = 0; round < spread.rounds; round++)
         diffuse(patch, rings);
-    struct column column = {.count = patch->count,
-                            .vertices = TL_NEW_ARRAY(uint32_t, patch->count),
-                            .weights = TL_NEW_ARRAY(float, patch->count)};
+    struct bone_weights column = {.count = patch->count,
+                                  .vertices = TL_NEW_ARRAY(uint32_t, patch->count),
+                                  .weights = TL_NEW_ARRAY(float, patch->count)};
     memcpy(column.vertices, patch->vertices, patch->count * sizeof *column.vertices);
     for (size_t i = 0; i < patch->count; i++)
         column.weights[i] = (float)patch->now[i];
@@ -159,7 +158,7 @@ static void take_largest(const uint32_t *all, const float *of_all, size_t count,
 }
 
 /* Turns the bones' columns into the vertices' rows. */
-static void take_rows(const struct column *columns, size_t bone_count, struct tl_skin *skin)
+static void take_rows(const struct bone_weights *columns, size_t bone_count, struct tl_skin *skin)
 {
     size_t *first = TL_NEW_ARRAY(size_t, skin->vertex_count + 2);
     for (size_t b = 0; b < bone_count; b++)
@@ -183,15 +182,15 @@ static void take_rows(const struct column *columns, size_t bone_count, struct tl
     free(first);
 }
 
-static struct patch make_patch(size_t vertex_count)
+static struct weight_patch make_patch(size_t vertex_count)
 {
-    return (struct patch){.slots = TL_NEW_ARRAY(uint32_t, vertex_count),
-                          .vertices = TL_NEW_ARRAY(uint32_t, vertex_count),
-                          .now = TL_NEW_ARRAY(double, vertex_count),
-                          .next = TL_NEW_ARRAY(double, vertex_count)};
+    return (struct weight_patch){.slots = TL_NEW_ARRAY(uint32_t, vertex_count),
+                                 .vertices = TL_NEW_ARRAY(uint32_t, vertex_count),
+                                 .now = TL_NEW_ARRAY(double, vertex_count),
+                                 .next = TL_NEW_ARRAY(double, vertex_count)};
 }
 
-static void release_patch(struct patch *patch)
+static void release_patch(struct weight_patch *patch)
 {
     free(patch->slots);
     free(patch->vertices);
@@ -223,10 +222,10 @@ struct tl_skin tl_skin_make(const struct tl_skin_source *source)
     const uint32_t(*edges)[2] = (const uint32_t(*)[2])topology->edges;
     struct rings rings = {tl_fans_build((const uint32_t *)edges, 2 * topology->edge_count, count), edges};
     struct tl_fans lists = list_places(source);
-    struct column *columns = TL_NEW_ARRAY(struct column, source->bone_count);
+    struct bone_weights *columns = TL_NEW_ARRAY(struct bone_weights, source->bone_count);
 #pragma omp parallel
     {
-        struct patch patch = make_patch(count);
+        struct weight_patch patch = make_patch(count);
 #pragma omp for schedule(dynamic, 16)
         for (uint32_t b = 0; b < source->bone_count; b++)
             columns[b] = spread_bone(source, &rings, &lists, b, &patch);
