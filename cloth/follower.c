@@ -8,9 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a body may be below a vertex before it is asked for its surface, and what is kept above that. */
-#define NEAR_M  0.003
-#define CLEAR_M 0.001
+/* What a body may be below a vertex before it is asked for its surface. */
+#define NEAR_M 0.005
+
+/* A vertex stays above a body by this share of the height of the cage's nearest vertex, so that layers keep
+ * their order there: by 1 mm where the cage lies on the body. */
+#define HEIGHT_SHARE (1.0 / 3)
 
 /* Rounds in which crossings are removed: a round halves the way from the cage of what crosses, the last ones
  * end it. */
@@ -184,9 +187,10 @@ static vec3d lift(const struct tl_follower_cage *cage, uint32_t nearest, vec3d x
     const vec3d up = vec3d_from(clearance->up);
     if (!cage->collider ||
         !((double)clearance->height_m + vec3d_dot(vec3d_sub(x, cage->places[nearest]), up) < NEAR_M) ||
-        !tl_contacts_height_asked(cage->collider, x, &at) || at.height_m >= CLEAR_M)
+        !tl_contacts_height_asked(cage->collider, x, &at))
         return x;
-    return vec3d_muladd(x, at.up, CLEAR_M - at.height_m);
+    const double kept = HEIGHT_SHARE * fmax((double)clearance->height_m, 0);
+    return vec3d_muladd(x, at.up, fmax(kept - at.height_m, 0));
 }
 
 static vec3d flat_at(const tl_follower *follower, size_t i, const vec3d *places)
@@ -215,8 +219,8 @@ static vec3d rounded(vec3d x)
     return vec3d_from(vec3d_to_float(x));
 }
 
-/* Places the particles on their way from the cage to `free`. */
-static void place(const tl_follower *follower, const vec3d *places, const vec3d *way_ends,
+/* Places the particles on their way from the cage to `way_ends`; its triangles may cut into the body. */
+static void place(const tl_follower *follower, const struct tl_follower_cage *cage, const vec3d *way_ends,
                   struct tl_particles *particles)
 {
 #pragma omp parallel for schedule(static)
@@ -224,8 +228,8 @@ static void place(const tl_follower *follower, const vec3d *places, const vec3d 
         if (!is_moved(follower, particles, i))
             continue;
         const double lost = lost_at(follower, i);
-        particles->x[i] =
-            lost > 0 ? rounded(vec3d_mix(way_ends[i], flat_at(follower, i, places), lost)) : way_ends[i];
+        const vec3d at = vec3d_mix(way_ends[i], flat_at(follower, i, cage->places), lost);
+        particles->x[i] = lost > 0 ? rounded(lift(cage, follower->skin.bones[i][0], at)) : way_ends[i];
     }
 }
 
@@ -252,7 +256,7 @@ static void mark_changed(tl_follower *follower)
     }
 }
 
-static void uncross(tl_follower *follower, const vec3d *places, const vec3d *way_ends,
+static void uncross(tl_follower *follower, const struct tl_follower_cage *cage, const vec3d *way_ends,
                     struct tl_particles *particles)
 {
     struct tl_near_pairs pairs = {0};
@@ -265,7 +269,7 @@ static void uncross(tl_follower *follower, const vec3d *places, const vec3d *way
         for (size_t i = 0; i < 2 * pairs.count; i++)
             shorten(follower, pairs.pairs[i / 2][i % 2], round < HALVING_ROUNDS ? 0.5 : 0);
         mark_changed(follower);
-        place(follower, places, way_ends, particles);
+        place(follower, cage, way_ends, particles);
     }
     tl_near_pairs_release(&pairs);
 }
@@ -286,9 +290,9 @@ void tl_follower_move(tl_follower *follower, const struct tl_follower_cage *cage
         if (is_moved(follower, particles, i))
             way_ends[i] = rounded(lift(cage, follower->skin.bones[i][0],
                                        tl_skin_point(&follower->skin, i, motions, follower->from[i])));
-    place(follower, cage->places, way_ends, particles);
+    place(follower, cage, way_ends, particles);
     if (cage->self_contact)
-        uncross(follower, cage->places, way_ends, particles);
+        uncross(follower, cage, way_ends, particles);
     free(way_ends);
     free(motions);
 }

@@ -3,7 +3,7 @@
  * 1. Each vertex moves from where it was at the start by the blended rigid motions of the cage's vertices
  *    around it (mesh/skin.h); a vertex's motion is the best fit to those of its neighbours. Wrinkles finer
  *    than the cage move along, and sides of the cage's triangles do not show.
- * 2. What comes nearer to the body than 1 mm is lifted to that.
+ * 2. What comes nearer to the body than a third of the cage's height above it is lifted to that.
  * 3. Where triangles cross (apart/patches.h), as at folds that are sharper than the cage's triangles, they
  *    approach the flat triangles of the cage, which do not cross, until they do not either; from then on they
  *    return over some frames.

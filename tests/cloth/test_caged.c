@@ -247,22 +247,20 @@ static void fine_folds_stay(void **state)
     sheet_free(&garment);
 }
 
-/* A ball is pushed up into the sheet, which bends over it. */
-static void a_body_moves_it(void **state)
+/* Pushes a body up and aside into the sheet, which bends over it. */
+static void push(const tl_mesh *body)
 {
-    (void)state;
     tl_garment garment;
     const struct tl_cloth_params params = heavy();
     tl_cloth *cloth = make_cloth(&garment, &params, false);
-    tl_mesh ball = body_sphere((vec3s){{0, 1.05f, 0.4f}}, 0.2, 32);
-    vec3s *positions = TL_NEW_ARRAY(vec3s, ball.vertex_count);
+    vec3s *positions = TL_NEW_ARRAY(vec3s, body->vertex_count);
     tl_error error = {0};
-    tl_collider *collider = tl_collider_create(&ball, false, &error);
+    tl_collider *collider = tl_collider_create(body, false, &error);
     assert_ok(collider != NULL, error);
     for (int frame = 1; frame <= FRAMES; frame++) {
-        for (size_t i = 0; i < ball.vertex_count; i++)
+        for (size_t i = 0; i < body->vertex_count; i++)
             positions[i] =
-                glms_vec3_add(ball.positions[i], (vec3s){{0.01f * (float)frame, 0.01f * (float)frame, 0}});
+                glms_vec3_add(body->positions[i], (vec3s){{0.01f * (float)frame, 0.01f * (float)frame, 0}});
         tl_collider_move(collider, positions);
         step(cloth, collider, 1);
         const struct tl_cloth_report report = tl_cloth_measure(cloth, collider);
@@ -270,10 +268,21 @@ static void a_body_moves_it(void **state)
         assert_int_equal(report.crossing_count, 0);
     }
     free(positions);
-    tl_mesh_release(&ball);
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);
     sheet_free(&garment);
+}
+
+/* A ball, and a box whose edges lie between the cage's vertices. */
+static void bodies_move_it(void **state)
+{
+    (void)state;
+    tl_mesh bodies[] = {body_sphere((vec3s){{0, 1.05f, 0.4f}}, 0.2, 32),
+                        body_box((vec3s){{0, 1.05f, 0.4f}}, (vec3s){{0.15f, 0.15f, 0.15f}}, 0.6)};
+    for (size_t i = 0; i < TL_COUNT(bodies); i++) {
+        push(&bodies[i]);
+        tl_mesh_release(&bodies[i]);
+    }
 }
 
 static void threads_make_no_difference(void **state)
@@ -345,7 +354,7 @@ int main(void)
         cmocka_unit_test(it_hangs),
         cmocka_unit_test(it_is_pulled),
         cmocka_unit_test(fine_folds_stay),
-        cmocka_unit_test(a_body_moves_it),
+        cmocka_unit_test(bodies_move_it),
         cmocka_unit_test(a_reset_repeats),
         cmocka_unit_test(others_move_themselves),
         cmocka_unit_test(threads_make_no_difference),
