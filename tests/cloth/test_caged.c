@@ -220,10 +220,19 @@ static vec3s pleated(double u, double v)
         {(float)(u * cos(angle)), (float)(1 + v), fmod(column, 2) > 0 ? (float)(edge * sin(angle)) : 0}};
 }
 
-/* Folds finer than the cage are its own shape: nothing spreads it. The cloth itself flattens them. */
-static void fine_folds_stay(void **state)
+/* kg */
+static double weight_of(const tl_cloth *cloth)
 {
-    (void)state;
+    double sum = 0;
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        sum += 1 / cloth->particles.w[i];
+    return sum;
+}
+
+/* Folds finer than the cage are its own shape: nothing spreads it. The cloth itself flattens them. `spin`:
+ * rad/s about the vertical. */
+static void keep_folds(double spin)
+{
     const struct sheet_shape shape = {.columns = SQUARES, .rows = SQUARES, .width = SIDE, .height = SIDE};
     const struct tl_cloth_fabric fabric = fabric_defaults();
     tl_garment garment = sheet_make(&shape, pleated);
@@ -236,18 +245,30 @@ static void fine_folds_stay(void **state)
     assert_near(width, SIDE * cos(25 * M_PI / 180), 0.005);
     vec3d *start = TL_NEW_ARRAY(vec3d, COUNT);
     memcpy(start, cloth->particles.x, COUNT * sizeof *start);
+    for (size_t i = 0; i < COUNT; i++)
+        cloth->particles.v[i] = (vec3d){spin * start[i].z, 0, -spin * (start[i].x - width / 2)};
     step(cloth, NULL, 5);
     const double now = vec3d_distance(cloth->particles.x[0], cloth->particles.x[SQUARES]);
     print_message("%.1f mm wide, from %.1f mm; folds changed by %.3f of %.3f\n", 1000 * now, 1000 * width,
                   crumpled_rms(cloth, start), sin(50 * M_PI / 180));
     assert_near(now, width, 0.02 * width);
     assert_true(crumpled_rms(cloth, start) < 0.1);
+    assert_near(weight_of(cloth->caged_cloth), weight_of(cloth), 0.01 * weight_of(cloth));
+    const vec3d side = vec3d_sub(cloth->particles.x[SQUARES], cloth->particles.x[0]);
+    assert_near(atan2(-side.z, side.x), spin * 5 / params.frame_rate, 0.2);
     free(start);
     tl_cloth_destroy(&cloth);
     sheet_free(&garment);
 }
 
-/* Pushes a body up and aside into the sheet, which bends over it. */
+static void fine_folds_stay(void **state)
+{
+    (void)state;
+    keep_folds(0);
+    keep_folds(6); /* a radian */
+}
+
+/* Pushes a body up and aside into the sheet, which bends over it. A reset forgets it. */
 static void push(const tl_mesh *body)
 {
     tl_garment garment;
@@ -257,6 +278,11 @@ static void push(const tl_mesh *body)
     tl_error error = {0};
     tl_collider *collider = tl_collider_create(body, false, &error);
     assert_ok(collider != NULL, error);
+    vec3d *first = TL_NEW_ARRAY(vec3d, COUNT);
+    tl_cloth_mark_start(cloth);
+    step(cloth, NULL, 1);
+    memcpy(first, cloth->particles.x, COUNT * sizeof *first);
+    tl_cloth_reset(cloth);
     for (int frame = 1; frame <= FRAMES; frame++) {
         for (size_t i = 0; i < body->vertex_count; i++)
             positions[i] =
@@ -267,6 +293,10 @@ static void push(const tl_mesh *body)
         assert_int_equal(report.inside_count, 0);
         assert_int_equal(report.crossing_count, 0);
     }
+    tl_cloth_reset(cloth);
+    step(cloth, NULL, 1);
+    assert_memory_equal(first, cloth->particles.x, COUNT * sizeof *first);
+    free(first);
     free(positions);
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);
