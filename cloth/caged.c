@@ -2,9 +2,8 @@
  *
  * A garment of 100,000 vertices takes seconds a frame when all of them are simulated. Cloth of more than
  * params.caged_above vertices is moved by a cage of CAGE_VERTICES (coarser.h), which has its weight, its pins
- * and its contacts, and which it follows; it is the cloth itself that settles. The cage does not cross
- * itself; of what follows it a few triangles may, at sharp folds. The reference solver moves every cloth
- * itself, and cloth whose seams are open moves itself until they are closed. */
+ * and its contacts, and which it follows (follower.h); it is the cloth itself that settles. The reference
+ * solver moves every cloth itself, and cloth whose seams are open moves itself until they are closed. */
 #include "cloth/advance.h"
 #include "cloth/build.h"
 #include "cloth/coarser.h"
@@ -34,6 +33,9 @@ static void make_cage(tl_cloth *cloth)
     cloth->caged_cloth = cloth->cage ? tl_coarser_cloth(cloth->cage) : NULL;
     cloth->cage_revision++;
     tl_progress_end(&progress);
+    if (cloth->cage)
+        tl_info("the garment of %zu vertices moves by a cage of %zu; cloth.caged_above=0 moves all of them",
+                cloth->topology.vertex_count, cloth->caged_cloth->topology.vertex_count);
 }
 
 /* False when no cage can be made. */
@@ -73,7 +75,7 @@ static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
         return false;
     cloth->good_x = tl_resize(cloth->good_x, count, sizeof *cloth->good_x);
     memcpy(cloth->good_x, particles->x, count * sizeof *cloth->good_x);
-    tl_coarser_follow(cloth->cage, collider, particles);
+    tl_coarser_follow(cloth->cage, collider, cloth, particles);
     for (size_t i = 0; i < count; i++)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], cloth->good_x[i]), cloth->params.frame_rate);
     cloth->grab_from = cloth->grab_target;

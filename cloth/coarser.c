@@ -2,7 +2,9 @@
 
 #include "assets/halfmesh/halfmesh.h"
 #include "cloth/build.h"
+#include "cloth/cage_rest.h"
 #include "cloth/clearance.h"
+#include "cloth/follower.h"
 #include "cloth/mesh/rigid.h"
 #include "cloth/timestep.h"
 #include "config/memory.h"
@@ -22,9 +24,10 @@ struct tl_coarser {
     struct tl_cage cage;
     tl_garment garment; /* three vertices a triangle, as each has a rest shape of its own */
     tl_cloth *cloth;
-    struct tl_fans fans; /* corners of the cage's triangles around each of its vertices */
-    vec3d *made;         /* [cage's vertex_count] where it was made */
-    vec3d *offsets;      /* [cloth's particles] from the cage, where it was made */
+    struct tl_fans fans;   /* corners of the cage's triangles around each of its vertices */
+    vec3d *made;           /* [cage's vertex_count] where it was made */
+    vec3d *offsets;        /* [cloth's particles] from the cage, where it was made */
+    tl_follower *follower; /* NULL before tl_coarser_restart */
 };
 
 /* ---- The cage ---- */
@@ -229,6 +232,7 @@ void tl_coarser_destroy(tl_coarser **handle)
     tl_fans_release(&coarser->fans);
     free(coarser->made);
     free(coarser->offsets);
+    tl_follower_destroy(&coarser->follower);
     free(coarser);
     *handle = NULL;
 }
@@ -239,24 +243,6 @@ tl_cloth *tl_coarser_cloth(tl_coarser *coarser)
 }
 
 /* ---- Carrying ---- */
-
-enum { RING = 64 };
-
-/* The rotation of a vertex's neighbourhood from where the cage was made to `places`. */
-static struct tl_rigid turn_at(const tl_coarser *coarser, size_t vertex, const vec3d *places)
-{
-    const struct tl_fans *fans = &coarser->fans;
-    vec3s from[RING], to[RING];
-    size_t count = 0;
-    for (uint32_t n = fans->first[vertex]; n < fans->first[vertex + 1]; n++) {
-        const uint32_t *v = coarser->cage.triangles[fans->items[n] / 3];
-        for (int k = 0; k < 3 && count < RING; k++) {
-            from[count] = vec3d_to_float(coarser->made[v[k]]);
-            to[count++] = vec3d_to_float(places[v[k]]);
-        }
-    }
-    return tl_rigid_fit(from, to, count);
-}
 
 /* Moves the free vertices to their places on the cage, and with `turns` by their turned offsets from there.
  */
@@ -286,7 +272,7 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
     struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < cage->vertex_count; i++)
-        turns[i] = turn_at(coarser, i, places);
+        turns[i] = tl_cage_motion(cage, &coarser->fans, i, coarser->made, places);
     place(coarser, places, NULL, particles);
     const struct tl_cloth_report without = tl_cloth_measure(cloth, NULL);
     memcpy(plain, particles->x, particles->count * sizeof *plain);
@@ -303,6 +289,22 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth)
 
 /* ---- In motion ---- */
 
+/* Lets the cage rest where the cloth does (cage_rest.h). Its weights stay. */
+static void take_rest(tl_coarser *coarser, const tl_cloth *from)
+{
+    tl_cloth *cloth = coarser->cloth;
+    const size_t render_count = cloth->topology.render_count, count = cloth->particles.count;
+    tl_cage_rest(&coarser->cage, from, coarser->made, coarser->garment.pattern);
+    double *masses = TL_NEW_ARRAY(double, count);
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, render_count);
+    memcpy(masses, cloth->energy.masses, count * sizeof *masses);
+    memcpy(weld, cloth->topology.weld, render_count * sizeof *weld);
+    tl_cloth_build_mesh(cloth, weld, count);
+    memcpy(cloth->energy.masses, masses, count * sizeof *masses);
+    free(weld);
+    free(masses);
+}
+
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
 {
     const struct tl_cage *cage = &coarser->cage;
@@ -315,65 +317,18 @@ void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
         particles->x[to] = cloth->particles.x[from];
         particles->v[to] = cloth->particles.v[from];
     }
+    free(coarser->made);
+    coarser->made = places_of(coarser);
+    take_rest(coarser, cloth);
     take_pins(coarser, cloth);
     tl_cloth_set_constants(coarser->cloth);
     tl_cloth_mark_start(coarser->cloth);
-    free(coarser->made);
-    coarser->made = places_of(coarser);
-    take_offsets(coarser, cloth);
+    if (!coarser->follower)
+        coarser->follower = tl_follower_create(cage, &cloth->topology);
+    tl_follower_start(coarser->follower, coarser->made, cloth->particles.x);
 }
 
-/* Shares of a place that are not negative: where a border was straightened it lies beside the cage. */
-static void clamp_shares(const double weights[3], double shares[3])
-{
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum += fmax(weights[k], 0);
-    for (int k = 0; k < 3; k++)
-        shares[k] = fmax(weights[k], 0) / sum;
-}
-
-/* The share of an offset that is kept where the corners of its triangle have turned it differently: all up to
- * 45 degrees between two of them, nothing from 90 degrees on, as across a fold of the cage, where offsets of
- * either side would reach through each other. */
-static double share_of_turns(const vec3d turned[3], double length)
-{
-    double apart = 0;
-    for (int k = 0; k < 3; k++)
-        apart = fmax(apart, vec3d_distance(turned[k], turned[(k + 1) % 3]));
-    const double all = 0.765, none = 1.414; /* of the length: chords of these angles */
-    return length > 0 ? fmin(fmax((none - apart / length) / (none - all), 0), 1) : 1;
-}
-
-/* A particle's place on the cage, and its way from there. */
-struct follower {
-    vec3d flat, way;
-};
-
-/* Fills *out; returns the share of its way that the particle may go, as far as its own triangle knows. */
-static float find_way(const tl_coarser *coarser, size_t particle, const vec3d *places,
-                      const struct tl_rigid *turns, const struct tl_clearance *clearances,
-                      struct follower *out)
-{
-    const struct tl_cage_point *point = &coarser->cage.points[particle];
-    const uint32_t *v = coarser->cage.triangles[point->triangle];
-    const vec3d offset = coarser->offsets[particle];
-    double of[3];
-    vec3d turned[3];
-    clamp_shares(point->weights, of);
-    out->flat = point_of(coarser, point, places);
-    out->way = (vec3d){0};
-    for (int k = 0; k < 3; k++) {
-        turned[k] = tl_rigid_turn(&turns[v[k]], offset);
-        out->way = vec3d_muladd(out->way, turned[k], of[k]);
-    }
-    float share = (float)share_of_turns(turned, vec3d_norm(offset));
-    for (int k = 0; k < 3; k++)
-        share = fminf(share, tl_clearance_share(&clearances[v[k]], vec3d_to_float(places[v[k]]),
-                                                vec3d_to_float(out->flat), vec3d_to_float(out->way)));
-    return share;
-}
-
+/* By vertices of the cage, as a new array. */
 static struct tl_clearance *clearances_of(const tl_coarser *coarser, const tl_collider *collider)
 {
     const struct tl_cage *cage = &coarser->cage;
@@ -386,57 +341,14 @@ static struct tl_clearance *clearances_of(const tl_coarser *coarser, const tl_co
     return clearances;
 }
 
-/* Each of the cage's vertices has the least share of all that lies in its triangles, so that shares between
- * them change evenly, and none is larger than that of a particle itself. */
-static float *shares_at_vertices(const tl_coarser *coarser, const float *shares, size_t particle_count)
+void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const tl_cloth *cloth,
+                       struct tl_particles *particles)
 {
-    const struct tl_cage *cage = &coarser->cage;
-    float *least = TL_NEW_ARRAY(float, cage->vertex_count);
-    for (size_t i = 0; i < cage->vertex_count; i++)
-        least[i] = 1;
-    for (size_t i = 0; i < particle_count; i++) {
-        const uint32_t triangle = cage->points[i].triangle;
-        for (int k = 0; triangle != TL_NONE && k < 3; k++) {
-            float *at = &least[cage->triangles[triangle][k]];
-            *at = fminf(*at, shares[i]);
-        }
-    }
-    return least;
-}
-
-void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider, struct tl_particles *particles)
-{
-    const struct tl_cage *cage = &coarser->cage;
-    const size_t count = particles->count;
     vec3d *places = places_of(coarser);
     struct tl_clearance *clearances = clearances_of(coarser, collider);
-    struct tl_rigid *turns = tl_alloc(cage->vertex_count, sizeof *turns);
-    struct follower *followers = tl_alloc(count, sizeof *followers);
-    float *shares = TL_NEW_ARRAY(float, count);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cage->vertex_count; i++)
-        turns[i] = turn_at(coarser, i, places);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < count; i++)
-        shares[i] = cage->points[i].triangle == TL_NONE
-                        ? 1
-                        : find_way(coarser, i, places, turns, clearances, &followers[i]);
-    float *least = shares_at_vertices(coarser, shares, count);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < count; i++) {
-        const struct tl_cage_point *point = &cage->points[i];
-        double of[3], share = 0;
-        if (point->triangle == TL_NONE || !(particles->w[i] > 0))
-            continue;
-        clamp_shares(point->weights, of);
-        for (int k = 0; k < 3; k++)
-            share += of[k] * (double)least[cage->triangles[point->triangle][k]];
-        particles->x[i] = vec3d_muladd(followers[i].flat, followers[i].way, share);
-    }
-    free(least);
-    free(shares);
-    free(followers);
-    free(turns);
+    tl_follower_move(coarser->follower,
+                     &(struct tl_follower_cage){places, clearances, collider, cloth->params.self_contact},
+                     particles);
     free(clearances);
     free(places);
 }
@@ -449,7 +361,7 @@ void tl_coarser_place(const tl_coarser *coarser, uint32_t particle, uint32_t cor
     shares[0] = 1, shares[1] = shares[2] = 0;
     if (point->triangle == TL_NONE)
         return;
-    clamp_shares(point->weights, clamped);
+    tl_cage_point_shares(point, clamped);
     for (int k = 0; k < 3; k++) {
         const uint32_t corner = coarser->cage.vertices[coarser->cage.triangles[point->triangle][k]];
         if (corner == particle) {

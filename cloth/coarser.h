@@ -33,13 +33,12 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth);
 
 /* ---- In motion (caged.c) ---- */
 
-/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of, and new offsets.
- */
+/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of, and is in
+ * balance there (cage_rest.h). */
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth);
 
-/* Moves the free ones of `particles`, of the cloth that it was made of, with the coarser cloth. Offsets are
- * shortened where they would lead through a body or through other cloth (clearance.h). */
-void tl_coarser_follow(const tl_coarser *coarser, const tl_collider *collider,
+/* Moves the free particles of the cloth that it was made of with the coarser cloth (follower.h). */
+void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const tl_cloth *cloth,
                        struct tl_particles *particles);
 
 /* The corners of the triangle on which a particle lies, as particles of the cloth that it was made of, and

@@ -1,0 +1,37 @@
+/* Crossings of a fine mesh that moves with a coarse one: a patch is what lies on one coarse triangle.
+ *
+ * A patch whose triangles face within a half space does not cross itself, nor a neighbour if both do together
+ * (Volino & Magnenat-Thalmann 1994, "Efficient self-collision detection on smoothly discretized surface
+ * animations using geometrical shape regularity"; their condition on the outline is left out). So only sharp
+ * folds are tested, and patches that are not neighbours and whose boxes overlap: smooth cloth needs one pass
+ * over its triangles.
+ *
+ * Metres. Lifetime: a plain struct that owns its arrays. Threads: parallel inside, with the same results at
+ * any number of threads. */
+#ifndef TOILE_CLOTH_APART_PATCHES_H
+#define TOILE_CLOTH_APART_PATCHES_H
+
+#include "cloth/apart/near_tree.h"
+
+struct tl_patch_bounds;
+
+struct tl_patches {
+    size_t count;
+    uint32_t (*corners)[3];         /* [count] patches with a common corner are neighbours */
+    struct tl_fans lists;           /* triangles of each patch */
+    struct tl_near_box *boxes;      /* [triangle_count] in the order of the lists */
+    vec3s *normals;                 /* the same */
+    struct tl_patch_bounds *bounds; /* [count] */
+};
+
+/* `patch_of` [triangle_count] of the fine mesh, below `count`. */
+struct tl_patches tl_patches_make(const struct tl_topology *topology, const uint32_t *patch_of, size_t count,
+                                  const uint32_t (*corners)[3]);
+void tl_patches_release(struct tl_patches *patches);
+
+/* Replaces `out` by the pairs of triangles that cross at `x`, in which a patch takes part that is `changed`
+ * [count], which must be all that has moved since the last call; NULL: all are. */
+void tl_patches_crossings(struct tl_patches *patches, const struct tl_topology *topology, const vec3d *x,
+                          const bool *changed, struct tl_near_pairs *out);
+
+#endif
