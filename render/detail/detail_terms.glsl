@@ -10,6 +10,28 @@ TERM float detail_slant(float view_z)
     return 1.0f / max(view_z, 0.05f);
 }
 
+// The smallest z component of a view direction over a surface of this curvature (1/m) with heights of this range (m). A
+// convex surface ends a ray, whose longest way is sqrt(2 depth / curvature): within twenty times the depth no limit is
+// needed.
+TERM float detail_view_floor(float curvature, float depth)
+{
+    return 0.05f * clamp(2.0f - 200.0f * curvature * depth, 0.0f, 1.0f);
+}
+
+// The height of a view ray over the circle that touches the surface, at a distance towards the eye, but for a term of the
+// height's square over the diameter.
+TERM float detail_over_circle(float view_z, float curvature, float distance)
+{
+    return distance * (view_z + 0.5f * curvature * distance);
+}
+
+// The distance at which a view ray has this height: of two the one nearer to the eye.
+TERM float detail_circle_distance(float view_z, float curvature, float height)
+{
+    float square = max(view_z * view_z + 2.0f * curvature * height, 0.0f);
+    return 2.0f * height / max(view_z + sqrt(square), 1e-6f);
+}
+
 // The same for light, without the limit, because shadows may be long. Shadows reach at most DETAIL_REACH repeats of the
 // field; their rays start DETAIL_LIFT (a fraction of the depth of the field) above the surface, against self-shadowing
 // by rounding.

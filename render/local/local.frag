@@ -125,12 +125,19 @@ bool bumpy;
 Bumps bumps;
 DetailPlace place;
 vec3 view; // towards the eye, in tangent space
+vec3 base_normal; // the interpolated normal below the visible point
 
-void find_detail(mat3 frame, float side, vec3 smooth_normal)
+void find_detail(inout mat3 frame, float side, inout vec3 smooth_normal)
 {
+    base_normal = normal;
 #ifdef DETAIL_SHIFTED
     unmoved_across = dFdx(uv);
     unmoved_down = dFdy(uv);
+#endif
+#if defined(DETAIL_CURVED) && !defined(TEXELS)
+    vec3 eyewards = direction_or(eye - point, smooth_normal);
+    unmoved_across *= detail_shortened(dFdx(point), eyewards);
+    unmoved_down *= detail_shortened(dFdy(point), eyewards);
 #endif
 #if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
     if (has_map(MAP_WEAVE))
@@ -138,9 +145,14 @@ void find_detail(mat3 frame, float side, vec3 smooth_normal)
 #endif
     view = direction_or(eye - point, smooth_normal) * frame;
 #ifdef TEXELS
-    place = DetailPlace(uv, 0.0, false);
+    place = DetailPlace(uv, 0.0, false, vec2(0.0));
 #else
-    place = detail_place(uv, view, side);
+    place = detail_place(uv, view, side, detail_bend(point, normal, frame, view, eye));
+#ifdef DETAIL_CURVED
+    base_normal = smooth_normal = detail_turned(frame, smooth_normal, place);
+    frame = detail_frame(smooth_normal, tangent);
+    view = direction_or(eye - point, smooth_normal) * frame;
+#endif
 #endif
     sew(first_triangle + uint(gl_PrimitiveID), place.uv, dFdx(uv), dFdy(uv));
     bumpy = has_bumps(tangent);
@@ -166,13 +178,13 @@ float plane_side(float side)
 vec3 bumped_normal(vec3 smooth_normal)
 {
     if (!bumpy)
-        return normal;
+        return base_normal;
 #if DETAIL_MODE == DETAIL_BLINN
     if (detail_range.z > 0.0)
         return detail_blinn(bumps.normal, smooth_normal, point, uv);
 #endif
     vec3 mapped = bumps.normal;
-    return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(normal, tangent.xyz) + mapped.z * normal;
+    return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(base_normal, tangent.xyz) + mapped.z * base_normal;
 }
 
 // `facing` is the cosine of the light with the normal without bumps.

@@ -1,5 +1,5 @@
 /* Fabric detail: heights as normals, parallax and relief, their shadows, and weaves too fine to be seen. Ids
- * C1 to C8, and C12. */
+ * C1 to C8, C12 and C13. */
 #include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY  WOVEN("8", "2")
@@ -120,6 +120,15 @@ static const struct tl_technique lit_textures[] = {
      .id = "C12",
      SET(TEXTURE_SPACE("2048"), BY_MATRIX, POWER_8_BIT)},
     {.picture = "2048 texels, each texel's own vectors", .id = "C12", SET(TEXTURE_SPACE("2048"))},
+};
+
+/* Relief at outlines. */
+#define CURVED(steps) "detail.curved=true", "detail.steps=" steps
+static const struct tl_technique outlines[] = {
+    {.picture = "curved, 32 steps", .golden = "detail_curved", .id = "C13", SET(CURVED("32"))},
+    {.picture = "as on planes", .id = "C13", SET("detail.curved=false")},
+    {.picture = "curved, 16 steps", .id = "C13", SET(CURVED("16"))},
+    {.picture = "curved, 64 steps", .id = "C13", SET(CURVED("64"))},
 };
 
 static const struct tl_experiment_appearance threads[] = {
@@ -274,5 +283,23 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {"shading.space=world", "shading.coordinates=pixel"}},
      .ids = {"C12"},
      TECHNIQUES(lit_textures)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "c13",
+     .scene = "gallery",
+     .title = "C13  Relief at outlines",
+     .text = "View rays bend with the surface, by the turn of its normals within each triangle, and what "
+             "they pass "
+             "over is left out, so that the outline is that of the relief. Heights above the mesh end at the "
+             "mesh's outline.",
+     .exact_text =
+         "512 steps of the same march, whose outlines on a displaced cylinder are those of traced rays "
+         "but for 3 to 5 % of the pixels that planes have wrong (test curved_relief)",
+     .claims = {{"curved, 32 steps", "as on planes", "[004]"},
+                {"curved, 64 steps", "curved, 16 steps", "[004]"}},
+     .solid = "torus",
+     .base = {LAMPLIT, WOVEN("24", "12"), "weave.texels_per_yarn=16", "detail.mode=relief"},
+     .reference = {.assignments = {CURVED("512"), "detail.refine=16"}},
+     .ids = {"C13"},
+     TECHNIQUES(outlines)},
 };
 const struct tl_experiment_list tl_detail_experiments = {experiments, TL_COUNT(experiments)};
