@@ -188,7 +188,7 @@ DetailPlace detail_curved(vec2 uv, vec3 view, float side, float level, vec2 turn
 {
     vec2 bounds = detail_bounds(side);
     float k = side * dot(turn, view.xy) / max(dot(view.xy, view.xy), 1e-6);
-    float z = max(side * view.z, detail_view_floor(k, bounds.y - bounds.x));
+    float z = max(side * view.z, 0.05);
     DetailCurve ray = DetailCurve(uv, view.xy, turn, z, k, side, level);
     bool passes = k > 0.0 && z * z + 2.0 * k * bounds.x < 0.0, starts_below = z * z + 2.0 * k * bounds.y < 0.0;
     float above = starts_below ? -z / k : detail_circle_distance(z, k, bounds.y);

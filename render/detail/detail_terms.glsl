@@ -10,14 +10,6 @@ TERM float detail_slant(float view_z)
     return 1.0f / max(view_z, 0.05f);
 }
 
-// The smallest z component of a view direction over a surface of this curvature (1/m) with heights of this range (m). A
-// convex surface ends a ray, whose longest way is sqrt(2 depth / curvature): within twenty times the depth no limit is
-// needed.
-TERM float detail_view_floor(float curvature, float depth)
-{
-    return 0.05f * clamp(2.0f - 200.0f * curvature * depth, 0.0f, 1.0f);
-}
-
 // The height of a view ray over the circle that touches the surface, at a distance towards the eye, but for a term of the
 // height's square over the diameter.
 TERM float detail_over_circle(float view_z, float curvature, float distance)

@@ -297,7 +297,7 @@ static const struct tl_experiment experiments[] = {
      .claims = {{"curved, 32 steps", "as on planes", "[004]"},
                 {"curved, 64 steps", "curved, 16 steps", "[004]"}},
      .solid = "torus",
-     .base = {LAMPLIT, WOVEN("24", "12"), "weave.texels_per_yarn=16", "detail.mode=relief"},
+     .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief"},
      .reference = {.assignments = {CURVED("512"), "detail.refine=16"}},
      .ids = {"C13"},
      TECHNIQUES(outlines)},
