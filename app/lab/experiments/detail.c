@@ -287,13 +287,13 @@ static const struct tl_experiment experiments[] = {
      .name = "c13",
      .scene = "gallery",
      .title = "C13  Relief at outlines",
-     .text = "View rays bend with the surface, by the turn of its normals within each triangle, and what "
-             "they pass "
-             "over is left out, so that the outline is that of the relief. Heights above the mesh end at the "
-             "mesh's outline.",
-     .exact_text =
-         "512 steps of the same march, whose outlines on a displaced cylinder are those of traced rays "
-         "but for 3 to 5 % of the pixels that planes have wrong (test curved_relief)",
+     .text =
+         "View rays bend with the surface, by the turn of its normals within each triangle, and what they "
+         "pass "
+         "over is left out, so that the outline is that of the relief. Heights above the mesh end at the "
+         "mesh's outline. On a displaced cylinder the outline is that of traced rays but for 0 to 5 % of the "
+         "pixels that planes have wrong (test curved_relief).",
+     .exact_text = "512 steps of the same march",
      .claims = {{"curved, 32 steps", "as on planes", "[004]"},
                 {"curved, 64 steps", "curved, 16 steps", "[004]"}},
      .solid = "torus",
