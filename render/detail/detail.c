@@ -62,7 +62,7 @@ bool tl_detail_wants_heights(const struct tl_detail_params *params)
 
 bool tl_detail_wants_cones(const struct tl_detail_params *params)
 {
-    return params->mode == TL_DETAIL_RELIEF;
+    return params->mode == TL_DETAIL_RELIEF && !params->curved;
 }
 
 bool tl_detail_wants_horizons(const struct tl_detail_params *params)
@@ -99,10 +99,12 @@ void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t 
     if (!params)
         return;
     bool shifts = params->mode >= TL_DETAIL_PARALLAX,
-         clips = params->mode == TL_DETAIL_RELIEF && params->silhouette;
+         clips = params->mode == TL_DETAIL_RELIEF && params->silhouette,
+         curves = params->mode == TL_DETAIL_RELIEF && params->curved;
     snprintf(out, size,
              "#define DETAIL_MODE %d\n#define DETAIL_SHADOW %d\n#define DETAIL_ANGLES %d\n"
-             "#define DETAIL_MINIFY %d\n%s%s",
+             "#define DETAIL_MINIFY %d\n%s%s%s",
              params->mode, params->shadow, tl_detail_angle_count(params), params->minify,
-             shifts ? "#define DETAIL_SHIFTED\n" : "", clips ? "#define DETAIL_CLIPPED\n" : "");
+             shifts ? "#define DETAIL_SHIFTED\n" : "", clips ? "#define DETAIL_CLIPPED\n" : "",
+             curves ? "#define DETAIL_CURVED\n" : "");
 }

@@ -34,12 +34,14 @@ bool has_detail(int map)
     return (detail_flags & map) != 0;
 }
 
-// The visible point of a surface: displaced UV, height there on the visible side, and whether it lies beyond the end of
-// the field.
+// The visible point of a surface: displaced UV, height there on the visible side, and whether nothing is visible: the
+// point lies beyond the end of the field, or the view ray leaves the field. `tilt` is added to the front's normal in
+// tangent space where the surface turns on the way.
 struct DetailPlace {
     vec2 uv;
     float height;
     bool outside;
+    vec2 tilt;
 };
 
 vec2 detail_field_uv(vec2 uv)
@@ -112,7 +114,107 @@ vec2 detail_bounds(float side)
 }
 #endif
 
-#if DETAIL_MODE == DETAIL_RELIEF
+#ifdef DETAIL_CURVED
+// How the front's normal turns on the way along a direction of the tangent plane, per metre of it: the change of interpolated
+// normals within the triangle, in tangent space. Point and normal come as they are interpolated, linear over the triangle,
+// for at an outline the neighbours of a pixel lie far beyond it.
+vec2 detail_turn(vec3 point, vec3 normal, mat3 frame, vec2 direction)
+{
+    vec3 along = frame * vec3(direction, 0.0), across = dFdx(point), down = dFdy(point);
+    float aa = dot(across, across), ad = dot(across, down), dd = dot(down, down), area = aa * dd - ad * ad;
+    if (!(area > 1e-6 * aa * dd))
+        return vec2(0.0);
+    float a = dot(across, along), d = dot(down, along);
+    vec3 turn = ((dd * a - ad * d) * dFdx(normal) + (aa * d - ad * a) * dFdy(normal)) / area;
+    return (turn * frame).xy / max(length(normal), 0.1);
+}
+
+// Width of a pixel at a point, across the view, m.
+float detail_pixel_m(vec3 point, vec3 eye)
+{
+    vec3 v = normalize(eye - point), across = dFdx(point), down = dFdy(point);
+    across -= v * dot(v, across);
+    down -= v * dot(v, down);
+    return sqrt(max(dot(across, across), dot(down, down)));
+}
+
+// How much of a step of UV to a neighbouring pixel bumps take that are turned towards the viewer: they are at most twice as
+// long as they are wide.
+float detail_shortened(vec3 step, vec3 v)
+{
+    float square = dot(step, step), along = dot(v, step);
+    return square > 0.0 ? min(2.0 * sqrt(max(1.0 - along * along / square, 0.0)), 1.0) : 1.0;
+}
+
+// The mip level of the field for bumps that face the viewer, as those at an outline do, where the mesh does not.
+float detail_facing_level(float pixel_m)
+{
+    vec2 size = vec2(textureSize(detail_heights, 0)) / detail_range.z;
+    vec2 u = vec2(detail_rows[0].x, detail_rows[1].x) * size, v = vec2(detail_rows[0].y, detail_rows[1].y) * size;
+    return 0.5 * log2(max(max(dot(u, u), dot(v, v)) * pixel_m * pixel_m, 1.0));
+}
+
+// A view ray over a curved surface.
+struct DetailCurve {
+    vec2 uv, view, turn; // on the mesh; tangential part of the direction to the eye; how the normal turns along it
+    float z, curvature, side, level;
+};
+
+// The way along the surface to below the ray. On a circle of radius r it is r asin(x / (r + h)): its first three powers, where
+// x / r is how the normal turns.
+vec2 detail_curve_way(DetailCurve ray, float distance)
+{
+    float height = detail_over_circle(ray.z, ray.curvature, distance);
+    float bent = distance * distance * ray.side * dot(ray.turn, ray.view) / 6.0 - height;
+    return distance * (ray.view + ray.side * bent * ray.turn);
+}
+
+vec2 detail_curve_uv(DetailCurve ray, float distance)
+{
+    vec2 way = detail_curve_way(ray, distance);
+    return ray.uv + vec2(way.x, -way.y) / detail_range.z;
+}
+
+float detail_curve_clearance(DetailCurve ray, float distance)
+{
+    float stands = ray.side * textureLod(detail_heights, detail_field_uv(detail_curve_uv(ray, distance)), ray.level).r;
+    return detail_over_circle(ray.z, ray.curvature, distance) - stands;
+}
+
+// Relief over the circle that touches the surface along the view: equal steps from the top of the field until the ray is
+// below it, then bisection. A ray that leaves at the top hits nothing. Nor does one to the back of cloth that does not come
+// from above the field there: it came through the front, which it did not hit.
+DetailPlace detail_curved(vec2 uv, vec3 view, float side, float level, vec2 turn)
+{
+    vec2 bounds = detail_bounds(side);
+    float k = side * dot(turn, view.xy) / max(dot(view.xy, view.xy), 1e-6);
+    float z = max(side * view.z, 0.05);
+    DetailCurve ray = DetailCurve(uv, view.xy, turn, z, k, side, level);
+    bool passes = k > 0.0 && z * z + 2.0 * k * bounds.x < 0.0, starts_below = z * z + 2.0 * k * bounds.y < 0.0;
+    float above = starts_below ? -z / k : detail_circle_distance(z, k, bounds.y);
+    float last = passes ? -2.0 * z / k - above : detail_circle_distance(z, k, bounds.x);
+    float first = above, below = above, over = detail_curve_clearance(ray, above), under = over;
+    for (int i = 1; i <= detail_steps.x && under > 0.0; i++) {
+        above = below;
+        over = under;
+        below = mix(first, last, float(i) / float(detail_steps.x));
+        under = detail_curve_clearance(ray, below);
+    }
+    bool misses = (passes && under > 0.0) || (starts_below && side < 0.0);
+    for (int i = 0; i < detail_steps.y; i++) {
+        float middle = 0.5 * (above + below), left = detail_curve_clearance(ray, middle);
+        bool is_under = left <= 0.0;
+        above = is_under ? above : middle;
+        over = is_under ? over : left;
+        below = is_under ? middle : below;
+        under = is_under ? left : under;
+    }
+    float span = over - under, hit = span > 0.0 ? above + (below - above) * min(over / span, 1.0) : above;
+    return DetailPlace(detail_curve_uv(ray, hit), detail_over_circle(z, k, hit), misses, hit * turn);
+}
+#endif
+
+#if DETAIL_MODE == DETAIL_RELIEF && !defined(DETAIL_CURVED)
 // The height at which a ray through uv on the mesh hits the field, as in tl_field_relief.
 float detail_hit(vec2 uv, vec2 along, float side, float level)
 {
@@ -146,10 +248,27 @@ float detail_hit(vec2 uv, vec2 along, float side, float level)
 }
 #endif
 
-// The visible point. `view` points to the eye in the tangent space of the front; `side` is -1 for a back face.
-DetailPlace detail_place(vec2 uv, vec3 view, float side)
+// For relief that bends: the turn of the normal along the view, and the width of a pixel.
+vec3 detail_bend(vec3 point, vec3 normal, mat3 frame, vec3 view, vec3 eye)
 {
-    DetailPlace place = DetailPlace(uv, 0.0, false);
+#ifdef DETAIL_CURVED
+    return vec3(detail_turn(point, normal, frame, view.xy), detail_pixel_m(point, eye));
+#else
+    return vec3(0.0);
+#endif
+}
+
+// The smooth normal below the visible point.
+vec3 detail_turned(mat3 frame, vec3 smooth_normal, DetailPlace place)
+{
+    return normalize(smooth_normal + frame * vec3(place.tilt, 0.0));
+}
+
+// The visible point. `view` points to the eye in the tangent space of the front; `side` is -1 for a back face; `bend`
+// is that of detail_bend.
+DetailPlace detail_place(vec2 uv, vec3 view, float side, vec3 bend)
+{
+    DetailPlace place = DetailPlace(uv, 0.0, false, vec2(0.0));
 #if DETAIL_MODE >= DETAIL_PARALLAX || DETAIL_SHADOW == DETAIL_SHADOW_RELIEF
     if (has_detail(DETAIL_HEIGHTS)) {
         float level = detail_level(uv);
@@ -158,6 +277,9 @@ DetailPlace detail_place(vec2 uv, vec3 view, float side)
         place.uv += height * detail_along(view, side);
 #elif DETAIL_MODE == DETAIL_PARALLAX_LIMITED
         place.uv += height * vec2(view.x, -view.y) / detail_range.z;
+#elif defined(DETAIL_CURVED)
+        place = detail_curved(uv, view, side, detail_facing_level(bend.z), bend.xy);
+        height = place.height;
 #elif DETAIL_MODE == DETAIL_RELIEF
         vec2 along = detail_along(view, side);
         height = detail_hit(uv, along, side, level);
@@ -166,7 +288,7 @@ DetailPlace detail_place(vec2 uv, vec3 view, float side)
         place.height = height;
 #ifdef DETAIL_CLIPPED
         vec2 at = detail_field_uv(place.uv), beyond = abs(at - 0.5);
-        place.outside = (has_detail(DETAIL_CLAMP_U) && !(beyond.x <= 0.5)) || (has_detail(DETAIL_CLAMP_V) && !(beyond.y <= 0.5));
+        place.outside = place.outside || (has_detail(DETAIL_CLAMP_U) && !(beyond.x <= 0.5)) || (has_detail(DETAIL_CLAMP_V) && !(beyond.y <= 0.5));
 #endif
     }
 #endif

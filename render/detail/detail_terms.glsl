@@ -10,6 +10,20 @@ TERM float detail_slant(float view_z)
     return 1.0f / max(view_z, 0.05f);
 }
 
+// The height of a view ray over the circle that touches the surface, at a distance towards the eye, but for a term of the
+// height's square over the diameter.
+TERM float detail_over_circle(float view_z, float curvature, float distance)
+{
+    return distance * (view_z + 0.5f * curvature * distance);
+}
+
+// The distance at which a view ray has this height: of two the one nearer to the eye.
+TERM float detail_circle_distance(float view_z, float curvature, float height)
+{
+    float square = max(view_z * view_z + 2.0f * curvature * height, 0.0f);
+    return 2.0f * height / max(view_z + sqrt(square), 1e-6f);
+}
+
 // The same for light, without the limit, because shadows may be long. Shadows reach at most DETAIL_REACH repeats of the
 // field; their rays start DETAIL_LIFT (a fraction of the depth of the field) above the surface, against self-shadowing
 // by rounding.

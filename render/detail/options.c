@@ -26,6 +26,10 @@ static const struct tl_option rows[] = {
                     "factor on the heights of weaves and height maps"),
     TL_OPTION_BOOL(params, silhouette, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL,
                    "relief: clips the surface beyond the border of a map that does not repeat"),
+    TL_OPTION_BOOL(
+        params, curved, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL,
+        "relief: view rays follow the curvature of the surface, so that its outline shows the heights "
+        "below the mesh; steps are equal, without cones"),
     TL_OPTION_ENUM(params, minify, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, minify_names,
                    "widening of the gloss by bumps smaller than a pixel; none: they vanish, and distant "
                    "cloth looks like plastic"),

@@ -30,6 +30,7 @@ struct tl_detail_params { /* table "detail" */
     int angles;           /* enum tl_detail_angles */
     float height_scale;
     bool silhouette; /* relief ends at the border of a map that does not repeat */
+    bool curved;     /* relief follows the curvature of the surface, and shows at its outline */
     int minify;      /* enum tl_detail_minify */
     char normals[TL_STRING_SIZE], heights[TL_STRING_SIZE]; /* files of maps of the garment, or "" */
 };

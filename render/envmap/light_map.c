@@ -6,6 +6,7 @@
 #include "render/envmap/light_map_bake.h"
 #include "render/gbuffer/gbuffer.h"
 #include "render/gpu/shaders.h"
+#include "render/surfaces/uv_texels.h"
 
 #include <epoxy/gl.h>
 
@@ -39,14 +40,6 @@ bool tl_light_map_reload(struct tl_light_map *map, tl_error *error)
 size_t tl_light_map_bytes(const struct tl_light_map *map)
 {
     return tl_texture_bytes(&map->texture) + map->buffer_bytes + tl_target_bytes(&map->target);
-}
-
-bool tl_light_map_fits(const tl_surface *surface, int side)
-{
-    uint32_t *triangles = tl_light_map_triangles(surface, side);
-    bool fits = triangles != NULL;
-    free(triangles);
-    return fits;
 }
 
 static vec3s weighted(const vec3s *vectors, const uint32_t *corners, vec3s weights)
@@ -87,13 +80,13 @@ static float *bake_texels(const struct tl_reference_scene *scene, int directions
     size_t texels = (size_t)side * (size_t)side, count = 0;
     float *light = TL_NEW_ARRAY(float, 8 * texels);
     struct tl_baked_point *points = TL_NEW_ARRAY(struct tl_baked_point, 2 * texels);
-    tl_light_map_frame(surface, &place->low, &place->extent);
+    tl_uv_texels_box(surface, &place->low, &place->extent);
     for (size_t i = 0; i < 2 * texels; i++) {
         int texel = (int)(i % texels);
         if (!triangles[texel])
             continue;
         vec3s weights =
-            tl_light_map_weights(surface, triangles[texel] - 1, place->low, place->extent, side, texel);
+            tl_uv_texels_weights(surface, triangles[texel] - 1, place->low, place->extent, side, texel);
         points[count++] =
             point_of(surface, triangles[texel] - 1, weights, i < texels ? 1 : -1, scene->offset_m, i);
     }
@@ -135,7 +128,7 @@ struct bake {
 static void bake_surface(struct bake *bake, const tl_surface *surface, struct tl_light_map_place *place,
                          float **texels)
 {
-    uint32_t *triangles = tl_light_map_triangles(surface, bake->side);
+    uint32_t *triangles = tl_uv_texels_triangles(surface, bake->side);
     *place = (struct tl_light_map_place){.layer = -1,
                                          .extent = {{1, 1}},
                                          .first_vertex = bake->vertex_count,
@@ -205,7 +198,7 @@ bool tl_light_map_bake(struct tl_light_map *map, tl_gpu *gpu, const struct tl_re
     return fine || tl_fail(error, TL_INTERRUPTED, "light maps: interrupted while they were baked");
 }
 
-/* UVs to places in the texture, for the middles of texels that tl_light_map_weights has. */
+/* UVs to places in the texture, for the middles of texels that tl_uv_texels_weights has. */
 static void set_frame(const struct tl_light_map_place *place, int side)
 {
     float half = 0.5f / (float)side, inner = (float)(side > 1 ? side - 1 : 1) / (float)side;

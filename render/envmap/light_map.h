@@ -38,8 +38,6 @@ void tl_light_map_release(struct tl_light_map *map);
 bool tl_light_map_reload(struct tl_light_map *map, tl_error *error);
 size_t tl_light_map_bytes(const struct tl_light_map *map);
 
-/* Whether every point of the surface has a place of its own in UV, as far as texels of 1 / side tell. */
-bool tl_light_map_fits(const tl_surface *surface, int side);
 /* Bakes the frame of the request, whose view is not used, with this many texels a side and as many directions
  * as its strata; prints what was baked. Errors: TL_DEVICE if the BVH cannot be built, TL_INTERRUPTED. */
 bool tl_light_map_bake(struct tl_light_map *map, tl_gpu *gpu, const struct tl_reference_request *request,

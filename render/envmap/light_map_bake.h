@@ -12,14 +12,6 @@ struct tl_baked_point {
     size_t at; /* index of its light */
 };
 
-/* The box of a surface's UVs; an extent is never 0. */
-void tl_light_map_frame(const tl_surface *surface, vec2s *low, vec2s *extent);
-/* The triangle that covers the middle of each of side x side texels, plus 1; 0: none. NULL when triangles
- * overlap: then some texel would stand for several points. Freed by the caller. */
-uint32_t *tl_light_map_triangles(const tl_surface *surface, int side);
-/* The barycentric coordinates of a texel's middle in a triangle. */
-vec3s tl_light_map_weights(const tl_surface *surface, uint32_t triangle, vec2s low, vec2s extent, int side,
-                           int texel);
 /* Gathers E(normal, 1), the mean of the light about the normal by its cosine, shadowed. light[4 at]: RGB, 1.
  * An interrupt (config/interrupt.h) leaves out the rest. */
 void tl_light_map_gather(const struct tl_reference_scene *scene, int directions,

@@ -306,6 +306,7 @@ bool tl_run_lamps(const struct tl_lamps_job *job, tl_error *error)
                                              .light = &job->light->target,
                                              .view = &job->shift->view,
                                              .surfaces = job->surfaces,
+                                             .drawn = job->shapes->drawn,
                                              .surface_count = job->shapes->drawn_count,
                                              .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                              .casters = *job->casters,

@@ -81,13 +81,24 @@ void main()
     unmoved_across = across;
     unmoved_down = down;
 #endif
+#ifdef DETAIL_CURVED
+    vec3 to_eye = direction_or(eye - point, smooth_normal);
+    unmoved_across *= detail_shortened(dFdx(point), to_eye);
+    unmoved_down *= detail_shortened(dFdy(point), to_eye);
+#endif
 #if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
     if (has_map(MAP_WEAVE))
         weave_slopes = detail_slope_factors(point, uv);
 #endif
     mat3 frame = detail_frame(smooth_normal, tangent);
     vec3 view = direction_or(eye - point, smooth_normal) * frame;
-    DetailPlace place = detail_place(uv, view, side);
+    DetailPlace place = detail_place(uv, view, side, detail_bend(point, normal, frame, view, eye));
+    vec3 base_normal = normal;
+#ifdef DETAIL_CURVED
+    base_normal = smooth_normal = detail_turned(frame, smooth_normal, place);
+    frame = detail_frame(smooth_normal, tangent);
+    view = direction_or(eye - point, smooth_normal) * frame;
+#endif
     vec4 colour = surface_colour(place.uv);
     if (place.outside || (material_scalars.w > 0.0 && surface_cut_away(colour.a)))
         discard;
@@ -111,9 +122,9 @@ void main()
         Bumps bumps = bumps_at(place.uv);
 #if DETAIL_MODE == DETAIL_BLINN
         n = side * (detail_range.z > 0.0 ? detail_blinn(bumps.normal, smooth_normal, point, uv)
-                                         : bent_normal(bumps.normal, normal, tangent, smooth_normal));
+                                         : bent_normal(bumps.normal, base_normal, tangent, smooth_normal));
 #else
-        n = side * bent_normal(bumps.normal, normal, tangent, smooth_normal);
+        n = side * bent_normal(bumps.normal, base_normal, tangent, smooth_normal);
 #endif
 #ifdef FRAMES
         out_widening = vec4(detail_widenings(own_rough, rough, bumps), 0.0);

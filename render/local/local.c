@@ -33,7 +33,10 @@ enum {
     THREAD_RATIOS = 90,
     LAMP_FUZZ_FOLLOW = 93,
     TABLE_AXES = 94, /* four */
-    MEASURED_DIFFUSE = 98
+    MEASURED_DIFFUSE = 98,
+    CHART,
+    LIT_SCALE,
+    TEXEL_SIDE
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -44,13 +47,16 @@ enum {
     POWER_UNIT = 23,
     PRODUCT_UNIT,
     EMISSION_UNIT,
-    TABLE_3_UNIT
+    TABLE_3_UNIT,
+    LIT_UNIT,
+    LIT_COVER_UNIT
 };
 
 /* The work of one draw call: everything, or its part of several passes. */
 struct pass {
     int first, last;    /* tables to multiply; none when last < first */
     const char *define; /* or NULL */
+    float texel_side;   /* of TEXELS: 1 for the front, -1 for the back */
 };
 
 /* A part of a surface, a lamp, and the resources of shading. */
@@ -60,6 +66,8 @@ struct lit_part {
     enum tl_lamp_shadow shadow;
     const struct tl_gloss_tables *tables; /* NULL: the formula */
     const tl_texture *power;              /* of POWER_TABLE */
+    const struct tl_lit_chart *chart;     /* NULL: not lit in texture space */
+    float lit_scale;                      /* the largest gloss of its texels, if that is known */
 };
 
 void tl_local_reload(struct tl_local *local)
@@ -79,12 +87,14 @@ void tl_local_release(struct tl_local *local)
     tl_lamp_shadows_release(&local->shadows);
     tl_table_textures_release(&local->tables);
     tl_target_destroy(&local->product);
+    tl_lit_texture_release(&local->lit);
     *local = (struct tl_local){0};
 }
 
 size_t tl_local_bytes(const struct tl_local *local)
 {
-    return tl_table_textures_bytes(&local->tables) + tl_target_bytes(&local->product);
+    return tl_table_textures_bytes(&local->tables) + tl_target_bytes(&local->product) +
+           tl_lit_texture_bytes(&local->lit);
 }
 
 static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
@@ -193,6 +203,16 @@ static void set_view(const struct tl_view *view)
     glUniform3fv(EYE, 1, view->eye.raw);
 }
 
+static vec3s constant_eye(const struct tl_local_request *request)
+{
+    return glms_vec3_negate(glms_vec3_normalize(request->view->forward));
+}
+
+static vec3s constant_lamp(const struct tl_local_request *request, size_t index)
+{
+    return tl_lamp_at(&request->lamps[index], request->casters.centre, constant_eye(request)).direction;
+}
+
 static void set_lamp(const struct tl_local *local, const struct tl_local_request *request, size_t index)
 {
     const struct tl_lamp *lamp = &request->lamps[index];
@@ -200,14 +220,13 @@ static void set_lamp(const struct tl_local *local, const struct tl_local_request
     const struct tl_ground *ground = request->ground;
     bool is_point = lamp->kind == TL_LAMP_POINT;
     vec3s place = is_point ? lamp->position : glms_vec3_normalize(lamp->direction);
-    vec3s constant_eye = glms_vec3_negate(glms_vec3_normalize(view->forward));
-    vec3s constant_lamp = tl_lamp_at(lamp, request->casters.centre, constant_eye).direction;
+    vec3s constant_l = constant_lamp(request, index), constant_v = constant_eye(request);
     bool stops = ground && !(is_point && lamp->position.y >= ground->centre.y);
     set_view(view);
     glUniform4f(LAMP, place.x, place.y, place.z, is_point ? 1 : 0);
     glUniform3fv(LAMP_IRRADIANCE, 1, lamp->irradiance.raw);
-    glUniform3fv(CONSTANT_LAMP, 1, constant_lamp.raw);
-    glUniform3fv(CONSTANT_EYE, 1, constant_eye.raw);
+    glUniform3fv(CONSTANT_LAMP, 1, constant_l.raw);
+    glUniform3fv(CONSTANT_EYE, 1, constant_v.raw);
     glUniformMatrix4fv(LAMP_VIEW, 1, GL_FALSE, local->shadows.views[index].raw[0]);
     glUniform1f(LAMP_BIAS, request->depth_bias_m);
     glUniform1i(LAMP_LAYER, (GLint)index);
@@ -262,6 +281,15 @@ static void set_tables(const struct lit_part *part)
         glBindTextureUnit(POWER_UNIT, part->power->id);
 }
 
+/* UVs to places in the texture, which covers their box. */
+static void set_chart(const struct lit_part *part)
+{
+    const struct tl_lit_chart *chart = part->chart;
+    vec2s factor = {{1 / chart->extent.x, 1 / chart->extent.y}};
+    glUniform4f(CHART, -chart->low.x * factor.x, -chart->low.y * factor.y, factor.x, factor.y);
+    glUniform1f(LIT_SCALE, part->lit_scale);
+}
+
 static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                       const struct lit_part *part, const struct pass *pass, tl_error *error)
 {
@@ -274,6 +302,10 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
     set_lamp(local, request, part->lamp);
     set_gloss(part->material);
     set_tables(part);
+    if (part->chart) {
+        set_chart(part);
+        glUniform1f(TEXEL_SIDE, pass->texel_side);
+    }
     tl_surfaces_draw_part(request->surfaces, part->surface, part->part);
     return true;
 }
@@ -281,6 +313,9 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
 static void draw_into_light(const struct tl_local_request *request)
 {
     glBindFramebuffer(GL_FRAMEBUFFER, request->light->id);
+    glViewport(0, 0, request->light->width, request->light->height);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE); /* coverage is kept, because light has none */
 }
 
@@ -303,13 +338,71 @@ static bool draw_passes(struct tl_local *local, tl_gpu *gpu, const struct tl_loc
     glBindFramebuffer(GL_FRAMEBUFFER, local->product.id);
     for (int first = 0; fine && first < count; first += each) {
         int last = first + each < count ? first + each - 1 : count - 1;
-        const struct pass multiply = {first, last, "PASS_PRODUCT"};
+        const struct pass multiply = {first, last, "PASS_PRODUCT", 0};
         glBlendFunc(first == 0 ? GL_ONE : GL_DST_COLOR, GL_ZERO);
         fine = draw_pass(local, gpu, request, part, &multiply, error);
     }
     draw_into_light(request);
-    const struct pass add = {0, -1, "PASS_LAST"};
+    const struct pass add = {0, -1, "PASS_LAST", 0};
     return fine && draw_pass(local, gpu, request, part, &add, error);
+}
+
+static bool has_bumps(const tl_material *material)
+{
+    return material->normal_map.image || material->height_map.image || material->weave;
+}
+
+/* Whether a part is lit in texture space. */
+static bool is_lit_as_texture(const struct tl_local_request *request, const tl_material *material)
+{
+    const struct tl_shading_params *params = request->params;
+    return params->space == TL_SPACE_TEXTURE && params->frequency != TL_FREQUENCY_GOURAUD &&
+           params->coordinates != TL_COORDINATES_VERTEX && request->drawn && has_bumps(material);
+}
+
+/* The cosine of Fresnel's term where that is one for all of a part, else 0, where the term is largest. */
+static float fresnel_cosine(const struct tl_local_request *request, const struct lit_part *part)
+{
+    int model = part->material->gloss.model;
+    if (request->params->coordinates != TL_COORDINATES_MATRIX || model == TL_REFLECT_PHONG ||
+        model == TL_REFLECT_BANKS)
+        return 0;
+    vec3s l = constant_lamp(request, part->lamp);
+    return glms_vec3_dot(l, glms_vec3_normalize(glms_vec3_add(l, constant_eye(request))));
+}
+
+/* A bound of the gloss, by which it is divided for targets up to 1: that of its tables, or of a power; 1 of
+ * facets, which have none. */
+static float largest_gloss(const struct lit_part *part, const struct tl_brdf *brdf, float cosine)
+{
+    float scale = 1;
+    for (int i = 0; part->tables && i < part->tables->count; i++)
+        scale *= part->tables->tables[i].scale;
+    if (part->tables || brdf->gloss.model == TL_REFLECT_TORRANCE_SPARROW ||
+        brdf->gloss.model == TL_REFLECT_WARD)
+        return scale;
+    vec3s f = tl_brdf_fresnel(brdf, cosine);
+    return fmaxf(tl_brdf_lobe_scale(brdf) * fmaxf(f.x, fmaxf(f.y, f.z)), 1e-6f);
+}
+
+/* Lights the texels of the front and of the back, and maps the texture to the part. */
+static bool draw_as_texture(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                            const struct lit_part *part, tl_error *error)
+{
+    const struct tl_shading_params *params = request->params;
+    bool fine = true;
+    for (int back = 0; fine && back < 2; back++) {
+        tl_lit_texture_begin(&local->lit, gpu, params->pass_target, params->texture_size, back);
+        const struct pass texels = {0, part->tables ? part->tables->count - 1 : -1, "TEXELS", back ? -1 : 1};
+        fine = draw_pass(local, gpu, request, part, &texels, error);
+    }
+    tl_lit_texture_end(&local->lit);
+    local->lit_used = true;
+    draw_into_light(request);
+    glBindTextureUnit(LIT_UNIT, local->lit.light.id);
+    glBindTextureUnit(LIT_COVER_UNIT, local->lit.cover.id);
+    const struct pass mapped = {0, -1, "LIT", 0};
+    return fine && draw_pass(local, gpu, request, part, &mapped, error);
 }
 
 static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
@@ -326,10 +419,17 @@ static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local
         part->power = tl_table_textures_power(
             &local->tables, gpu,
             material->gloss.model == TL_REFLECT_BLINN_PHONG ? 4 * brdf.exponent : brdf.exponent);
+    if (is_lit_as_texture(request, material))
+        part->chart = tl_lit_texture_chart(&local->lit, request->drawn[part->surface], part->surface,
+                                           part->part, params->texture_size);
+    if (part->chart) {
+        part->lit_scale = largest_gloss(part, &brdf, fresnel_cosine(request, part));
+        return draw_as_texture(local, gpu, request, part, error);
+    }
     if (part->tables && part->tables->count > params->max_textures_per_pass &&
         params->frequency != TL_FREQUENCY_GOURAUD)
         return draw_passes(local, gpu, request, part, error);
-    const struct pass all = {0, part->tables ? part->tables->count - 1 : -1, NULL};
+    const struct pass all = {0, part->tables ? part->tables->count - 1 : -1, NULL, 0};
     return draw_pass(local, gpu, request, part, &all, error);
 }
 
@@ -369,7 +469,7 @@ static bool draw_emission(struct tl_local *local, tl_gpu *gpu, const struct tl_l
         tl_shading_options.defaults; /* vectors of a lamp, which are not read, have no variants then */
     bool mapped = tl_surfaces_bind_emission(request->surfaces, surface, index, EMISSION_UNIT);
     const struct lit_part part = {.surface = surface, .part = index, .material = material};
-    const struct pass pass = {0, -1, mapped ? "EMISSION\n#define EMISSION_MAP" : "EMISSION"};
+    const struct pass pass = {0, -1, mapped ? "EMISSION\n#define EMISSION_MAP" : "EMISSION", 0};
     char defines[TL_LOCAL_DEFINES_SIZE];
     float rows[6];
     define_all(&plain, &part, &pass, defines);
@@ -390,15 +490,11 @@ static bool draw_emission(struct tl_local *local, tl_gpu *gpu, const struct tl_l
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                    tl_error *error)
 {
-    const tl_target *target = request->light;
     tl_table_textures_begin(&local->tables);
-    local->product_used = false;
+    local->product_used = local->lit_used = false;
     draw_into_light(request);
-    glViewport(0, 0, target->width, target->height);
-    glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);
-    glEnable(GL_BLEND);
     glBlendColor(0, 0, 0, request->weight);
     bind_cube(local, gpu, request->params);
     glBindTextureUnit(TRIANGLE_UNIT, request->gbuffer->target.colours[TL_GBUFFER_TRIANGLE].id);
@@ -412,6 +508,8 @@ bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_re
     tl_table_textures_end(&local->tables);
     if (!local->product_used)
         tl_target_destroy(&local->product);
+    if (!local->lit_used)
+        tl_lit_texture_release(&local->lit);
     tl_gpu_reset_state(gpu);
     return fine;
 }

@@ -1,5 +1,14 @@
 #version 450 core
-// The light of one lamp on the surfaces of the G-buffer, added to the light target.
+// The light of one lamp on the surfaces of the G-buffer, added to the light target. TEXELS: on the texels of a part, without
+// its shadows, to be mapped to it by LIT (lit_texture.h).
+#if defined(TEXELS) || defined(LIT)
+layout(location = 99) uniform vec4 chart; // offset, factor on UV
+layout(location = 100) uniform float lit_scale; // of the gloss that texels hold
+layout(location = 101) uniform float texel_side; // TEXELS: -1 for the back
+#endif
+#ifdef TEXELS
+#define SEES_FRONT (texel_side > 0.0)
+#endif
 #include "fuzz_terms.glsl"
 #include "gloss.glsl"
 #include "ground.glsl"
@@ -41,6 +50,11 @@ layout(binding = 18) uniform sampler2DArrayShadow lamp_depths;
 layout(binding = 19) uniform samplerCube normalising; // unit vectors, with 0 to 1 standing for -1 to 1
 #endif
 
+#ifdef LIT
+layout(binding = 27) uniform sampler2DArray lit_light; // gloss / lit_scale; cosine of the lamp
+layout(binding = 28) uniform sampler2DArray lit_cover;
+#endif
+
 #ifdef PASS_LAST
 layout(binding = 24) uniform sampler2D product; // product of all tables from earlier passes
 #endif
@@ -61,6 +75,9 @@ in vec3 to_lamp, to_eye, halfway;
 #endif
 
 layout(location = 0) out vec4 out_light; // premultiplied by coverage
+#ifdef TEXELS
+layout(location = 1) out float out_cover;
+#endif
 
 const uint TRIANGLE_BACK = 0x80000000u;
 
@@ -108,19 +125,35 @@ bool bumpy;
 Bumps bumps;
 DetailPlace place;
 vec3 view; // towards the eye, in tangent space
+vec3 base_normal; // the interpolated normal below the visible point
 
-void find_detail(mat3 frame, float side, vec3 smooth_normal)
+void find_detail(inout mat3 frame, float side, inout vec3 smooth_normal)
 {
+    base_normal = normal;
 #ifdef DETAIL_SHIFTED
     unmoved_across = dFdx(uv);
     unmoved_down = dFdy(uv);
+#endif
+#if defined(DETAIL_CURVED) && !defined(TEXELS)
+    vec3 eyewards = direction_or(eye - point, smooth_normal);
+    unmoved_across *= detail_shortened(dFdx(point), eyewards);
+    unmoved_down *= detail_shortened(dFdy(point), eyewards);
 #endif
 #if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
     if (has_map(MAP_WEAVE))
         weave_slopes = detail_slope_factors(point, uv);
 #endif
     view = direction_or(eye - point, smooth_normal) * frame;
-    place = detail_place(uv, view, side);
+#ifdef TEXELS
+    place = DetailPlace(uv, 0.0, false, vec2(0.0));
+#else
+    place = detail_place(uv, view, side, detail_bend(point, normal, frame, view, eye));
+#ifdef DETAIL_CURVED
+    base_normal = smooth_normal = detail_turned(frame, smooth_normal, place);
+    frame = detail_frame(smooth_normal, tangent);
+    view = direction_or(eye - point, smooth_normal) * frame;
+#endif
+#endif
     sew(first_triangle + uint(gl_PrimitiveID), place.uv, dFdx(uv), dFdy(uv));
     bumpy = has_bumps(tangent);
     if (bumpy)
@@ -145,13 +178,13 @@ float plane_side(float side)
 vec3 bumped_normal(vec3 smooth_normal)
 {
     if (!bumpy)
-        return normal;
+        return base_normal;
 #if DETAIL_MODE == DETAIL_BLINN
     if (detail_range.z > 0.0)
         return detail_blinn(bumps.normal, smooth_normal, point, uv);
 #endif
     vec3 mapped = bumps.normal;
-    return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(normal, tangent.xyz) + mapped.z * normal;
+    return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(base_normal, tangent.xyz) + mapped.z * base_normal;
 }
 
 // `facing` is the cosine of the light with the normal without bumps.
@@ -207,20 +240,10 @@ vec3 widening_here(float rough, float side)
                          : vec3(vec2(detail_widening(1.0 - material_scalars.x, rough, 0.0)), 0.0);
 }
 
-// Unshadowed reflected light divided by the irradiance.
-vec3 reflected(float side, vec3 smooth_normal)
+#ifndef GOURAUD
+// The gloss and the factor on the diffuse colour, self-shadowed.
+vec4 lit_here(float side, vec3 smooth_normal, vec3 kd)
 {
-#ifdef MEASURED
-    vec3 kd = measured_diffuse;
-#else
-    vec3 kd = diffuse(surface_colour(place.uv).rgb, place.uv);
-#endif
-    if (bumpy)
-        kd *= bumps.length; // the mean normal, which is shorter than 1, receives the light
-#ifdef GOURAUD
-    vec4 lit = side > 0.0 ? lit_front : lit_back;
-    return kd * lit.w + lit.rgb;
-#else
     float facing;
     Cosines c = cosines_here(side, smooth_normal, facing);
     c.hand = plane_side(side);
@@ -236,9 +259,52 @@ vec3 reflected(float side, vec3 smooth_normal)
 #ifdef THREADS
     shine += inside_threads(c, specular_f0(place.uv), kd, thread_widening_here(side));
 #endif
-    vec3 light = kd * (max(c.a, 0.0) / PI) + shine;
-    return shown > 0.0 ? shown * light : vec3(0.0);
+    return shown > 0.0 ? shown * vec4(shine, max(c.a, 0.0) / PI) : vec4(0.0);
+}
 #endif
+
+#ifdef LIT
+// The same from the texture.
+vec4 lit_texel(float side)
+{
+    vec3 at = vec3(chart.xy + place.uv * chart.zw, side > 0.0 ? 0.0 : 1.0);
+#ifdef DETAIL_SHIFTED
+    vec2 across = unmoved_across * chart.zw, down = unmoved_down * chart.zw;
+    vec4 light = textureGrad(lit_light, at, across, down);
+    float cover = textureGrad(lit_cover, at, across, down).r;
+#else
+    vec4 light = texture(lit_light, at);
+    float cover = texture(lit_cover, at).r;
+#endif
+    return cover > 0.0 ? light * vec4(vec3(lit_scale), 1.0 / PI) / cover : vec4(0.0);
+}
+#endif
+
+vec3 diffuse_here()
+{
+#ifdef MEASURED
+    return measured_diffuse;
+#else
+    return diffuse(surface_colour(place.uv).rgb, place.uv);
+#endif
+}
+
+// Unshadowed reflected light divided by the irradiance.
+vec3 reflected(float side, vec3 smooth_normal)
+{
+    vec3 kd = diffuse_here();
+#ifdef LIT
+    vec4 lit = lit_texel(side);
+#else
+    if (bumpy)
+        kd *= bumps.length; // the mean normal, which is shorter than 1, receives the light
+#ifdef GOURAUD
+    vec4 lit = side > 0.0 ? lit_front : lit_back;
+#else
+    vec4 lit = lit_here(side, smooth_normal, kd);
+#endif
+#endif
+    return kd * lit.w + lit.rgb;
 }
 
 // Adds the coat. It is smooth and always evaluated exactly; the light below is multiplied by 1 - its reflectance.
@@ -287,10 +353,16 @@ void main()
 {
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
     vec2 across = dFdx(uv), down = dFdy(uv);
-    float side = gl_FrontFacing ? 1.0 : -1.0;
+    float side = SEES_FRONT ? 1.0 : -1.0;
     vec3 smooth_normal = direction_or(normal, facet);
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
+#ifdef TEXELS
+    float open = bumpy ? bumps.length : 1.0; // as in reflected
+    vec4 lit = lit_here(side, smooth_normal, diffuse_here() * open);
+    out_light = lit * vec4(vec3(1.0 / lit_scale), PI * open);
+    out_cover = 1.0;
+#else
 #ifdef EMISSION
     vec3 sent = emission;
 #ifdef EMISSION_MAP
@@ -325,5 +397,6 @@ void main()
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
     light = under_fuzz(light, l, side, smooth_normal);
     out_light = vec4(shown * irradiance_at(point) * light, 0.0);
+#endif
 #endif
 }

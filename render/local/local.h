@@ -15,6 +15,7 @@
 #include "render/gbuffer/gbuffer.h"
 #include "render/local/lamp.h"
 #include "render/local/lamp_shadows.h"
+#include "render/local/lit_texture.h"
 #include "render/local/shading.h"
 #include "render/local/table_textures.h"
 
@@ -30,8 +31,10 @@ struct tl_local {
     struct tl_local_program **programs; /* by pointer, so that the defines of a program do not move */
     struct tl_lamp_shadows shadows;
     struct tl_table_textures tables;
-    tl_target product; /* target in which passes multiply; shares the depth of the G-buffer */
-    bool product_used; /* in this frame */
+    tl_target product;         /* target in which passes multiply; shares the depth of the G-buffer */
+    bool product_used;         /* in this frame */
+    struct tl_lit_texture lit; /* of TL_SPACE_TEXTURE */
+    bool lit_used;             /* in this frame */
 };
 
 struct tl_local_request {
@@ -39,6 +42,7 @@ struct tl_local_request {
     const tl_target *light; /* with the depth of the G-buffer */
     const struct tl_view *view;
     const tl_surfaces *surfaces;
+    const tl_surface *const *drawn; /* what they were made of; NULL: none is lit in texture space */
     size_t surface_count;
     const struct tl_ground *ground; /* NULL: none; else the last of the surfaces */
     struct tl_casters casters;
@@ -54,7 +58,7 @@ struct tl_local_request {
 void tl_local_release(struct tl_local *local);
 /* Discards all programs, so that they are compiled again from their files. */
 void tl_local_reload(struct tl_local *local);
-/* Size of the tables and of the target of the passes, without shadows. */
+/* Size of the tables, of the target of the passes and of the texture that is lit, without shadows. */
 size_t tl_local_bytes(const struct tl_local *local);
 /* Adds the light of all lamps, and what surfaces emit. False when a shader cannot be compiled. */
 bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,

@@ -1,6 +1,7 @@
 #version 450 core
 // Vertices of surfaces lit by a lamp, with the values that the shading option computes per vertex. GOURAUD: the light
 // itself. COSINES: the inputs of the model. VECTORS: unit vectors to interpolate, in tangent space with TANGENT_SPACE.
+// TEXELS: drawn over its UVs.
 #define VERTEX_STAGE
 #include "gloss.glsl"
 #include "terms.glsl"
@@ -8,6 +9,10 @@
 // The same uniforms as in surface.glsl, whose textures are not needed here.
 layout(location = 1) uniform vec3 material_specular;
 layout(location = 2) uniform vec4 material_scalars;
+
+#ifdef TEXELS
+layout(location = 99) uniform vec4 chart; // offset, factor on UV
+#endif
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 vertex_normal;
@@ -68,7 +73,11 @@ void main()
     normal = vertex_normal;
     tangent = vertex_tangent;
     uv = vertex_uv;
+#ifdef TEXELS
+    gl_Position = vec4(2.0 * (chart.xy + uv * chart.zw) - 1.0, 0.0, 1.0);
+#else
     gl_Position = view_projection * vec4(position, 1.0);
+#endif
 #if defined(GOURAUD) || defined(COSINES) || defined(VECTORS)
     vec3 l, v, h;
     vec3 n = direction_or(vertex_normal, UP);

@@ -10,7 +10,7 @@ static const char *const range_names[] = {"clamped", "scaled", NULL};
 const char *const tl_pass_target_names[] = {"fixed8", "float", NULL};
 static const char *const normalisation_names[] = {"none", "cube8", "cube16", "newton", "exact", NULL};
 static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
-static const char *const space_names[] = {"world", "tangent", NULL};
+static const char *const space_names[] = {"world", "tangent", "texture", NULL};
 static const char *const self_shadow_names[] = {"step", "ramp", NULL};
 
 #define AFFECTS (TL_AFFECTS_APPEARANCE | TL_AFFECTS_LAMPS)
@@ -35,14 +35,19 @@ static const struct tl_option rows[] = {
     TL_OPTION_INT(params, max_textures_per_pass, AFFECTS, 1, 4, "tables",
                   "tables multiplied in one pass; smaller: more passes for gloss with more tables"),
     TL_OPTION_ENUM(params, pass_target, AFFECTS, tl_pass_target_names,
-                   "precision of the target in which passes are multiplied"),
+                   "precision of the target in which passes are multiplied, and of textures that are lit"),
     TL_OPTION_ENUM(
         params, normalisation, AFFECTS, normalisation_names,
         "phong: renormalisation of vectors; all methods but exact start from interpolated vectors"),
     TL_OPTION_ENUM(params, power, AFFECTS, power_names,
                    "evaluation of powers of cosines in the direct formula"),
-    TL_OPTION_ENUM(params, space, AFFECTS, space_names,
-                   "space of vectors at pixels: world, or tangent space by a transformation at vertices"),
+    TL_OPTION_ENUM(
+        params, space, AFFECTS, space_names,
+        "space of vectors at pixels: world, or tangent space by a transformation at vertices; texture: "
+        "bumps are lit at texels over the UVs, and what is lit is mapped to the surface; parts whose UVs "
+        "overlap are lit in world space"),
+    TL_OPTION_INT(params, texture_size, AFFECTS, 8, 4096, "texels",
+                  "texture: side of what is lit over the UVs of a part; larger: finer bumps"),
     TL_OPTION_ENUM(params, self_shadow, AFFECTS, self_shadow_names,
                    "end of light at the horizon of the smooth surface: a step, or a steep ramp"),
 };
@@ -51,4 +56,4 @@ const struct tl_option_table tl_shading_options = TL_OPTION_TABLE(
     .coordinates = TL_COORDINATES_PIXEL, .reflectance = TL_REFLECTANCE_DIRECT, .table_size = 256,
     .table_precision = TL_PRECISION_FLOAT, .table_range = TL_RANGE_SCALED, .max_textures_per_pass = 4,
     .pass_target = TL_PASS_TARGET_FLOAT, .normalisation = TL_NORMALISE_EXACT, .power = TL_POWER_POW,
-    .space = TL_SPACE_WORLD, .self_shadow = TL_SELF_SHADOW_RAMP);
+    .space = TL_SPACE_WORLD, .texture_size = 1024, .self_shadow = TL_SELF_SHADOW_RAMP);

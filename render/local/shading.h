@@ -19,7 +19,10 @@ enum tl_coordinates { TL_COORDINATES_MATRIX, TL_COORDINATES_VERTEX, TL_COORDINAT
 enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE, TL_REFLECTANCE_FACTORED };
 enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };
 extern const char *const tl_pass_target_names[]; /* ends with NULL */
-enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT };
+/* The space in which bumps are lit: at pixels in world space, or by vectors taken into tangent space at
+ * vertices; or at the texels of a texture over the UVs of each part with bumps, which is then mapped to it
+ * (render/local/lit_texture.h). */
+enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT, TL_SPACE_TEXTURE };
 enum tl_self_shadow { TL_SELF_SHADOW_STEP, TL_SELF_SHADOW_RAMP };
 
 struct tl_shading_params {
@@ -34,6 +37,7 @@ struct tl_shading_params {
     int normalisation;         /* enum tl_normalisation, for PHONG: renormalisation of interpolated vectors */
     int power;                 /* enum tl_power, for DIRECT with a model that is a power */
     int space;                 /* enum tl_space, for vectors at pixels */
+    int texture_size;          /* texels, side; of TEXTURE, whose precision is pass_target */
     int self_shadow;           /* enum tl_self_shadow */
 };
 extern const struct tl_option_table tl_shading_options;

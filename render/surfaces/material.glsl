@@ -4,6 +4,11 @@
 #include "construction.glsl"
 #include "direction.glsl"
 
+// A pass that draws something else than what is seen says which side it draws.
+#ifndef SEES_FRONT
+#define SEES_FRONT gl_FrontFacing
+#endif
+
 vec3 decode(vec3 texel)
 {
     return 2.0 * texel - 1.0;
@@ -107,7 +112,7 @@ float glossiness(vec2 uv)
 
 bool shows_back()
 {
-    return has_map(MAP_BACK) && !gl_FrontFacing;
+    return has_map(MAP_BACK) && !SEES_FRONT;
 }
 
 #ifndef VERTEX_STAGE

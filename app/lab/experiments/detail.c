@@ -1,5 +1,5 @@
 /* Fabric detail: heights as normals, parallax and relief, their shadows, and weaves too fine to be seen. Ids
- * C1 to C8. */
+ * C1 to C8, C12 and C13. */
 #include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY  WOVEN("8", "2")
@@ -102,6 +102,33 @@ static const struct tl_technique techniques[] = {
      .id = "C8",
      SET("detail.minify=lean"),
      .shown = true},
+};
+
+/* Normal maps lit in texture space. */
+#define TEXTURE_SPACE(size) "shading.space=texture", "shading.texture_size=" size
+#define BY_MATRIX           "shading.coordinates=matrix"
+#define POWER_8_BIT         "shading.power=table", "shading.pass_target=fixed8"
+static const struct tl_technique lit_textures[] = {
+    {.picture = "1024 texels, by matrix",
+     .golden = "detail_lit_texture",
+     .id = "C12",
+     SET(TEXTURE_SPACE("1024"), BY_MATRIX)},
+    {.picture = "at pixels, by matrix", .id = "C12", SET(BY_MATRIX)},
+    {.picture = "512 texels, by matrix", .id = "C12", SET(TEXTURE_SPACE("512"), BY_MATRIX)},
+    {.picture = "2048 texels, by matrix", .id = "C12", SET(TEXTURE_SPACE("2048"), BY_MATRIX)},
+    {.picture = "2048 texels, by matrix and table, 8 bits",
+     .id = "C12",
+     SET(TEXTURE_SPACE("2048"), BY_MATRIX, POWER_8_BIT)},
+    {.picture = "2048 texels, each texel's own vectors", .id = "C12", SET(TEXTURE_SPACE("2048"))},
+};
+
+/* Relief at outlines. */
+#define CURVED(steps) "detail.curved=true", "detail.steps=" steps
+static const struct tl_technique outlines[] = {
+    {.picture = "curved, 32 steps", .golden = "detail_curved", .id = "C13", SET(CURVED("32"))},
+    {.picture = "as on planes", .id = "C13", SET("detail.curved=false")},
+    {.picture = "curved, 16 steps", .id = "C13", SET(CURVED("16"))},
+    {.picture = "curved, 64 steps", .id = "C13", SET(CURVED("64"))},
 };
 
 static const struct tl_experiment_appearance threads[] = {
@@ -237,5 +264,42 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {"image.supersample=8", "detail.minify=none"}},
      .ids = {"C8"},
      TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "c12",
+     .scene = "gallery",
+     .title = "C12  Normal maps lit in texture space",
+     .text = "Lamps light the texels over the UVs of the surface: a matrix makes cosines of their normals, a "
+             "table "
+             "powers of these, and the result is mapped to the surface as any texture [Heidrich and Seidel "
+             "1999, 5.1]. A matrix takes lamp and viewer to be at infinity. In the strip the camera turns.",
+     .exact_text = "the formula itself, evaluated in float at every sample",
+     .motion = TL_MOTION_CAMERA,
+     .motion_step = 5,
+     .claims = {{"2048 texels, by matrix", "512 texels, by matrix", "[000] 5.1"},
+                {"2048 texels, by matrix", "2048 texels, by matrix and table, 8 bits", "[000] 5.1"}},
+     .solid = "torus",
+     .base = {LAMPLIT, BUMPY, "material.model=blinn_phong", "material.specular=[0.15, 0.15, 0.15]",
+              "detail.minify=none"},
+     .reference = {.assignments = {"shading.space=world", "shading.coordinates=pixel"}},
+     .ids = {"C12"},
+     TECHNIQUES(lit_textures)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "c13",
+     .scene = "gallery",
+     .title = "C13  Relief at outlines",
+     .text =
+         "View rays bend with the surface, by the turn of its normals within each triangle, and what they "
+         "pass "
+         "over is left out, so that the outline is that of the relief. Heights above the mesh end at the "
+         "mesh's outline. On a displaced cylinder the outline is that of traced rays but for 0 to 5 % of the "
+         "pixels that planes have wrong (test curved_relief).",
+     .exact_text = "512 steps of the same march",
+     .claims = {{"curved, 32 steps", "as on planes", "[004]"},
+                {"curved, 64 steps", "curved, 16 steps", "[004]"}},
+     .solid = "torus",
+     .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief"},
+     .reference = {.assignments = {CURVED("512"), "detail.refine=16"}},
+     .ids = {"C13"},
+     TECHNIQUES(outlines)},
 };
 const struct tl_experiment_list tl_detail_experiments = {experiments, TL_COUNT(experiments)};

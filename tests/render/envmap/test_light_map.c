@@ -5,6 +5,7 @@
 
 #include "render/envmap/light_map.h"
 #include "render/scene/view.h"
+#include "render/surfaces/uv_texels.h"
 
 #include "tests/testing.h"
 
@@ -107,7 +108,7 @@ static void shadows_are_form_factors(void **state)
     for (int below = 0; below < 2; below++) {
         struct test_scene scene;
         scene_open(&scene, below);
-        assert_true(tl_light_map_fits(&scene.surfaces[PLANE], 48));
+        assert_true(tl_uv_texels_fit(&scene.surfaces[PLANE], 48));
         struct errors errors = draw(&scene, device->renderer, below ? "from below" : "from above");
         assert_true(errors.rms < RMS_MAX && errors.worst < WORST_MAX);
         assert_true(below || errors.darkest < 0.85);
@@ -147,7 +148,7 @@ static void folds_are_baked_at_vertices(void **state)
             struct test_scene scene;
             scene_open(&scene, below);
             lay_out(&scene, layout);
-            assert_int_equal(tl_light_map_fits(&scene.surfaces[PLANE], 48), layout <= TURNED);
+            assert_int_equal(tl_uv_texels_fit(&scene.surfaces[PLANE], 48), layout <= TURNED);
             struct errors errors = draw(&scene, device->renderer, names[layout]);
             assert_true(errors.rms < RMS_MAX && errors.worst < WORST_MAX);
             test_scene_close(&scene);
