@@ -1,5 +1,5 @@
-/* Fabric detail: heights as normals, parallax and relief, their shadows, and weaves too fine to be seen. Ids
- * C1 to C8. */
+/* Fabric detail: heights as normals, parallax and relief, their shadows, weaves too fine to be seen, and maps
+ * baked of finer meshes. Ids C1 to C8, C11. */
 #include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY  WOVEN("8", "2")
@@ -102,6 +102,17 @@ static const struct tl_technique techniques[] = {
      .id = "C8",
      SET("detail.minify=lean"),
      .shown = true},
+};
+
+static const struct tl_technique baked[] = {
+    {.picture = "the coarse mesh alone", .id = "C11", SET("detail.mode=normal")},
+    {.picture = "baked normals", .id = "C11", SET("detail.normals=@normals.png")},
+    {.picture = "baked normals, parallax by baked heights",
+     .id = "C11",
+     SET("detail.normals=@normals.png", "detail.heights=@heights.exr", "detail.mode=parallax_limited")},
+    {.picture = "baked normals, relief by baked heights",
+     .id = "C11",
+     SET("detail.normals=@normals.png", "detail.heights=@heights.exr", "detail.mode=relief")},
 };
 
 static const struct tl_experiment_appearance threads[] = {
@@ -237,5 +248,25 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {"image.supersample=8", "detail.minify=none"}},
      .ids = {"C8"},
      TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "c11",
+     .scene = "gallery",
+     .title = "C11  Maps baked of a finer mesh",
+     .text =
+         "Wrinkles of 4 mm are in a mesh of 150,000 and one of 130,000 triangles. Garments of 1,536 and 256 "
+         "triangles, which lie amid them, take their normals and heights from maps of 512 texels a side "
+         "(toile bake). Outlines stay those of the coarse meshes.",
+     .exact_text = "the finer mesh, ray traced",
+     .claims = {{"baked normals", "the coarse mesh alone", "[000] 5"},
+                {"baked normals, relief by baked heights", "baked normals", "[004]"}},
+     .solid = "torus",
+     .base = {"scene.garment=@coarse.obj", "scene.avatar=none", "scene.drape=authored", "scene.smooth=false",
+              "construction.show=never"},
+     .reference = {.assignments = {"scene.garment=@fine.obj", TRACED, FEW_SAMPLES}},
+     .reference_alone = true,
+     .baked = true,
+     .side = 256,
+     .ids = {"C11"},
+     TECHNIQUES(baked)},
 };
 const struct tl_experiment_list tl_detail_experiments = {experiments, TL_COUNT(experiments)};
