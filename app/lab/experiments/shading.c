@@ -243,10 +243,11 @@ static const struct tl_experiment experiments[] = {
      .name = "a1",
      .scene = "gallery",
      .title = "A1  Torrance-Sparrow from two tables",
-     .text = "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
-             "[Heidrich and Seidel 1999, section 3.1]. A table holds one f0, glossiness and width: what hems "
-             "and stitches change of them from pixel to pixel it leaves out, the formula does not. The torus has "
-             "neither.",
+     .text =
+         "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
+         "[Heidrich and Seidel 1999, section 3.1]. A table holds one f0, glossiness and width: what hems "
+         "and stitches change of them from pixel to pixel it leaves out, the formula does not. The torus has "
+         "neither.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.fresnel=dielectric",

@@ -11,7 +11,7 @@
 #define REACH_M  0.02f
 
 /* A grid over u and v in [0, 1] whose surface the point describes, without its wrinkles (0) or with (1). */
-struct shape {
+struct baked_shape {
     vec3s (*point)(float u, float v, float wrinkles);
     float extent_v; /* texture coordinates end at (1, extent_v), so that a step of both is one length */
     int coarse[2], fine[2]; /* cells along u, v */
@@ -37,12 +37,12 @@ static vec3s sheet_point(float u, float v, float wrinkles)
     return (vec3s){{side_m * (u - 0.5f), 0.27f + side_m * (v - 0.5f), fold + wrinkles * wrinkle}};
 }
 
-static const struct shape shapes[TL_PICTURE_OBJECTS] = {
+static const struct baked_shape shapes[TL_PICTURE_OBJECTS] = {
     [TL_PICTURE_SOLID] = {torus_point, 0.055f / 0.12f, {48, 16}, {384, 192}},
     [TL_PICTURE_SHEET] = {sheet_point, 1, {16, 8}, {256, 256}},
 };
 
-static void print_grid(FILE *out, const struct shape *shape, const int cells[2], float wrinkles)
+static void print_grid(FILE *out, const struct baked_shape *shape, const int cells[2], float wrinkles)
 {
     for (int j = 0; j <= cells[1]; j++)
         for (int i = 0; i <= cells[0]; i++) {
@@ -58,7 +58,7 @@ static void print_grid(FILE *out, const struct shape *shape, const int cells[2],
         }
 }
 
-static bool write_grid(const char *path, const struct shape *shape, const int cells[2], float wrinkles,
+static bool write_grid(const char *path, const struct baked_shape *shape, const int cells[2], float wrinkles,
                        tl_error *error)
 {
     struct tl_writer writer;
@@ -91,7 +91,7 @@ bool tl_baked_make(const struct tl_experiment_picture *picture, tl_error *error)
     static const char *const names[] = {"coarse.obj", "fine.obj", "normals.png", "heights.exr"};
     bool done = true;
     for (int object = 0; done && object < TL_PICTURE_OBJECTS; object++) {
-        const struct shape *shape = &shapes[object];
+        const struct baked_shape *shape = &shapes[object];
         char *paths[4];
         for (int i = 0; i < 4; i++)
             paths[i] = tl_picture_file(picture, object, names[i]);
