@@ -1,6 +1,6 @@
 /* toile bake: writes normals or heights of a finer mesh as a map of a coarser one. */
 #include "app/batch/commands.h"
-#include "app/scene/baked_maps.h"
+#include "app/pictures/baked_maps.h"
 #include "config/file.h"
 #include "config/log.h"
 

@@ -1,6 +1,6 @@
 #include "app/lab/gallery/baked.h"
 
-#include "app/scene/baked_maps.h"
+#include "app/pictures/baked_maps.h"
 #include "config/file.h"
 
 #include <math.h>

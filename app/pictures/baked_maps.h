@@ -1,7 +1,7 @@
 /* Maps of a coarser garment, baked of a finer mesh of it, as files for detail.normals and detail.heights.
  * Errors: TL_INPUT as of render/transfer/transfer.h, TL_OUTPUT. Threads: any. */
-#ifndef TOILE_APP_SCENE_BAKED_MAPS_H
-#define TOILE_APP_SCENE_BAKED_MAPS_H
+#ifndef TOILE_APP_PICTURES_BAKED_MAPS_H
+#define TOILE_APP_PICTURES_BAKED_MAPS_H
 
 #include "assets/model.h"
 #include "render/transfer/transfer.h"

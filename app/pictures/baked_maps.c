@@ -1,4 +1,4 @@
-#include "app/scene/baked_maps.h"
+#include "app/pictures/baked_maps.h"
 
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
