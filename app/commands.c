@@ -49,8 +49,9 @@ static const struct tl_command commands[] = {
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
     {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",
-     "Runs extreme inputs and settings, and checks that each result is exact, within a stated bound, or "
-     "refused with a clear message; FOLDER gets a table of all cases and a picture of the cloth's.",
+     "Runs extreme inputs and settings, measures the error of each, and checks that it is exact, bounded by "
+     "25 %, "
+     "coarse with a remedy, or refused with a clear message; FOLDER gets a picture of the cloth's.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
     {"gallery", "gallery [SECTION] -o FOLDER [--quick]",
      "Renders every technique and setting next to its exact evaluation, with its error and its time: "

@@ -29,8 +29,8 @@ bool tl_height_picture_load(const char *path, tl_image *out, tl_error *error)
     return true;
 }
 
-/* The first channel from 0, its lowest value, to 1, its highest; *range is how far these are apart. */
-static tl_image spread(const tl_image *picture, float *range)
+/* The first channel from 0, its lowest value, to 1, its highest: limits[0] and [1]. */
+static tl_image spread(const tl_image *picture, float limits[2])
 {
     tl_image heights = tl_bake_heights(picture, 0, 1);
     float *values = tl_image_floats(&heights), low = INFINITY, high = -INFINITY;
@@ -39,7 +39,8 @@ static tl_image spread(const tl_image *picture, float *range)
         low = fminf(low, values[i]);
         high = fmaxf(high, values[i]);
     }
-    *range = high - low;
+    limits[0] = low;
+    limits[1] = high;
     for (size_t i = 0; i < count; i++)
         values[i] = high > low ? (values[i] - low) / (high - low) : 0.5f;
     return heights;
@@ -48,15 +49,15 @@ static tl_image spread(const tl_image *picture, float *range)
 /* Converts heights to metres above the fabric's middle plane. */
 static tl_image heights_of(const tl_image *picture, float depth_m)
 {
-    float range;
-    tl_image heights = spread(picture, &range);
+    float limits[2];
+    tl_image heights = spread(picture, limits);
     size_t count = (size_t)heights.width * (size_t)heights.height;
     for (size_t i = 0; i < count; i++)
         tl_image_floats(&heights)[i] = depth_m * (tl_image_floats(&heights)[i] - 0.5f);
     return heights;
 }
 
-bool tl_height_picture_metres(const char *path, tl_image *out, float *depth_m, tl_error *error)
+bool tl_height_picture_metres(const char *path, tl_image *out, float limits_m[2], tl_error *error)
 {
     tl_image picture;
     if (!tl_path_has_extension(path, "exr"))
@@ -64,7 +65,7 @@ bool tl_height_picture_metres(const char *path, tl_image *out, float *depth_m, t
                        path);
     if (!tl_height_picture_load(path, &picture, error))
         return false;
-    *out = spread(&picture, depth_m);
+    *out = spread(&picture, limits_m);
     tl_image_release(&picture);
     return true;
 }

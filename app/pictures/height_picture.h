@@ -14,8 +14,8 @@ bool tl_height_picture_load(const char *path, tl_image *out, tl_error *error);
 bool tl_height_picture_weave(const struct tl_weave_params *params, tl_weave *out, tl_error *error);
 
 /* Loads heights in metres, an .exr, as a height map of a material has them: F32 x1, 0 the lowest and 1 the
- * highest, *depth_m apart. */
-bool tl_height_picture_metres(const char *path, tl_image *out, float *depth_m, tl_error *error);
+ * highest, which are limits_m[0] and [1] above the mesh. */
+bool tl_height_picture_metres(const char *path, tl_image *out, float limits_m[2], tl_error *error);
 
 /* Loads a normal map: U8 x3. Refuses pictures without colours. */
 bool tl_normal_picture_load(const char *path, tl_image *out, tl_error *error);

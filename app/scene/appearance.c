@@ -316,7 +316,7 @@ static bool set_baked_maps(struct tl_appearance *appearance, const struct tl_det
 {
     const struct tl_map lying = {.transform = {.scale = {1, 1}}, .clamp_u = true, .clamp_v = true};
     struct tl_map normals = lying, heights = lying;
-    float depth_m = 0;
+    float limits_m[2] = {0, 0};
     tl_image image;
     if (detail->normals[0]) {
         if (!tl_normal_picture_load(detail->normals, &image, error))
@@ -324,7 +324,7 @@ static bool set_baked_maps(struct tl_appearance *appearance, const struct tl_det
         normals.image = keep_image(appearance, &image);
     }
     if (detail->heights[0]) {
-        if (!tl_height_picture_metres(detail->heights, &image, &depth_m, error))
+        if (!tl_height_picture_metres(detail->heights, &image, limits_m, error))
             return false;
         heights.image = keep_image(appearance, &image);
     }
@@ -336,7 +336,8 @@ static bool set_baked_maps(struct tl_appearance *appearance, const struct tl_det
         }
         if (heights.image) {
             material->height_map = heights;
-            material->height_m = depth_m;
+            material->height_m = limits_m[1] - limits_m[0];
+            material->height_top_m = limits_m[1];
         }
     }
     return true;

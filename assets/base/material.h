@@ -152,8 +152,9 @@ typedef struct tl_material {
     struct tl_map specular_map;          /* U8 x3, sRGB: multiplies specular */
     struct tl_map emission_map;          /* U8 x3, sRGB: multiplies emission */
     struct tl_map occlusion_map;         /* U8, linear, red */
-    struct tl_map height_map;            /* U8 x1, linear: 0 deepest, 1 the mesh's own surface */
+    struct tl_map height_map;            /* U8 x1, linear: 0 deepest, 1 highest */
     float height_m;                      /* metres from the deepest to the highest of height_map */
+    float height_top_m;                  /* ... from the mesh's own surface to the highest */
     const tl_weave *weave;               /* detail, or NULL */
     struct tl_construction construction; /* of surfaces that have borders (tl_surface) */
     struct tl_back back;

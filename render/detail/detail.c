@@ -10,14 +10,14 @@ static bool has_weave(const tl_material *material)
     return material->weave && material->weave->size_m[0] > 0 && material->weave->size_m[1] > 0;
 }
 
-/* The heights of a height map: 0 is deepest, 1 is the surface of the mesh. A step (x, y) in metres is (x, -y)
- * / uv_metres in UV. */
+/* The heights of a height map: 0 is deepest, 1 lies height_top_m above the surface of the mesh. A step (x, y)
+ * in metres is (x, -y) / uv_metres in UV. */
 static void heights_of_map(const tl_material *material, float uv_metres, float scale,
                            struct tl_detail_heights *out)
 {
     const struct tl_map *map = &material->height_map;
     float depth = scale * material->height_m;
-    out->image = tl_bake_heights(map->image, -depth, depth);
+    out->image = tl_bake_heights(map->image, scale * material->height_top_m - depth, depth);
     out->field = tl_height_field_make(&out->image, uv_metres, uv_metres, map->clamp_u, map->clamp_v);
     tl_uv_transform_rows(&map->transform, out->rows);
     const float to[4] = {out->rows[0] / uv_metres, -out->rows[1] / uv_metres, out->rows[3] / uv_metres,

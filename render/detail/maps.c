@@ -52,7 +52,8 @@ static bool same_detail(const struct tl_detail_entry *entry, const tl_material *
     const tl_material *made = entry->material;
     return made->weave == material->weave && entry->uv_metres == uv_metres &&
            same_map(&made->normal_map, &material->normal_map) &&
-           same_map(&made->height_map, &material->height_map) && made->height_m == material->height_m;
+           same_map(&made->height_map, &material->height_map) && made->height_m == material->height_m &&
+           made->height_top_m == material->height_top_m;
 }
 
 static void set_wrap(const tl_texture *texture, bool clamp_u, bool clamp_v)

@@ -314,7 +314,8 @@ bool tl_run_lamps(const struct tl_lamps_job *job, tl_error *error)
                                              .lamps = job->lamps->items,
                                              .params = &job->lamps->shading,
                                              .detail = job->detail_steps,
-                                             .depth_bias_m = job->light_options->depth_bias_m,
+                                             .depth_bias_m = tl_casters_scale(job->casters) *
+                                                             job->light_options->depth_bias_m,
                                              .weight = passes ? 1 / (float)(*job->round + 1) : 1};
     return tl_local_draw(job->local, *job->gpu, &request, error);
 }

@@ -222,7 +222,8 @@ static void upload_regions(const struct tl_lighting *lighting, const struct tl_l
     const struct tl_light_params *params = request->params;
     bool shadowed = params->method != TL_METHOD_UNSHADOWED;
     /* A variance map's bias is a uniform: there it is the paper's, in units of the casters' sphere. */
-    float bias_m = params->visibility == TL_VISIBILITY_DEPTH ? params->depth_bias_m : 0;
+    float sun_bias_m = tl_casters_scale(&request->casters) * params->depth_bias_m;
+    float bias_m = params->visibility == TL_VISIBILITY_DEPTH ? sun_bias_m : 0;
     int regions = request->regions->count, suns = request->suns->count;
     struct region_light *lights = TL_NEW_ARRAY(struct region_light, (size_t)(regions + suns));
     for (int i = 0; i < regions; i++) {
@@ -234,8 +235,7 @@ static void upload_regions(const struct tl_lighting *lighting, const struct tl_l
     for (int i = 0; i < suns; i++) {
         lights[regions + i] = light_of_sun(request, i);
         if (shadowed)
-            copy_view(&tl_shadow_maps_sun_views(request->maps)[i], params->depth_bias_m,
-                      &lights[regions + i]);
+            copy_view(&tl_shadow_maps_sun_views(request->maps)[i], sun_bias_m, &lights[regions + i]);
     }
     glNamedBufferSubData(lighting->regions_buffer, 0, (GLsizeiptr)((size_t)(regions + suns) * sizeof *lights),
                          lights);
@@ -246,7 +246,8 @@ static void use_program(const tl_program *program, const struct tl_light_request
 {
     const struct tl_light_params *params = request->params;
     const struct tl_ground *ground = request->ground;
-    float unit_m = 2 * request->casters.radius; /* one unit of depth of a variance map */
+    /* One unit of depth of a variance map, in the metres of the options. */
+    float unit_m = 2 * request->casters.radius / tl_casters_scale(&request->casters);
     glUseProgram(program->id);
     glUniform3fv(EYE, 1, request->eye.raw);
     glUniform2f(ENVIRONMENT_TURN, cosf(request->environment_yaw), sinf(request->environment_yaw));

@@ -81,16 +81,18 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_BOOL(
         light_params, reflect_scene, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT,
         "mirrors (exponent 200 and more) reflect nearby lit surfaces; off: these reflect as black"),
-    TL_OPTION_INT(light_params, map_size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 1, 4096, "texels",
+    TL_OPTION_INT(light_params, map_size, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 8, 4096, "texels",
                   "side of a shadow map; larger: smaller shadows appear, more time and memory"),
     TL_OPTION_ENUM(light_params, moments, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, moments_names,
                    "vsm: precision of depth's moments; half: half the memory, but light leaks within "
                    "centimetres of what shadows"),
     TL_OPTION_FLOAT(light_params, blur_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS, 0, 10, "m",
-                    "shadow blur: sigma is this times the tangent of a region's cone angle; larger: softer"),
-    TL_OPTION_FLOAT(
-        light_params, depth_bias_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m",
-        "minimum depth difference of a shadow; larger: fewer false shadows, but small ones are lost"),
+                    "shadow blur: sigma is this times the tangent of a region's cone angle; larger: softer. "
+                    "Of scenes less than 1 m across less, in proportion"),
+    TL_OPTION_FLOAT(light_params, depth_bias_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m",
+                    "minimum depth difference of a shadow; larger: fewer false shadows, but small ones are "
+                    "lost. Of scenes "
+                    "less than 1 m across less, in proportion"),
     TL_OPTION_FLOAT(
         light_params, min_variance, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m^2",
         "minimum variance of depth in a shadow map; larger: fewer false shadows, more light leaks"),

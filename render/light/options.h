@@ -51,9 +51,9 @@ struct tl_light_params { /* table "light" */
     bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
     int map_size;       /* texels, side of a shadow map */
     int moments;        /* enum tl_moments, of variance maps */
-    float blur_m;       /* metres: the Gaussian's sigma is blur_m x tan(cone) */
-    float depth_bias_m; /* metres */
-    float min_variance; /* m^2, floor of the VSM variance */
+    float blur_m; /* metres, like all below by tl_casters_scale: the Gaussian's sigma is blur_m x tan(cone) */
+    float depth_bias_m;    /* metres */
+    float min_variance;    /* m^2, floor of the VSM variance */
     float bleed_reduction; /* [0, 1): Chebyshev values below it become 0 */
 };
 extern const struct tl_option_table tl_light_options;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#define RADIUS_ORDINARY   0.5f /* metres */
 #define RADIUS_PER_FIGURE 3.0f /* the disc's radius over the figure's height */
 #define WHOLE_TO          0.5f /* share of the radius up to which nothing has faded; as in ground.glsl */
 /* Rings lie at sinh(GROWTH t) / sinh(GROWTH): under a figure of 1.8 m they are 2 to 3 cm apart, at the rim
@@ -31,6 +32,11 @@ bool tl_casters_measure(const tl_surface *surfaces, size_t count, struct tl_cast
             largest = fmaxf(largest, glms_vec3_distance(surfaces[s].positions[v], out->centre));
     out->radius = fmaxf(largest, TL_CASTERS_RADIUS_MIN);
     return true;
+}
+
+float tl_casters_scale(const struct tl_casters *casters)
+{
+    return fminf(casters->radius / RADIUS_ORDINARY, 1);
 }
 
 /* One vertex in the middle, then ring by ring outwards. The last ring goes round the disc. */

@@ -14,6 +14,11 @@ struct tl_casters {
 };
 #define TL_CASTERS_RADIUS_MIN 1e-4f
 
+/* The factor of lengths in shadow maps (bias, blur) that options state for garments: 1 where the casters'
+ * radius is half a metre or more, and in proportion to it below. 4 mm are more than all of a garment
+ * of 1 mm. */
+float tl_casters_scale(const struct tl_casters *casters);
+
 /* Sphere about the middle of the box of all positions. False when a position is not finite. */
 bool tl_casters_measure(const tl_surface *surfaces, size_t count, struct tl_casters *out, tl_error *error);
 

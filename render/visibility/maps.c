@@ -237,7 +237,7 @@ float tl_shadow_sigma(const struct tl_region *region, const struct tl_casters *c
                       float blur_m)
 {
     float texel_m = 2 * casters->radius / (inner_share(map_size) * (float)map_size);
-    return blur_m * tanf(region->cone) / texel_m;
+    return tl_casters_scale(casters) * blur_m * tanf(region->cone) / texel_m;
 }
 
 static void attach_layer(const tl_shadow_maps *maps, int index)

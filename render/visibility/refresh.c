@@ -108,7 +108,9 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
     uint32_t near = tl_trace_occluded_packet(refresh->request->trace, &up);
     for (int k = 0; k < up.count; k++) {
         int i = lane_of[k];
-        bool covered = near >> k & 1 && !lift(refresh, &cluster->probes[i], lanes, i);
+        /* A vertex without a normal has no outside to look from. */
+        bool lost = lanes->nx[i] == 0 && lanes->ny[i] == 0 && lanes->nz[i] == 0;
+        bool covered = lost || (near >> k & 1 && !lift(refresh, &cluster->probes[i], lanes, i));
         *cluster->covered = (uint16_t)((*cluster->covered & ~(1u << i)) | (uint32_t)covered << i);
     }
 }

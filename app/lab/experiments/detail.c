@@ -1,5 +1,6 @@
-/* Fabric detail: heights as normals, parallax and relief, their shadows, and weaves too fine to be seen. Ids
- * C1 to C8, C12 and C13. */
+/* Fabric detail: heights as normals, parallax and relief, their shadows, weaves too fine to be seen, maps
+ * baked of finer meshes, normal maps lit in texture space, and relief at outlines. Ids C1 to C8, C11 to C13.
+ */
 #include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY  WOVEN("8", "2")
@@ -104,6 +105,18 @@ static const struct tl_technique techniques[] = {
      .shown = true},
 };
 
+/* Maps baked of finer meshes. */
+static const struct tl_technique baked[] = {
+    {.picture = "the coarse mesh alone", .id = "C11", SET("detail.mode=normal")},
+    {.picture = "baked normals", .id = "C11", SET("detail.normals=@normals.png")},
+    {.picture = "baked normals, parallax by baked heights",
+     .id = "C11",
+     SET("detail.normals=@normals.png", "detail.heights=@heights.exr", "detail.mode=parallax_limited")},
+    {.picture = "baked normals, relief by baked heights",
+     .id = "C11",
+     SET("detail.normals=@normals.png", "detail.heights=@heights.exr", "detail.mode=relief")},
+};
+
 /* Normal maps lit in texture space. */
 #define TEXTURE_SPACE(size) "shading.space=texture", "shading.texture_size=" size
 #define BY_MATRIX           "shading.coordinates=matrix"
@@ -142,128 +155,161 @@ static const struct tl_experiment_appearance threads[] = {
      .reference = {"detail.minify=none", "image.supersample=8"}},
 };
 
-static const struct tl_experiment experiments[] = {
-    {.output = TL_OUTPUT_PAGE,
-     .name = "detail",
-     .title = "The trade of fabric detail: error against time",
-     .text =
-         FRONT "The scene has one lamp. Where threads are visible, the reference is relief mapping of 256 "
-               "steps with its own shadows; elsewhere, an image of 64 samples a pixel.",
-     .scene = "review",
-     .base = {LAMPLIT, "lamp.pitch_deg=25", "material.use_file=false"},
-     APPEARANCES(threads),
-     TECHNIQUES(techniques),
-     .warm_up = 1,
-     .measured = 9},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c1",
-     .scene = "gallery",
-     .title = "C1, C2  Heights as normals",
-     .text = "A weave of yarns 8 mm apart. A normal map by finite differences assumes square patches.",
-     .exact_text = "Blinn's perturbed normal at every sample (C2), which follows the stretch of the "
-                   "parametrisation; its own oracle is a cylinder in closed form (test cylinder)",
-     .solid = "torus",
-     .base = {LAMPLIT, BUMPY},
-     .reference = {.assignments = {"detail.mode=blinn"}},
-     .ids = {"C1"},
-     TECHNIQUES(techniques)},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c3",
-     .scene = "gallery",
-     .title = "C3  Frames rebuilt every frame",
-     .text = "A highlight that follows the threads, on meshes of three sizes. In the strip the sheet falls.",
-     .exact_text = "the same mesh ray traced",
-     .motion = TL_MOTION_CLOTH,
-     .motion_step = 4,
-     .solid = "torus",
-     .base = {"material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1",
-              "material.specular=[0.15, 0.15, 0.15]"},
-     .reference = {.assignments = {"light.method=reference", FEW_SAMPLES}},
-     .side = 384,
-     .ids = {"C3"},
-     TECHNIQUES(techniques)},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c4",
-     .scene = "gallery",
-     .title = "C4  Parallax",
-     .text = "Parallax mapping reads the maps where the view ray meets the mean height, so that bumps "
-             "shift with the viewer; a limit on the shift is meant to reduce its errors at grazing views.",
-     .exact_text = MARCHED,
-     .claims = {{"offset-limited parallax", "parallax", "[004]"}, {"parallax", "normal map alone", "[004]"}},
-     .solid = "torus",
-     .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16"},
-     .reference = {.assignments = {"light.method=reference", "detail.mode=relief"}},
-     .side = 256,
-     .ids = {"C4"},
-     TECHNIQUES(techniques)},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c5",
-     .scene = "gallery",
-     .title = "C5  Shadows of bumps",
-     .text = "Horizon angles are stored for several directions a texel, on both sides of the cloth. "
-             "Between two directions the slope of a horizon is linear, which is exact for a straight yarn.",
-     .exact_text =
-         "shadows marched through the heights in 256 steps, to which a march of 512 is equal within "
-         "a hundredth of these errors",
-     .claims = {{"horizon map, 32 angles", "horizon map, 16 angles", "[001] 4.4"},
-                {"horizon map, 16 angles", "horizon map, 8 angles", "[001] 4.4"},
-                {"horizon map, 8 angles", "no shadow", "[001] 4.4"}},
-     .solid = "torus",
-     .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief", "lamp.yaw_deg=-70",
-              "lamp.pitch_deg=20"},
-     .reference = {.assignments = {"detail.shadow=relief", "detail.steps=256"}},
-     .ids = {"C5"},
-     TECHNIQUES(techniques)},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c6",
-     .scene = "gallery",
-     .title = "C6  Relief by number of steps",
-     .text = "Each step goes to the end of a cone which is so wide that the ray crosses the height field "
-             "at most once within it; the last step is then bisected.",
-     .exact_text = MARCHED,
-     .claims = {{"16 steps", "4 steps", "[001] 4.4"},
-                {"4 steps, refined", "4 steps", "[001] 4.4"},
-                {"64 steps, refined", "16 steps, refined", "[001] 4.4"}},
-     .solid = "torus",
-     .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief"},
-     .reference = {.assignments = {"light.method=reference"}},
-     .side = 256,
-     .ids = {"C6"},
-     TECHNIQUES(techniques)},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c7",
-     .scene = "gallery",
-     .title = "C7  Yarns that differ in gloss",
-     .text = "Glossiness varies from texel to texel.",
-     .exact_text = "ray traced",
-     .solid = "torus",
-     .base = {BUMPY},
-     .reference = {.assignments = {"light.method=reference", FEW_SAMPLES}},
-     .side = 384,
-     .ids = {"C7"},
-     TECHNIQUES(techniques)},
-    {.output = TL_OUTPUT_PICTURES,
-     .name = "c8",
-     .scene = "gallery",
-     .title = "C8  A fine weave far away",
-     .text =
-         "Yarns are 2.4 mm apart, about two pixels. Without its bumps the cloth would look like "
-         "plastic; roughness is widened by the variance of their normals: by one, or by those along weft "
-         "and warp and their covariance, which turns the highlight where bumps run across the cloth (test "
-         "lean). Slopes of the built-in weaves and knits are correlated by less than 0.04. In the strip "
-         "the camera turns: what changes more than the exact picture shimmers.",
-     .exact_text = "64 samples a pixel, none of them widened",
-     .side = 256,
-     .supersample = 1,
-     .motion = TL_MOTION_CAMERA,
-     .motion_step = 0.5f,
-     .claims = {{"LEAN", "Toksvig", "[LEAN mapping]"}, {"Toksvig", "no widening", "[Toksvig]"}},
-     .solid = "torus",
-     .base = {LAMPLIT, "weave.pattern=plain", "weave.warp_pitch_mm=2.4", "weave.weft_pitch_mm=2.4",
-              "weave.crimp_mm=0.6", "material.specular=[0.15, 0.15, 0.15]"},
-     .reference = {.assignments = {"image.supersample=8", "detail.minify=none"}},
-     .ids = {"C8"},
-     TECHNIQUES(techniques)},
+static const struct tl_experiment
+    experiments[] =
+        {
+            {.output = TL_OUTPUT_PAGE,
+             .name = "detail",
+             .title = "The trade of fabric detail: error against time",
+             .text = FRONT
+             "The scene has one lamp. Where threads are visible, the reference is relief mapping of 256 "
+             "steps with its own shadows; elsewhere, an image of 64 samples a pixel.",
+             .scene = "review",
+             .base = {LAMPLIT, "lamp.pitch_deg=25", "material.use_file=false"},
+             APPEARANCES(threads),
+             TECHNIQUES(techniques),
+             .warm_up = 1,
+             .measured = 9},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c1",
+             .scene = "gallery",
+             .title = "C1, C2  Heights as normals",
+             .text =
+                 "A weave of yarns 8 mm apart. A normal map by finite differences assumes square patches.",
+             .exact_text = "Blinn's perturbed normal at every sample (C2), which follows the stretch of the "
+                           "parametrisation; its own oracle is a cylinder in closed form (test cylinder)",
+             .solid = "torus",
+             .base = {LAMPLIT, BUMPY},
+             .reference = {.assignments = {"detail.mode=blinn"}},
+             .ids = {"C1"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c3",
+             .scene = "gallery",
+             .title = "C3  Frames rebuilt every frame",
+             .text = "A highlight that follows the threads, on meshes of three sizes. In the strip the sheet "
+                     "falls.",
+             .exact_text = "the same mesh ray traced",
+             .motion = TL_MOTION_CLOTH,
+             .motion_step = 4,
+             .solid = "torus",
+             .base = {"material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1",
+                      "material.specular=[0.15, 0.15, 0.15]"},
+             .reference = {.assignments = {"light.method=reference", FEW_SAMPLES}},
+             .side = 384,
+             .ids = {"C3"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c4",
+             .scene = "gallery",
+             .title = "C4  Parallax",
+             .text =
+                 "Parallax mapping reads the maps where the view ray meets the mean height, so that bumps "
+                 "shift with the viewer; a limit on the shift is meant to reduce its errors at grazing "
+                 "views.",
+             .exact_text = MARCHED,
+             .claims = {{"offset-limited parallax", "parallax", "[004]"},
+                        {"parallax", "normal map alone", "[004]"}},
+             .solid = "torus",
+             .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16"},
+             .reference = {.assignments = {"light.method=reference", "detail.mode=relief"}},
+             .side = 256,
+             .ids = {"C4"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c5",
+             .scene = "gallery",
+             .title = "C5  Shadows of bumps",
+             .text = "Horizon angles are stored for several directions a texel, on both sides of the cloth. "
+                     "Between two directions the slope of a horizon is linear, which is exact for a straight "
+                     "yarn.",
+             .exact_text =
+                 "shadows marched through the heights in 256 steps, to which a march of 512 is equal within "
+                 "a hundredth of these errors",
+             .claims = {{"horizon map, 32 angles", "horizon map, 16 angles", "[001] 4.4"},
+                        {"horizon map, 16 angles", "horizon map, 8 angles", "[001] 4.4"},
+                        {"horizon map, 8 angles", "no shadow", "[001] 4.4"}},
+             .solid = "torus",
+             .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief", "lamp.yaw_deg=-70",
+                      "lamp.pitch_deg=20"},
+             .reference = {.assignments = {"detail.shadow=relief", "detail.steps=256"}},
+             .ids = {"C5"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c6",
+             .scene = "gallery",
+             .title = "C6  Relief by number of steps",
+             .text =
+                 "Each step goes to the end of a cone which is so wide that the ray crosses the height field "
+                 "at most once within it; the last step is then bisected.",
+             .exact_text = MARCHED,
+             .claims = {{"16 steps", "4 steps", "[001] 4.4"},
+                        {"4 steps, refined", "4 steps", "[001] 4.4"},
+                        {"64 steps, refined", "16 steps, refined", "[001] 4.4"}},
+             .solid = "torus",
+             .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16", "detail.mode=relief"},
+             .reference = {.assignments = {"light.method=reference"}},
+             .side = 256,
+             .ids = {"C6"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c7",
+             .scene = "gallery",
+             .title = "C7  Yarns that differ in gloss",
+             .text = "Glossiness varies from texel to texel.",
+             .exact_text = "ray traced",
+             .solid = "torus",
+             .base = {BUMPY},
+             .reference = {.assignments = {"light.method=reference", FEW_SAMPLES}},
+             .side = 384,
+             .ids = {"C7"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c8",
+             .scene = "gallery",
+             .title = "C8  A fine weave far away",
+             .text = "Yarns are 2.4 mm apart, about two pixels. Without its bumps the cloth would look like "
+                     "plastic; roughness is widened by the variance of their normals: by one, or by those "
+                     "along weft "
+                     "and warp and their covariance, which turns the highlight where bumps run across the "
+                     "cloth (test "
+                     "lean). Slopes of the built-in weaves and knits are correlated by less than 0.04. In "
+                     "the strip "
+                     "the camera turns: what changes more than the exact picture shimmers.",
+             .exact_text = "64 samples a pixel, none of them widened",
+             .side = 256,
+             .supersample = 1,
+             .motion = TL_MOTION_CAMERA,
+             .motion_step = 0.5f,
+             .claims = {{"LEAN", "Toksvig", "[LEAN mapping]"}, {"Toksvig", "no widening", "[Toksvig]"}},
+             .solid = "torus",
+             .base = {LAMPLIT, "weave.pattern=plain", "weave.warp_pitch_mm=2.4", "weave.weft_pitch_mm=2.4",
+                      "weave.crimp_mm=0.6", "material.specular=[0.15, 0.15, 0.15]"},
+             .reference = {.assignments = {"image.supersample=8", "detail.minify=none"}},
+             .ids = {"C8"},
+             TECHNIQUES(techniques)},
+            {.output = TL_OUTPUT_PICTURES,
+             .name = "c11",
+             .scene = "gallery",
+             .title = "C11  Maps baked of a finer mesh",
+             .text = "Wrinkles of 4 mm are in a mesh of 150,000 and one of 130,000 triangles. Garments of "
+                     "1,536 and 256 "
+                     "triangles, which lie amid them, take their normals and heights from maps of 512 texels "
+                     "a side "
+                     "(toile bake). Outlines stay those of the coarse meshes.",
+             .exact_text = "the finer mesh, ray traced",
+             .claims = {{"baked normals", "the coarse mesh alone", "[000] 5"},
+                        {"baked normals, relief by baked heights", "baked normals", "[004]"}},
+             .solid = "torus",
+             .base = {"scene.garment=@coarse.obj", "scene.avatar=none", "scene.drape=authored",
+                      "scene.smooth=false", "construction.show=never"},
+             .reference = {.assignments = {"scene.garment=@fine.obj", TRACED, FEW_SAMPLES}},
+             .reference_alone = true,
+             .baked = true,
+             .side = 256,
+             .ids = {"C11"},
+             TECHNIQUES(baked)},
+},
     {.output = TL_OUTPUT_PICTURES,
      .name = "c12",
      .scene = "gallery",
@@ -301,5 +347,6 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {CURVED("512"), "detail.refine=16"}},
      .ids = {"C13"},
      TECHNIQUES(outlines)},
-};
+}
+;
 const struct tl_experiment_list tl_detail_experiments = {experiments, TL_COUNT(experiments)};

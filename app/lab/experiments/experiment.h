@@ -103,6 +103,8 @@ struct tl_experiment {
     enum tl_picture_motion motion; /* pictures */
     float motion_step;
     struct tl_experiment_claim claims[TL_EXPERIMENT_CLAIMS]; /* pictures: {0} ends them */
+    bool baked; /* pictures: its objects are coarse meshes and maps that were baked of finer ones, files of
+                   which rows name "@coarse.obj", "@fine.obj", "@normals.png" and "@heights.exr" */
     bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
 };
 

@@ -3,6 +3,7 @@
 #include "config/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static bool step(struct tl_experiment_picture *picture, enum tl_output output)
 {
@@ -47,6 +48,38 @@ static size_t append(const char **all, size_t count, const char *const *list, si
     return count;
 }
 
+char *tl_picture_file(const struct tl_experiment_picture *picture, enum tl_picture_object object,
+                      const char *name)
+{
+    return tl_format("%s/%s-%s-%s", picture->folder, picture->experiment->name,
+                     object == TL_PICTURE_SOLID ? "solid" : "sheet", name);
+}
+
+/* Puts paths in place of "@NAME". */
+static char *with_path(const struct tl_experiment_picture *picture, enum tl_picture_object object,
+                       const char *assignment)
+{
+    const char *value = strstr(assignment, "=@");
+    if (!value || !picture->folder)
+        return tl_copy_string(assignment);
+    char *file = tl_picture_file(picture, object, value + 2);
+    char *made = tl_format("%.*s=%s", (int)(value - assignment), assignment, file);
+    free(file);
+    return made;
+}
+
+static bool assign(const struct tl_experiment_picture *picture, enum tl_picture_object object,
+                   const char *const *list, size_t length, struct tl_settings *out, tl_error *error)
+{
+    bool assigned = true;
+    for (size_t i = 0; assigned && i < length && list[i]; i++) {
+        char *one = with_path(picture, object, list[i]);
+        assigned = tl_settings_assign(out, (const char *const[]){one}, 1, error);
+        free(one);
+    }
+    return assigned;
+}
+
 #define OWN 7 /* assignments that depend on the object, the size and the preset */
 
 bool tl_picture_settings(const struct tl_experiment_picture *picture, enum tl_picture_object object, int side,
@@ -73,12 +106,17 @@ bool tl_picture_settings(const struct tl_experiment_picture *picture, enum tl_pi
         count = append(all, count, setup->assignments, TL_COUNT(setup->assignments));
     if (is_solid)
         count = append(all, count, experiment->solid_only, TL_COUNT(experiment->solid_only));
-    const struct tl_settings_source source = {experiment->scene, all, count};
+    char *given[TL_COUNT(all)];
+    for (size_t i = 0; i < count; i++)
+        given[i] = with_path(picture, object, all[i]);
+    const struct tl_settings_source source = {experiment->scene, (const char *const *)given, count};
     bool chosen = tl_settings_load(out, &source, error);
     if (chosen && reference)
-        chosen = tl_settings_assign(out, exact->assignments, TL_COUNT(exact->assignments), error);
+        chosen = assign(picture, object, exact->assignments, TL_COUNT(exact->assignments), out, error);
     if (chosen && reference && appearance)
-        chosen = tl_settings_assign(out, appearance->reference, TL_COUNT(appearance->reference), error);
+        chosen = assign(picture, object, appearance->reference, TL_COUNT(appearance->reference), out, error);
+    for (size_t i = 0; i < count; i++)
+        free(given[i]);
     for (size_t i = 0; i < OWN; i++)
         free(own[i]);
     return chosen;

@@ -12,7 +12,12 @@ struct tl_experiment_picture {
     const struct tl_experiment *experiment;
     const struct tl_experiment_appearance *appearance; /* NULL: the experiment has none */
     const struct tl_technique *technique;
+    const char *folder; /* of the files that rows name; NULL: there are none */
 };
+
+/* The file that a row names as "@NAME": one for each experiment and object, in the folder. New string. */
+char *tl_picture_file(const struct tl_experiment_picture *picture, enum tl_picture_object object,
+                      const char *name);
 
 /* Steps to the experiment's next picture, appearance by appearance; from {experiment} to the first one. False
  * past the last one. */
@@ -24,7 +29,7 @@ char *tl_picture_name(const struct tl_experiment_picture *picture, enum tl_outpu
 
 /* The settings that draw the picture as a square of `side` pixels; with `reference` those of its exact
  * evaluation. Settings are read from the scene's file for every picture, because a preset or fabric that an
- * assignment names is a layer below the other assignments. */
+ * assignment names is a layer below the other assignments. "key=@NAME" names a file (tl_picture_file). */
 bool tl_picture_settings(const struct tl_experiment_picture *picture, enum tl_picture_object object, int side,
                          bool reference, struct tl_settings *out, tl_error *error);
 

@@ -217,6 +217,12 @@ static const struct tl_experiment_appearance models[] = {
 /* Appearances of the mesh that bench shading draws (app/lab/trade/bench_shading.c). */
 static const struct tl_experiment_appearance meshes[] = {{.name = "plain"}, {.name = "decal and bumps"}};
 
+/* Hems and stitches vary f0, glossiness and the spread of normals from pixel to pixel. */
+static const struct tl_experiment_appearance hems[] = {
+    {.name = "hem", .title = "with hem and stitches", .assignments = {"construction.show=auto"}},
+    {.name = "plain", .title = "plain cloth", .assignments = {"construction.show=never"}},
+};
+
 static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_TABLE,
      .name = "shading",
@@ -237,13 +243,17 @@ static const struct tl_experiment experiments[] = {
      .name = "a1",
      .scene = "gallery",
      .title = "A1  Torrance-Sparrow from two tables",
-     .text = "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
-             "[Heidrich and Seidel 1999, section 3.1].",
+     .text =
+         "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
+         "[Heidrich and Seidel 1999, section 3.1]. A table holds one f0, glossiness and width: what hems "
+         "and stitches change of them from pixel to pixel it leaves out, the formula does not. The torus has "
+         "neither.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",
      .base = {LAMPLIT, "material.model=torrance_sparrow", "material.fresnel=dielectric",
               "material.width_weft=0.3", "material.specular=[1, 1, 1]"},
      .reference = {.assignments = {"shading.reflectance=direct"}},
+     APPEARANCES(hems),
      .ids = {"A1"},
      TECHNIQUES(techniques)},
     {.output = TL_OUTPUT_PICTURES,

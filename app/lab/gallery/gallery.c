@@ -1,6 +1,7 @@
 #include "app/lab/gallery/gallery.h"
 
 #include "app/lab/experiments/experiments.h"
+#include "app/lab/gallery/baked.h"
 #include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/store.h"
 #include "app/report/folder.h"
@@ -216,8 +217,8 @@ static struct tl_gallery_entry make_entry(const struct tl_experiment_picture *pi
 static bool draw_section(struct gallery_drawing *drawing, const struct tl_experiment *section, bool quick,
                          struct tl_gallery *out, tl_error *error)
 {
-    struct tl_experiment_picture picture = {.experiment = section};
-    bool done = true;
+    struct tl_experiment_picture picture = {.experiment = section, .folder = drawing->folder};
+    bool done = !section->baked || tl_baked_make(&picture, error);
     for (size_t number = 1; done && !(quick && number > 1) && tl_picture_next(&picture, TL_OUTPUT_PICTURES);
          number++) {
         struct tl_gallery_entry *entry = &out->entries[out->count++];

@@ -1,5 +1,5 @@
-/* toile stability: the extremes, cell by cell. Each is exact, bounded or refused; anything else is a failure.
- */
+/* toile stability: the extremes, cell by cell. Each is exact, bounded, coarse or refused; anything else is
+ * a failure. */
 #include "app/cli/json.h"
 #include "app/cli/topic.h"
 #include "app/lab/stability/commands.h"
@@ -9,7 +9,8 @@
 
 static void print_json(struct tl_stability *stability)
 {
-    static const char *const keys[TL_OUTCOME_COUNT] = {"exact", "bounded", "refused", "silent", "nan"};
+    static const char *const keys[TL_OUTCOME_COUNT] = {"exact",   "bounded", "coarse",
+                                                       "refused", "silent",  "nan"};
     cJSON *object = cJSON_CreateObject();
     cJSON_AddNumberToObject(object, "cells", tl_stability_cells(stability));
     for (int i = 0; i < TL_OUTCOME_COUNT; i++)
@@ -22,9 +23,10 @@ static void print_json(struct tl_stability *stability)
 static void print_counts(const struct tl_stability *stability)
 {
     const int *counts = stability->counts;
-    printf("\n%d cells: %d exact, %d bounded, %d refused, %d silent, %d with NaN\n",
+    printf("\n%d cells: %d exact, %d bounded by %.0f %%, %d coarse, %d refused, %d silent, %d with NaN\n",
            tl_stability_cells(stability), counts[TL_OUTCOME_EXACT], counts[TL_OUTCOME_BOUNDED],
-           counts[TL_OUTCOME_REFUSED], counts[TL_OUTCOME_SILENT], counts[TL_OUTCOME_NAN]);
+           100 * TL_STATED_SHARE, counts[TL_OUTCOME_COARSE], counts[TL_OUTCOME_REFUSED],
+           counts[TL_OUTCOME_SILENT], counts[TL_OUTCOME_NAN]);
 }
 
 bool tl_command_stability(const struct tl_arguments *arguments, tl_error *error)

@@ -59,6 +59,17 @@ bool tl_cloth_is_finite(const tl_cloth *cloth, size_t vertex_count)
     return finite;
 }
 
+double tl_cloth_farthest_from(const tl_cloth *cloth, const tl_garment *garment)
+{
+    const tl_mesh *mesh = &garment->model.mesh;
+    vec3s *x = read_positions(cloth, mesh->vertex_count);
+    double farthest = 0;
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        farthest = fmax(farthest, (double)glms_vec3_distance(x[i], mesh->positions[i]));
+    free(x);
+    return farthest;
+}
+
 static bool same_state(const tl_cloth *cloth, size_t vertex_count, const vec3s *x,
                        const struct tl_cloth_report *before)
 {
@@ -152,17 +163,6 @@ static int frame_count(const tl_cloth *cloth, const struct subject *subject)
     return (int)fmin(fmax(FRAMES_WORK / work, FRAMES_MIN), FRAMES_MAX);
 }
 
-static double farthest_from(const tl_cloth *cloth, const tl_garment *garment)
-{
-    const tl_mesh *mesh = &garment->model.mesh;
-    vec3s *x = read_positions(cloth, mesh->vertex_count);
-    double farthest = 0;
-    for (size_t i = 0; i < mesh->vertex_count; i++)
-        farthest = fmax(farthest, (double)glms_vec3_distance(x[i], mesh->positions[i]));
-    free(x);
-    return farthest;
-}
-
 /* Growth of the cloth's energy since `first`, a ratio. One sweep of `preview` leaves stiff threads strained:
  * by definition this is elastic energy, but the solver cannot release it. For `preview` the growth is
  * therefore the larger of that of the kinetic energy and the square of that of the largest strain. */
@@ -207,13 +207,16 @@ static enum tl_outcome judge_hanging(const tl_cloth *cloth, const tl_garment *ga
     double rounding_m = FLOAT_SHARE * subject->tube.height_m;
     double fallen_m = 0.5 * gravity * passed_s * (passed_s + subject->params.dt);
     double bound_m = fallen_m + SWING * slack(cloth, subject) + rounding_m;
-    double strayed_m = farthest_from(cloth, garment);
+    double strayed_m = tl_cloth_farthest_from(cloth, garment);
     cell->strayed = strayed_m / (EXACT_SHARE * fmin(sink_m, fallen_m) + rounding_m);
+    double length_m = subject->tube.height_m + sink_m;
+    cell->error = (struct tl_cell_error){.share = strayed_m / length_m, .own = 1e3 * strayed_m, .unit = "mm"};
     if (cell->strayed <= 1)
         return TL_OUTCOME_EXACT;
+    bound_m = fmin(bound_m, TL_STATED_SHARE * length_m);
     if (strayed_m <= bound_m)
         return TL_OUTCOME_BOUNDED;
-    tl_fail(&cell->error, TL_UNSTABLE, "left its place by %.3g m, and may by %.3g m", strayed_m, bound_m);
+    tl_fail(&cell->message, TL_UNSTABLE, "left its place by %.3g m, and may by %.3g m", strayed_m, bound_m);
     return TL_OUTCOME_SILENT;
 }
 
@@ -221,9 +224,9 @@ static enum tl_outcome run_hanging(struct subject *subject, struct tl_envelope_c
 {
     double sink_m, unused;
     tl_garment garment = make_hanging(subject, &sink_m);
-    tl_cloth *cloth = tl_cloth_create(&garment, &subject->fabric, &subject->params, &cell->error);
+    tl_cloth *cloth = tl_cloth_create(&garment, &subject->fabric, &subject->params, &cell->message);
     enum tl_outcome outcome =
-        cloth ? run_frames(cloth, subject, &unused, &cell->error) : tl_refusal_outcome(&cell->error);
+        cloth ? run_frames(cloth, subject, &unused, &cell->message) : tl_refusal_outcome(&cell->message);
     if (outcome == TL_OUTCOME_BOUNDED)
         outcome = judge_hanging(cloth, &garment, subject, sink_m, cell);
     tl_cloth_destroy(&cloth);
@@ -237,12 +240,12 @@ static enum tl_outcome run_scrambled(struct subject *subject, struct tl_envelope
         subject->tube.columns ? tl_tube_make(&subject->tube, NULL, SCRAMBLE) : tl_triangle_make(0, SCRAMBLE);
     struct tl_cloth_params weightless = subject->params;
     weightless.gravity = 0;
-    tl_cloth *cloth = tl_cloth_create(&garment, &subject->fabric, &weightless, &cell->error);
-    enum tl_outcome outcome =
-        cloth ? run_frames(cloth, subject, &cell->growth, &cell->error) : tl_refusal_outcome(&cell->error);
+    tl_cloth *cloth = tl_cloth_create(&garment, &subject->fabric, &weightless, &cell->message);
+    enum tl_outcome outcome = cloth ? run_frames(cloth, subject, &cell->growth, &cell->message)
+                                    : tl_refusal_outcome(&cell->message);
     if (outcome == TL_OUTCOME_BOUNDED && !(cell->growth <= TL_ENVELOPE_GROWTH)) {
         outcome = TL_OUTCOME_SILENT;
-        tl_fail(&cell->error, TL_UNSTABLE, "its energy grew %.3g times", cell->growth);
+        tl_fail(&cell->message, TL_UNSTABLE, "its energy grew %.3g times", cell->growth);
     }
     tl_cloth_destroy(&cloth);
     tl_garment_release(&garment);
@@ -252,7 +255,7 @@ static enum tl_outcome run_scrambled(struct subject *subject, struct tl_envelope
 struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested)
 {
     struct subject subject = make_subject(tested);
-    struct tl_envelope_cell cell = {.run = true, .strayed = NAN, .growth = NAN};
+    struct tl_envelope_cell cell = {.run = true, .error = TL_CELL_NO_ERROR, .strayed = NAN, .growth = NAN};
     struct tl_stopwatch watch = tl_stopwatch_start();
     omp_set_num_threads(
         tested->size->whole ? 1 : omp_get_num_procs()); /* threads cost more than they gain on small meshes */

@@ -5,7 +5,8 @@
  * its place by more than a thousandth of what it would sink, or of a free fall in the time that passes,
  * whichever is less (and a millionth of the tube, for its float positions). Otherwise it is bounded if no
  * vertex moves farther than a free fall plus twice the distance to the position where `preview` rests
- * (tl_tube_slack, which is large on needle triangles of little mass). Then the same tube without weight
+ * (tl_tube_slack, which is large on needle triangles of little mass), and no farther than TL_STATED_SHARE of
+ * the tube's length as it hangs. Then the same tube without weight
  * starts with every vertex displaced by a fifth of its cells: its energy must not exceed TL_ENVELOPE_GROWTH
  * times the initial energy (of `preview`: kinetic energy and the squared strain). A solver must refuse what
  * it cannot solve, with a message and the last good state. Times in CPU ms. */
@@ -37,10 +38,11 @@ enum { TL_ENVELOPE_STIFFNESSES = 12, TL_ENVELOPE_STEPS = 5, TL_ENVELOPE_RATIOS =
 struct tl_envelope_cell {
     bool run; /* false: not part of this size */
     enum tl_outcome outcome;
-    double strayed; /* displacement over the limit of exact */
-    double growth;  /* largest energy of any frame over the initial one */
+    struct tl_cell_error error; /* mm that it strayed; of the tube's length as it hangs */
+    double strayed;             /* displacement over the limit of exact */
+    double growth;              /* largest energy of any frame over the initial one */
     double cpu_ms;
-    tl_error error; /* why it was refused, or what is wrong */
+    tl_error message; /* why it was refused, or what is wrong */
 };
 
 /* The parameters of a cell. `height_m` is the tube's. */
@@ -55,6 +57,9 @@ struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested);
 
 /* Whether the positions of `vertex_count` render vertices and the energies of a cloth are finite. */
 bool tl_cloth_is_finite(const tl_cloth *cloth, size_t vertex_count);
+
+/* How far the vertex that moved most is from where the garment has it, metres. */
+double tl_cloth_farthest_from(const tl_cloth *cloth, const tl_garment *garment);
 
 /* Simulates one frame. If it is refused: REFUSED where the message is clear and the state is that before the
  * frame, otherwise SILENT or NAN with the reason in `error`. If not: BOUNDED where all is finite, otherwise

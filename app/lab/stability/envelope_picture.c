@@ -16,7 +16,8 @@
 
 static const uint32_t paper = 0xfbfaf8, ink = 0x1d2126, soft = 0x5c6670, nothing = 0xefece6;
 /* Colours differ in lightness, too, for colour-blind readers. */
-static const uint32_t colours[TL_OUTCOME_COUNT] = {0x2c8a57, 0x8fc7e8, 0xc9c4ba, 0xd3650b, 0xbd1030};
+static const uint32_t colours[TL_OUTCOME_COUNT] = {0x2c8a57, 0x8fc7e8, 0xe6c84f,
+                                                   0xc9c4ba, 0xd3650b, 0xbd1030};
 
 /* 1e3 rather than 1e+03. */
 static void spell_power(char text[40], double value, const char *unit)

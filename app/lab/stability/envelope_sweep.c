@@ -89,7 +89,7 @@ void tl_envelope_sweep_release(struct tl_envelope_sweep *sweep)
 static bool spell_line(const struct tl_envelope_sweep *sweep, int solver, size_t size, int step,
                        char lines[TL_ENVELOPE_RATIOS][TL_ENVELOPE_STIFFNESSES + 1])
 {
-    static const char letters[TL_OUTCOME_COUNT + 1] = "=b.S!";
+    static const char letters[TL_OUTCOME_COUNT + 1] = "=bc.S!";
     bool any = false;
     for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++) {
         for (int k = 0; k < TL_ENVELOPE_STIFFNESSES; k++) {
@@ -106,9 +106,10 @@ static bool spell_line(const struct tl_envelope_sweep *sweep, int solver, size_t
 void tl_envelope_print(const struct tl_envelope_sweep *sweep)
 {
     char lines[TL_ENVELOPE_RATIOS][TL_ENVELOPE_STIFFNESSES + 1];
-    printf("the envelope of cloth, stiffness 1e-2 to 1e9 N/m from left to right\n"
-           "= exact   b bounded   . refused   S SILENT   ! NaN   (space: not run)\n\n%-12s%-12s%-8s",
-           "solver", "particles", "dt");
+    printf(
+        "the envelope of cloth, stiffness 1e-2 to 1e9 N/m from left to right\n"
+        "= exact   b bounded   c coarse   . refused   S SILENT   ! NaN   (space: not run)\n\n%-12s%-12s%-8s",
+        "solver", "particles", "dt");
     for (int ratio = 0; ratio < TL_ENVELOPE_RATIOS; ratio++)
         printf("  masses 1:%-5.0g", tl_envelope_ratios[ratio]);
     putchar('\n');

@@ -32,21 +32,25 @@ struct trial {
     double max_speed; /* m/s, of what went farthest in the last frame */
 };
 
-/* The bound of a trial that is not refused. Its state must be finite in any case. */
+/* The bound of a trial that is not refused. Its state must be finite in any case. Errors are lengths, and
+ * shares of the metre that the sheet is wide: */
 enum promise {
     REFUSES, /* must be refused with a clear message */
-    ENERGY,  /* kinetic energy never exceeds the potential energy lost, but for HEADROOM */
+    ENERGY,  /* kinetic energy never exceeds the potential energy lost, but for HEADROOM; as the height to
+                which it would lift the sheet */
     OUTSIDE, /* finally no vertex is deeper in the avatar than DEEP_M */
-    RESTS, /* in the last frame no vertex is faster than REST_MS, within which explicit substeps oscillate */
-    FINITE,
+    RESTS,   /* in the last frame no vertex is faster than REST_MS, within which explicit substeps oscillate;
+                how far it goes in that frame */
+    FINITE,  /* no more: how much longer than at rest an edge is, as a share of the edge */
 };
 
 struct extreme {
     const char *name;
     enum promise promise;
     void (*change)(struct trial *trial);
-    void (*act)(struct trial *trial, int frame);         /* before a frame; NULL: nothing happens */
-    enum tl_outcome (*run)(int solver, tl_error *found); /* instead of all that */
+    void (*act)(struct trial *trial, int frame); /* before a frame; NULL: nothing happens */
+    /* Instead of all that. */
+    enum tl_outcome (*run)(int solver, struct tl_cell_error *error, tl_error *found);
 };
 
 static void say(tl_error *found, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -275,13 +279,15 @@ static enum tl_outcome refuse_numbers(int solver, const struct tl_option_table *
     return outcome;
 }
 
-static enum tl_outcome refuse_fabrics(int solver, tl_error *found)
+static enum tl_outcome refuse_fabrics(int solver, struct tl_cell_error *error, tl_error *found)
 {
+    (void)error;
     return refuse_numbers(solver, &tl_cloth_fabric_options, true, found);
 }
 
-static enum tl_outcome refuse_params(int solver, tl_error *found)
+static enum tl_outcome refuse_params(int solver, struct tl_cell_error *error, tl_error *found)
 {
+    (void)error;
     return refuse_numbers(solver, &tl_cloth_options, false, found);
 }
 
@@ -400,7 +406,8 @@ static void nan_ball(struct trial *trial, int frame)
 
 /* ---- Denormals and sizes ---- */
 
-static double fastest_frame_ms(int solver, double gravity)
+/* `strayed_m`: how far the farthest vertex went. */
+static double fastest_frame_ms(int solver, double gravity, double *strayed_m)
 {
     tl_garment garment = tl_sheet_make(2 * SIDE, TL_SHEET_EDGE, false);
     struct tl_cloth_fabric fabric = *(const struct tl_cloth_fabric *)tl_cloth_fabric_options.defaults;
@@ -416,38 +423,47 @@ static double fastest_frame_ms(int solver, double gravity)
             break;
         fastest = fmin(fastest, tl_stopwatch_read(&watch).cpu_ms);
     }
+    *strayed_m = cloth ? tl_cloth_farthest_from(cloth, &garment) : NAN;
     tl_cloth_destroy(&cloth);
     tl_garment_release(&garment);
     return fastest;
 }
 
-/* Gravity so small that every velocity is a denormal number. */
-static enum tl_outcome time_denormals(int solver, tl_error *found)
+static struct tl_cell_error error_in_mm(double length_m, double whole_m)
 {
-    double ratio = fastest_frame_ms(solver, 1e-310) / fastest_frame_ms(solver, 9.81);
-    say(found, "a frame takes %.2f times as long", ratio);
-    return ratio <= SLOWER ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
+    return (struct tl_cell_error){.share = length_m / whole_m, .own = 1e3 * length_m, .unit = "mm"};
 }
 
-static enum tl_outcome hang_tube(int solver, double height_m, tl_error *found)
+/* Gravity so small that every velocity is a denormal number, and the sheet stays where it is. */
+static enum tl_outcome time_denormals(int solver, struct tl_cell_error *error, tl_error *found)
+{
+    double strayed_m, unused;
+    double ratio = fastest_frame_ms(solver, 1e-310, &strayed_m) / fastest_frame_ms(solver, 9.81, &unused);
+    *error = error_in_mm(strayed_m, 1);
+    say(found, "a frame takes %.2f times as long", ratio);
+    return ratio <= SLOWER ? tl_outcome_of(error->share, 0, TL_STATED_SHARE) : TL_OUTCOME_SILENT;
+}
+
+static enum tl_outcome hang_tube(int solver, double height_m, struct tl_cell_error *error, tl_error *found)
 {
     static const struct tl_envelope_size size = {"100", 5, 19, true, true};
     const struct tl_envelope_case tested = {&size, solver, 1e3, 1.0 / 60, 1, height_m};
     struct tl_envelope_cell cell = tl_envelope_run(&tested);
-    *found = cell.error;
+    *found = cell.message;
+    *error = cell.error;
     if (!found->message[0])
         say(found, "strays by %.3g of what is exact", cell.strayed);
     return cell.outcome;
 }
 
-static enum tl_outcome hang_millimetre(int solver, tl_error *found)
+static enum tl_outcome hang_millimetre(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    return hang_tube(solver, 1e-3, found);
+    return hang_tube(solver, 1e-3, error, found);
 }
 
-static enum tl_outcome hang_hundred_metres(int solver, tl_error *found)
+static enum tl_outcome hang_hundred_metres(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    return hang_tube(solver, 100, found);
+    return hang_tube(solver, 100, error, found);
 }
 
 /* clang-format off: a table reads best as one. */
@@ -549,29 +565,37 @@ static double motion_energy(const struct trial *trial)
 }
 
 static enum tl_outcome judge(const struct trial *trial, enum promise promise, double first, double most,
-                             tl_error *found)
+                             struct tl_cell_error *error, tl_error *found)
 {
     struct tl_cloth_report report = tl_cloth_measure(trial->cloth, trial->collider);
-    double headroom = HEADROOM * trial->fabric.areal_density * fabs(trial->params.gravity);
+    double weight = trial->fabric.areal_density * fabs(trial->params.gravity); /* of a square metre */
+    bool kept = true;
     switch (promise) {
     case REFUSES:
         tl_fail(found, TL_UNSTABLE, "taken, and should have been refused");
         return TL_OUTCOME_SILENT;
     case ENERGY:
-        say(found, "energy grew by %.2g J, may by %.2g J", most - first, headroom);
-        return most - first <= headroom ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
+        say(found, "energy grew by %.2g J, may by %.2g J", most - first, HEADROOM * weight);
+        kept = most - first <= HEADROOM * weight;
+        *error = error_in_mm((most - first) / weight, 1);
+        break;
     case OUTSIDE:
         say(found, "%.2g mm deep, largest strain %.2g", 1e3 * report.deepest_m, report.max_strain);
-        return report.deepest_m <= DEEP_M ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
+        kept = report.deepest_m <= DEEP_M;
+        *error = error_in_mm(report.deepest_m, 1);
+        break;
     case RESTS:
         say(found, "%.2g mm/s after %.0f s (%.2g mm/s at its end)", 1e3 * trial->max_speed, report.time_s,
             1e3 * report.max_speed);
-        return trial->max_speed <= REST_MS ? TL_OUTCOME_BOUNDED : TL_OUTCOME_SILENT;
+        kept = trial->max_speed <= REST_MS;
+        *error = error_in_mm(trial->max_speed / trial->params.frame_rate, 1);
+        break;
     case FINITE:
         say(found, "finite; largest strain %.2g", report.max_strain);
+        *error = error_in_mm(report.max_strain / (SIDE - 1), 1.0 / (SIDE - 1));
         break;
     }
-    return TL_OUTCOME_BOUNDED;
+    return kept ? tl_outcome_of(error->share, -1, TL_STATED_SHARE) : TL_OUTCOME_SILENT;
 }
 
 static void keep_pace(struct trial *trial, const vec3s *before, vec3s *after)
@@ -583,7 +607,8 @@ static void keep_pace(struct trial *trial, const vec3s *before, vec3s *after)
                                 (double)glms_vec3_distance(before[i], after[i]) * trial->params.frame_rate);
 }
 
-static enum tl_outcome run_frames(struct trial *trial, const struct extreme *extreme, tl_error *found)
+static enum tl_outcome run_frames(struct trial *trial, const struct extreme *extreme,
+                                  struct tl_cell_error *error, tl_error *found)
 {
     enum tl_outcome outcome = TL_OUTCOME_BOUNDED;
     size_t count = trial->garment.model.mesh.vertex_count;
@@ -599,19 +624,22 @@ static enum tl_outcome run_frames(struct trial *trial, const struct extreme *ext
     }
     free(before);
     free(after);
-    return outcome == TL_OUTCOME_BOUNDED ? judge(trial, extreme->promise, first, most, found) : outcome;
+    return outcome == TL_OUTCOME_BOUNDED ? judge(trial, extreme->promise, first, most, error, found)
+                                         : outcome;
 }
 
-enum tl_outcome tl_cloth_extreme_run(size_t index, int solver, tl_error *found)
+enum tl_outcome tl_cloth_extreme_run(size_t index, int solver, struct tl_cell_error *error, tl_error *found)
 {
     const struct extreme *extreme = &extremes[index];
     struct trial trial;
     *found = (tl_error){0};
+    *error = TL_CELL_NO_ERROR;
     omp_set_num_threads(1); /* threads cost more than they gain on small meshes */
     if (extreme->run)
-        return extreme->run(solver, found);
-    enum tl_outcome outcome = prepare(&trial, solver, extreme, found) ? run_frames(&trial, extreme, found)
-                                                                      : tl_refusal_outcome(found);
+        return extreme->run(solver, error, found);
+    enum tl_outcome outcome = prepare(&trial, solver, extreme, found)
+                                  ? run_frames(&trial, extreme, error, found)
+                                  : tl_refusal_outcome(found);
     release(&trial);
     return outcome;
 }

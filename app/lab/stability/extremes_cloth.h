@@ -13,7 +13,8 @@ extern const size_t tl_cloth_extreme_count;
 const char *tl_cloth_extreme_name(size_t index);
 bool tl_cloth_extreme_is_slow(size_t index); /* takes seconds with any solver but preview */
 
-/* Runs one case. `found` says why it was refused, what is wrong, or what was measured. */
-enum tl_outcome tl_cloth_extreme_run(size_t index, int solver, tl_error *found);
+/* Runs one case. `found` says why it was refused, what is wrong, or what was measured; `error` is by how much
+ * its promise is missed: mm, and a share of the cloth's own size. */
+enum tl_outcome tl_cloth_extreme_run(size_t index, int solver, struct tl_cell_error *error, tl_error *found);
 
 #endif

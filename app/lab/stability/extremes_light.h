@@ -17,19 +17,22 @@ struct tl_extreme_scene {
     bool ground;
 };
 
-/* Errors are relative RMSE against the reference, by method: paper, review. TL_NO_WORSE is the weakest bound:
- * not worse than the same method without shadows. */
+/* Bounds are of the relative RMSE against the reference, by method: paper, review. TL_NO_WORSE is the weakest
+ * bound: not worse than the same method without shadows. */
 enum { TL_EXTREME_PAPER, TL_EXTREME_REVIEW, TL_EXTREME_METHODS };
 #define TL_NO_WORSE (-1.0)
 
 struct tl_extreme {
     const char *name;
-    const char *assignments[3];                     /* "light.key=value" */
+    const char *assignments;                        /* "light.key=value light.key=value"; NULL: none */
     void (*change)(struct tl_extreme_scene *scene); /* makes the ordinary scene extreme; NULL: leaves it */
     double bounds[TL_EXTREME_METHODS];
     const char *why; /* of the bound, or of the refusal */
-    bool refused;    /* a clear message is the promise */
-    bool from_file;  /* the environment comes from a file */
+    /* Of a method whose bound is above TL_STATED_SHARE: settings, written like `assignments`, by which its
+     * error is below that. */
+    const char *remedies[TL_EXTREME_METHODS];
+    bool refused;   /* a clear message is the promise */
+    bool from_file; /* the environment comes from a file */
 };
 
 extern const struct tl_extreme tl_extremes[];

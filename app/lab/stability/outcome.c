@@ -1,13 +1,39 @@
 #include "app/lab/stability/outcome.h"
 
-const char *const tl_outcome_names[TL_OUTCOME_COUNT] = {"exact", "bounded", "refused", "SILENT", "NaN"};
+#include <math.h>
+#include <stdio.h>
 
-cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome)
+const char *const tl_outcome_names[TL_OUTCOME_COUNT] = {"exact",   "bounded", "coarse",
+                                                        "refused", "SILENT",  "NaN"};
+
+enum tl_outcome tl_outcome_of(double share, double exact, double bound)
+{
+    if (isnan(share))
+        return TL_OUTCOME_NAN;
+    if (!(share <= bound))
+        return TL_OUTCOME_SILENT;
+    return share <= exact             ? TL_OUTCOME_EXACT
+           : share <= TL_STATED_SHARE ? TL_OUTCOME_BOUNDED
+                                      : TL_OUTCOME_COARSE;
+}
+
+static cJSON *number_or_null(double number)
+{
+    return isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull();
+}
+
+cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome,
+                        const struct tl_cell_error *error)
 {
     cJSON *row = cJSON_CreateObject();
+    if (outcome <= TL_OUTCOME_BOUNDED && !(error->share <= TL_STATED_SHARE))
+        outcome = TL_OUTCOME_SILENT;
     stability->counts[outcome]++;
     cJSON_AddStringToObject(row, "axis", axis);
     cJSON_AddStringToObject(row, "outcome", tl_outcome_names[outcome]);
+    cJSON_AddItemToObject(row, "error_percent", number_or_null(100 * error->share));
+    cJSON_AddItemToObject(row, "error", number_or_null(error->own));
+    cJSON_AddStringToObject(row, "unit", error->unit);
     cJSON_AddItemToArray(stability->rows, row);
     return row;
 }
@@ -18,4 +44,12 @@ int tl_stability_cells(const struct tl_stability *stability)
     for (int i = 0; i < TL_OUTCOME_COUNT; i++)
         cells += stability->counts[i];
     return cells;
+}
+
+void tl_cell_error_print(const struct tl_cell_error *error)
+{
+    if (isfinite(error->share))
+        printf(" %8.3g%% %8.3g %-5s", 100 * error->share, error->own, error->unit);
+    else
+        printf(" %9s %14s", "", "");
 }

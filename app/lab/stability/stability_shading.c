@@ -1,6 +1,7 @@
 /* The extremes of shading: every reflectance model under lights and degenerate views, from the
- * dullest gloss to the sharpest. Below the surface no light is sent back at all; above it never more than the
- * peak of the model's formula (render/brdf/brdf.h) under a Fresnel term of 1. */
+ * dullest gloss to the sharpest. Below the surface no light is sent back at all; above it what is sent is
+ * compared with the formula (render/brdf/brdf.h) in double precision: the error is a share of that, and
+ * absolute in 1/sr. Light below a millionth of the peak counts as none. */
 #include "app/lab/experiments/experiment.h"
 #include "app/lab/stability/stability.h"
 #include "config/memory.h"
@@ -9,7 +10,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#define ROUNDING 1e-3 /* of a float's share of the peak */
+#define ROUNDING 1e-3 /* of a float: the share of what is right within which it is exact */
+#define BLACK    1e-6 /* of the peak */
+#define STEPS    2000 /* of an integral */
 
 static const float glossinesses[] = {0, 0.5f, 0.99f, 0.999999f, 1};
 
@@ -42,6 +45,81 @@ static double peak_of(const struct tl_brdf *brdf, double a, double b)
     }
 }
 
+struct triple {
+    double x, y, z;
+};
+
+static double dot(struct triple a, struct triple b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static struct triple unit(vec3s v)
+{
+    struct triple d = {(double)v.x, (double)v.y, (double)v.z};
+    double length = sqrt(dot(d, d));
+    return (struct triple){d.x / length, d.y / length, d.z / length};
+}
+
+/* The integral of D cos d of Gaussian facets of squared width `w2` without its factor, over pi; nothing is
+ * left of them beyond eight widths. */
+static double gaussian_volume(double w2)
+{
+    double sum = 0, step = fmin(M_PI / 2, 8 * sqrt(w2)) / STEPS;
+    for (int i = 0; i < STEPS; i++) {
+        double d = (i + 0.5) * step;
+        sum += exp(-d * d / w2) * 2 * sin(d) * cos(d) * step;
+    }
+    return sum;
+}
+
+static double smith_lambda(double width, double cosine)
+{
+    double k = cosine / (width * sqrt(fmax(1 - cosine * cosine, 0)));
+    return isfinite(k) ? fmax((exp(-k * k) / (k * sqrt(M_PI)) - erfc(k)) / 2, 0) : 0;
+}
+
+/* f_r cos a of a default material's model: Gaussian facets, Smith's masking, Ward's as published, Schlick's
+ * Fresnel term. */
+static double formula(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, struct triple l,
+                      struct triple v)
+{
+    struct triple n = unit(frame->normal), t = unit(frame->tangent), b = unit(frame->bitangent);
+    double cos_a = dot(n, l), cos_b = dot(n, v), s = (double)brdf->exponent;
+    struct triple sum = {l.x + v.x, l.y + v.y, l.z + v.z};
+    double length = sqrt(dot(sum, sum)), cos_t = dot(sum, l) / length, cos_d = dot(sum, n) / length;
+    double mirrored = 2 * cos_a * cos_b - dot(l, v), tl = dot(t, l), tv = dot(t, v);
+    double w = (double)brdf->gloss.width_weft, across = (double)brdf->gloss.width_warp;
+    double x = dot(sum, t) / (length * cos_d), y = dot(sum, b) / (length * cos_d), d = acos(fmin(cos_d, 1));
+    bool by_view = brdf->gloss.model == TL_REFLECT_PHONG || brdf->gloss.model == TL_REFLECT_BANKS;
+    double f0 = (double)brdf->f0.x, f90 = fmin(50 * f0, 1);
+    double fresnel = f0 + (f90 - f0) * pow(1 - (by_view ? cos_b : cos_t), 5);
+    switch (brdf->gloss.model) {
+    case TL_REFLECT_PHONG:
+        return fresnel * (s + 1) / (2 * M_PI) * pow(fmax(mirrored, 0), s);
+    case TL_REFLECT_COSINE_LOBE:
+        return fresnel * (s + 2) / (2 * M_PI) * pow(fmax(mirrored, 0), s) * cos_a;
+    case TL_REFLECT_BLINN_PHONG:
+        return fresnel * (4 * s + 2) / (8 * M_PI) * pow(cos_d, 4 * s);
+    case TL_REFLECT_TORRANCE_SPARROW:
+        return fresnel * exp(-d * d / (w * w)) / (4 * gaussian_volume(w * w)) /
+               (1 + smith_lambda(w, cos_a) + smith_lambda(w, cos_b)) / (M_PI * cos_b);
+    case TL_REFLECT_WARD:
+        return fresnel * exp(-(x * x / (w * w) + y * y / (across * across))) / (4 * M_PI * w * across) *
+               sqrt(cos_a / cos_b);
+    default: /* BANKS */
+        return fresnel * exp(lgamma(s / 2 + 2) - lgamma(s / 2 + 1.5)) / (2 * sqrt(M_PI)) * cos_a *
+               pow(fmax(sqrt((1 - tl * tl) * (1 - tv * tv)) - tl * tv, 0), s);
+    }
+}
+
+static struct tl_cell_error measure(double sent, double right, double peak)
+{
+    struct tl_cell_error error = {.own = fabs(sent - right), .unit = "1/sr"};
+    error.share = error.own > 0 ? error.own / fmax(fabs(right), BLACK * peak) : 0;
+    return error;
+}
+
 static void run_cell(const struct shading_extreme *extreme, int model, const char *name, float glossiness,
                      bool prints, struct tl_stability *out)
 {
@@ -53,20 +131,22 @@ static void run_cell(const struct shading_extreme *extreme, int model, const cha
     double a = (double)glms_vec3_dot(frame.normal, l), b = (double)glms_vec3_dot(frame.normal, v);
     bool dark = !(a > 0 && b > 0);
     double peak = dark ? 0 : peak_of(&brdf, a, b), sent = (double)tl_brdf_gloss(&brdf, &frame, l, v).x;
-    enum tl_outcome outcome = TL_OUTCOME_SILENT;
-    if (!isfinite(sent))
-        outcome = TL_OUTCOME_NAN;
-    else if (sent >= 0 && sent <= peak * (1 + ROUNDING))
-        outcome = dark ? TL_OUTCOME_EXACT : TL_OUTCOME_BOUNDED;
-    cJSON *row = tl_stability_add(out, "shading", outcome);
+    double right = dark ? 0 : formula(&brdf, &frame, unit(extreme->light), unit(extreme->viewer));
+    struct tl_cell_error error = measure(sent, right, peak);
+    enum tl_outcome outcome = tl_outcome_of(error.share, ROUNDING, TL_STATED_SHARE);
+    if (isfinite(sent) && !(sent >= 0 && sent <= peak * (1 + ROUNDING)))
+        outcome = TL_OUTCOME_SILENT;
+    cJSON *row = tl_stability_add(out, "shading", outcome, &error);
     cJSON_AddStringToObject(row, "extreme", extreme->name);
     cJSON_AddStringToObject(row, "method", name);
     cJSON_AddNumberToObject(row, "glossiness", (double)glossiness);
     cJSON_AddNumberToObject(row, "sent", isfinite(sent) ? sent : -1);
     cJSON_AddNumberToObject(row, "bound", peak);
-    if (prints)
-        printf("%-28s %-17s g %-9.7g %-8s %9.3g of %.3g\n", extreme->name, name, (double)glossiness,
-               tl_outcome_names[outcome], sent, peak);
+    if (!prints)
+        return;
+    printf("%-28s %-17s g %-9.7g %-8s", extreme->name, name, (double)glossiness, tl_outcome_names[outcome]);
+    tl_cell_error_print(&error);
+    printf("  %9.3g of %.3g\n", sent, peak);
 }
 
 bool tl_stability_shading(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)

@@ -98,9 +98,9 @@ static void known_cells(void **state)
                                                 cells[i].dt, cells[i].ratio,  cells[i].height_m};
         struct tl_envelope_cell cell = tl_envelope_run(&tested);
         if (cell.outcome != cells[i].outcome)
-            print_error("cell %zu: %s\n", i, cell.error.message);
+            print_error("cell %zu: %s\n", i, cell.message.message);
         assert_int_equal(cell.outcome, cells[i].outcome);
-        assert_true((cell.outcome == TL_OUTCOME_REFUSED) == (cell.error.message[0] != '\0'));
+        assert_true((cell.outcome == TL_OUTCOME_REFUSED) == (cell.message.message[0] != '\0'));
     }
 }
 
@@ -129,7 +129,7 @@ static void needles_stay_in_place(void **state)
     const struct tl_envelope_case tested = {&size, TL_CLOTH_PREVIEW, 1e4, 1e-5, 1e3, 1};
     struct tl_envelope_cell cell = tl_envelope_run(&tested);
     printf("needles: %s, strays by %.3g of what is exact %s\n", tl_outcome_names[cell.outcome], cell.strayed,
-           cell.error.message);
+           cell.message.message);
     assert_true(cell.outcome == TL_OUTCOME_EXACT || cell.outcome == TL_OUTCOME_BOUNDED);
 }
 

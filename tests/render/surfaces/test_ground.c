@@ -66,6 +66,16 @@ static void test_visibility(void **state)
     assert_near(tl_ground_visibility(NULL, above, (vec3s){{0, -1, 0}}), 1, 0);
 }
 
+/* Lengths of shadow maps are the options' own for garments, and a constant share of what is smaller. */
+static void test_scale(void **state)
+{
+    (void)state;
+    assert_near(tl_casters_scale(&(struct tl_casters){.radius = 100}), 1, 0);
+    assert_near(tl_casters_scale(&(struct tl_casters){.radius = 0.9f}), 1, 0);
+    assert_near(tl_casters_scale(&(struct tl_casters){.radius = 1e-3f}), 2e-3, 1e-9);
+    assert_near(tl_casters_scale(&(struct tl_casters){.radius = 1e-2f}), 2e-2, 1e-8);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -73,6 +83,7 @@ int main(void)
         cmocka_unit_test(test_rings_are_close_under_the_figure),
         cmocka_unit_test(test_cover),
         cmocka_unit_test(test_visibility),
+        cmocka_unit_test(test_scale),
     };
     return cmocka_run_group_tests(tests, make_ground, NULL);
 }
