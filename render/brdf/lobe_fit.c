@@ -122,33 +122,34 @@ static void scale_to_albedo(vec3s albedo, const struct tl_brdf_frame *frame, int
             lobes[k].weight.raw[c] *= sum.raw[c] > 1e-20f ? albedo.raw[c] / sum.raw[c] : 0;
 }
 
-static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
-                      struct tl_fitted_lobe *lobes)
+static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
+                      int most, struct tl_fitted_lobe *lobes)
 {
     struct slopes slopes = slopes_of(brdf);
     vec3s local = local_of(frame, v);
-    struct tl_slope_fan fan = tl_slope_fan_of(slopes.weft, slopes.warp, local.x, local.y, local.z, max_count);
-    int middle = fan.count / 2;
-    for (int k = 0; k < fan.count; k++) {
-        float at = (float)(k - middle), x = at * fan.step;
-        vec2s slope = {{at * fan.slope_x, at * fan.slope_y}};
+    struct tl_slope_fan fan =
+        tl_slope_fan_of(slopes.weft, slopes.warp, local.x, local.y, local.z, least, most);
+    int count = (int)fan.count;
+    for (int k = 0; k < count; k++) {
+        struct tl_slope_lobe lobe = tl_slope_lobe_of(&fan, (float)k, local.x, local.y, local.z);
+        vec2s slope = {{lobe.slope_x, lobe.slope_y}};
         vec3s value = value_of_slope(brdf, frame, &slopes, v, slope);
         lobes[k] = (struct tl_fitted_lobe){.direction = mirrored(facet_of(frame, slope), v),
-                                           .exponent = tl_slope_exponent(fan.variance),
-                                           .weight = glms_vec3_scale(value, expf(-0.5f * x * x))};
+                                           .exponent = tl_slope_exponent(lobe.variance),
+                                           .weight = glms_vec3_scale(value, lobe.share)};
     }
-    scale_to_albedo(albedo_of(brdf, frame, &slopes, v), frame, fan.count, lobes);
-    return fan.count;
+    scale_to_albedo(albedo_of(brdf, frame, &slopes, v), frame, count, lobes);
+    return count;
 }
 
 /* The fit works in the frame of the widths. */
-static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
-                      struct tl_fitted_lobe *lobes)
+static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
+                      int most, struct tl_fitted_lobe *lobes)
 {
     const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
     struct tl_brdf straight = *brdf;
     straight.turn = 0;
-    return fit_facets(&straight, &own, v, max_count, lobes);
+    return fit_facets(&straight, &own, v, least, most, lobes);
 }
 
 /* The albedo of GGX facets: the mean of F G / G1 over the facets that the viewer sees, which are sampled by
@@ -182,6 +183,10 @@ static vec3s ggx_albedo(const struct tl_brdf *brdf, float facing)
     return sum;
 }
 
+/* The least cosine to the viewer of GGX facets: towards a grazing viewer lobes become ever narrower across
+ * the plane of incidence, and the horizon cuts them along it. */
+#define LEAST_COSINE (1 / 3.0f)
+
 /* One to three lobes for a Gaussian of the slopes, at the nodes of its axis across which light spreads most.
  * Two and three points have the variance of the axis with the lobes' own, which keeps them wide enough to
  * overlap. */
@@ -194,7 +199,8 @@ static void fit_part(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
     const float deviation = part->deviation * brdf->gloss.width_weft;
     const struct slopes slopes = {deviation, deviation};
     const vec3s local = local_of(frame, v);
-    const struct tl_slope_axes axes = tl_slope_axes_of(deviation, deviation, local.x, local.y, local.z);
+    const struct tl_slope_axes axes =
+        tl_slope_axes_of(deviation, deviation, local.x, local.y, fmaxf(local.z, LEAST_COSINE));
     const float variance =
         count == 1 ? sqrtf(axes.broad * axes.narrow) : fmaxf(axes.narrow, least[count - 1] * axes.broad);
     const float extent = sqrtf(fmaxf(1 - variance / fmaxf(axes.broad, 1e-20f), 0));
@@ -216,7 +222,7 @@ static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame
 {
     struct tl_fitted_lobe core[3] = {0}, middle[3] = {0}, tail[3] = {0};
     const int parts = max_count < GGX_PARTS ? max_count : GGX_PARTS;
-    const bool five = max_count >= 5, seven = max_count >= TL_LOBE_FIT_MAX;
+    const bool five = max_count >= 5, seven = max_count >= 7;
     struct tl_fitted_lobe *const made[GGX_PARTS] = {core, middle, tail};
     const int counts[GGX_PARTS] = {seven ? 3 : five ? 2 : 1, five ? 2 : 1, seven ? 2 : 1};
     for (int k = 0; k < parts; k++)
@@ -266,10 +272,13 @@ static int fit_cosine_lobe(const struct tl_brdf *brdf, const struct tl_brdf_fram
     return 1;
 }
 
+/* Standard deviation of neighbours on a half circle over their distance, at which their sum has no dip. */
+#define THREAD_OVERLAP 0.35f
+
 /* The variance at which `count` neighbours on a half circle overlap. */
 static float thread_variance(const struct tl_brdf *brdf, int count, float sine)
 {
-    float apart = TL_FAN_OVERLAP * GLM_PIf * sine / (float)count;
+    float apart = THREAD_OVERLAP * GLM_PIf * sine / (float)count;
     return fmaxf(1 / (brdf->exponent + 1), apart * apart);
 }
 
@@ -299,8 +308,8 @@ static int fit_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame *f
     return max_count;
 }
 
-int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
-                     struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX])
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
+                     int most, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX])
 {
     if (!(glms_vec3_dot(frame->normal, v) > 0))
         return 0;
@@ -312,10 +321,10 @@ int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
     case TL_REFLECT_COSINE_LOBE:
         return fit_cosine_lobe(brdf, frame, v, lobes);
     case TL_REFLECT_BANKS:
-        return fit_threads(brdf, frame, v, max_count, lobes);
+        return fit_threads(brdf, frame, v, most, lobes);
     default:
-        return is_ggx(brdf) ? fit_ggx(brdf, frame, v, max_count, lobes)
-                            : fit_turned(brdf, frame, v, max_count, lobes);
+        return is_ggx(brdf) ? fit_ggx(brdf, frame, v, most, lobes)
+                            : fit_turned(brdf, frame, v, least, most, lobes);
     }
 }
 
@@ -352,7 +361,7 @@ TL_CLONES static void fit_lanes(const struct tl_brdf_sum *sum, vec3s viewer, int
 }
 
 /* The lobes of lane i, in the space of the frame's vectors. Lanes with fewer than `ward->count` have none at
- * both ends. */
+ * the end. */
 static int take_lane(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
                      const struct tl_ward_lanes *ward, int i, struct tl_fitted_lobe *lobes)
 {
@@ -373,7 +382,8 @@ static int take_lane(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
         vec3s direction = glms_vec3_scale(own.tangent, ward->local[k][0][i]);
         direction = glms_vec3_muladds(own.bitangent, ward->local[k][1][i], direction);
         direction = glms_vec3_muladds(own.normal, ward->local[k][2][i], direction);
-        lobes[count++] = (struct tl_fitted_lobe){direction, ward->exponent[i], glms_vec3_mul(scale, weight)};
+        lobes[count++] =
+            (struct tl_fitted_lobe){direction, ward->exponent[k][i], glms_vec3_mul(scale, weight)};
     }
     return count;
 }
@@ -388,7 +398,7 @@ int tl_lobe_fit_sum(const struct tl_brdf_sum *sum, const struct tl_brdf_frame *f
         fit_lanes(sum, local_of(frame, v), max_count, &ward);
     for (int i = 0; i < sum->count; i++)
         count += by_lanes ? take_lane(&sum->items[i], frame, &ward, i, &lobes[count])
-                          : tl_lobe_fit_make(&sum->items[i], frame, v, max_count, &lobes[count]);
+                          : tl_lobe_fit_make(&sum->items[i], frame, v, 1, max_count, &lobes[count]);
     return count;
 }
 
@@ -412,7 +422,7 @@ void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *min, float *max)
         break;
     default:
         *min = tl_slope_exponent(4 * wide * wide);
-        *max = tl_slope_exponent(4 * thin * thin * TL_FAN_MIN_COSINE * TL_FAN_MIN_COSINE);
+        *max = tl_slope_exponent(4 * thin * thin * TL_SLOPE_LEAST_COSINE * TL_SLOPE_LEAST_COSINE);
     }
 }
 

@@ -4,13 +4,14 @@
  *     f_r(l, v) cos a  ~  sum over k of weight_k K_{s_k}(direction_k, l)
  *
  * Facets whose slopes are Gaussian with covariance S spread the light they reflect with covariance J S J^T,
- * where J is the derivative of the mirror direction by the slope. The lobes are as narrow as the narrow axis
- * of that covariance and lie along its broad axis, each in the direction in which a facet of that slope
- * reflects. So they follow the cone of a strongly anisotropic gloss. Where there are too few lobes to overlap
- * they are widened. The weight of a lobe is the gloss divided by the pdf of the slopes there. All weights are
- * then scaled so that their sum is the albedo of the gloss towards the viewer, computed by Gauss-Legendre
- * quadrature; this keeps light that is the same from everywhere. The part of a lobe above the horizon is
- * scaled up for the part that lies below it.
+ * where J is the derivative of the mirror direction by the slope. The lobes lie along the broad axis of that
+ * covariance, each in the direction in which a facet of its slope reflects, so that they follow the cone of a
+ * strongly anisotropic gloss; slopes that send light below the horizon get none. Each is as narrow as light
+ * spreads across the axis about its own facet: towards a grazing viewer that changes several times along the
+ * fan. Where there are too few lobes to overlap they are widened. The weight of a lobe is the gloss divided
+ * by the pdf of the slopes there. All weights are then scaled so that their sum is the albedo of the gloss
+ * towards the viewer, computed by Gauss-Legendre quadrature; this keeps light that is the same from
+ * everywhere. The part of a lobe above the horizon is scaled up for the part that lies below it.
  *
  * GGX facets have slopes that are no Gaussian but close to a sum of three: one lobe stands for each.
  *
@@ -20,7 +21,7 @@
 
 #include "render/brdf/brdf.h"
 
-#define TL_LOBE_FIT_MAX 7 /* lobes */
+#define TL_LOBE_FIT_MAX 11 /* lobes */
 
 struct tl_fitted_lobe {
     vec3s direction; /* unit, in the space of the frame's vectors */
@@ -28,10 +29,10 @@ struct tl_fitted_lobe {
     vec3s weight; /* by channel */
 };
 
-/* Fits at most `max_count` lobes (1 to TL_LOBE_FIT_MAX) and returns their number. A round gloss needs fewer.
- * 0 when the viewer is below the surface. */
-int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
-                     struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
+/* Fits at most `most` lobes (1 to TL_LOBE_FIT_MAX) and returns their number: as many as it takes, and `least`
+ * of facets with Gaussian slopes. 0 when the viewer is below the surface. */
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
+                     int most, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
 
 /* The fits of each gloss of a sum, one after the other, without lobes that reflect nothing: those of
  * tl_lobe_fit_make (test_threads: within 1e-3), in one evaluation where all are Ward's. Returns their number.

@@ -9,20 +9,9 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Standard deviation of two neighbouring lobes, as a fraction of their distance, at which their sum has no
- * dip between them. At 0.35 the L1 error of the mixture is smallest over the models and viewers of
- * test_lobe_fit.c. */
-#define TL_FAN_OVERLAP 0.35f
-/* Towards a grazing viewer lobes become ever narrower across the plane of incidence, and the horizon cuts
- * them along it. Their widths are computed for this cosine at least. */
-#define TL_FAN_MIN_COSINE (1 / 3.0f)
-
-/* Distance of neighbouring lobes in standard deviations of the spread. Three, five and seven lobes extend to
- * 1.7, 2.1 and 2.3. */
-TL_INLINE float tl_fan_step(int count)
-{
-    return count <= 3 ? 1.7320508f : count <= 5 ? 1.05f : 0.76f;
-}
+/* The cosine to the viewer, at least, for which the spread of light across the plane of incidence is
+ * computed. */
+#define TL_SLOPE_LEAST_COSINE 0.2f
 
 /* The larger and the smaller eigenvalue of J S J^T, and the slope of one standard deviation along the axis of
  * the larger one. */
@@ -30,49 +19,133 @@ struct tl_slope_axes {
     float broad, narrow, slope_x, slope_y;
 };
 
-/* `weft`, `warp`: standard deviations of the slopes along x and y; (x, y, z): the viewer.
+/* `weft`, `warp`: standard deviations of the slopes along x and y; (x, y): the viewer; `cosine`: that of a
+ * facet to the viewer.
  *
  * The eigenvalues of J S J^T are those of S^(1/2) J^T J S^(1/2), where J^T J = 4 (v_t v_t^T + c^2 I) with the
  * tangential part v_t and the cosine c of the view direction: a facet turns light by twice its own angle in
  * the plane of incidence, and by 2 c times that angle across it. The eigenvector of the larger eigenvalue,
  * times S^(1/2), is the slope of one standard deviation along the broad axis. */
-TL_INLINE struct tl_slope_axes tl_slope_axes_of(float weft, float warp, float x, float y, float z)
+TL_INLINE struct tl_slope_axes tl_slope_axes_of(float weft, float warp, float x, float y, float cosine)
 {
-    float c = tl_maxf(z, TL_FAN_MIN_COSINE);
-    float a = 4 * weft * weft * (x * x + c * c), b = 4 * weft * warp * x * y;
-    float d = 4 * warp * warp * (y * y + c * c);
+    float square = cosine * cosine;
+    float a = 4 * weft * weft * (x * x + square), b = 4 * weft * warp * x * y;
+    float d = 4 * warp * warp * (y * y + square);
     float mean = (a + d) / 2, half = (a - d) / 2, off = sqrtf(half * half + b * b);
     float twice = half / tl_maxf(off, 1e-20f); /* cosine of twice the angle of the broad axis */
-    float cosine = sqrtf(tl_maxf((1 + twice) / 2, 0)), sine = sqrtf(tl_maxf((1 - twice) / 2, 0));
-    return (struct tl_slope_axes){mean + off, tl_maxf(mean - off, 0), weft * cosine,
-                                  warp * (b < 0 ? -sine : sine)};
+    float part = sqrtf(tl_maxf((1 + twice) / 2, 0)), other = sqrtf(tl_maxf((1 - twice) / 2, 0));
+    return (struct tl_slope_axes){mean + off, tl_maxf(mean - off, 0), weft * part,
+                                  warp * (b < 0 ? -other : other)};
 }
 
-/* The lobes towards one viewer: `count` of them, an odd number, so that one lies at the peak. Lobe k stands
- * for the slope (k - count / 2) * (slope_x, slope_y), which lies `step` times as many standard deviations of
- * the spread from the peak; the factor that makes room for the lobes' own width is applied to the slope. */
+/* The lobes towards one viewer. Lobe k stands for the slopes about `first + k step` standard deviations along
+ * the axis along which light spreads most; slopes that send light below the horizon are left out. */
 struct tl_slope_fan {
-    int count;
-    float variance; /* of each lobe */
-    float step, slope_x, slope_y;
+    float count; /* a whole number */
+    float first, step;
+    float slope_x, slope_y;   /* one standard deviation along the axis, towards the viewer */
+    float across_x, across_y; /* ... and across it, as light spreads */
+    float overlap;            /* standard deviation of a lobe over the distance of two neighbours, at least */
+    float least;              /* variance of a lobe, at least */
 };
 
-/* There are as many lobes as it takes for neighbours to overlap, or else they are widened. */
-TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, float y, float z,
-                                              int max_count)
+/* How much of the spread lobes stand for, in standard deviations, and how far they overlap, where there are
+ * as many as it takes; else a gap between them costs more than what they leave out. These and the figures for
+ * up to four lobes make the L1 error of the mixture least, over the models and viewers of test_lobe_fit.c. */
+#define TL_FAN_REACH         2.5f
+#define TL_FAN_OVERLAP       0.42f
+#define TL_FAN_REACH_FEW     2.0f
+#define TL_FAN_OVERLAP_FEW   0.31f
+#define TL_FAN_REACH_OF_FOUR 2.1f
+
+/* The mean of the slopes that the viewer sees, in standard deviations towards the viewer, where those below
+ * `cut`, at most 0, are turned away: phi / Phi of a normal distribution within .06. */
+TL_INLINE float tl_slope_mean_seen(float cut)
 {
-    const struct tl_slope_axes axes = tl_slope_axes_of(weft, warp, x, y, z);
-    float broad = axes.broad, narrow = axes.narrow;
-    float apart = TL_FAN_OVERLAP * TL_FAN_OVERLAP * tl_maxf(broad - narrow, 0);
-    bool three = (max_count >= 3) & (broad > 1.5f * narrow);
-    bool five = three & (max_count >= 5) & (apart * tl_fan_step(3) * tl_fan_step(3) > narrow);
-    bool seven = five & (max_count >= 7) & (apart * tl_fan_step(5) * tl_fan_step(5) > narrow);
-    int count = 1 + 2 * (int)three + 2 * (int)five + 2 * (int)seven;
-    float step = tl_fan_step(count), square = TL_FAN_OVERLAP * step * (TL_FAN_OVERLAP * step);
-    float shared = tl_maxf(narrow, square / (1 + square) * broad);
-    float variance = three ? shared : sqrtf(broad * narrow);
-    float extent = step * sqrtf(tl_maxf(1 - variance / tl_maxf(broad, 1e-20f), 0));
-    return (struct tl_slope_fan){count, variance, step, extent * axes.slope_x, extent * axes.slope_y};
+    float fall = tl_exp2(-0.72134752f * cut * cut);
+    return 0.4f * fall / (1 - 0.5f * fall);
+}
+
+/* `least`, `most`: of lobes. As many as it takes for neighbours to overlap, or else `most`, which are wider.
+ */
+TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, float y, float z, int least,
+                                              int most)
+{
+    float flat = sqrtf(x * x + y * y), scale = 1 / tl_maxf(flat, 1e-4f);
+    float seen_x = x * scale * weft, seen_y = y * scale * warp;
+    float deviation = tl_maxf(sqrtf(seen_x * seen_x + seen_y * seen_y), 1e-6f);
+    float mean = tl_slope_mean_seen(-(1 - flat) / tl_maxf(z, 1e-6f) / deviation);
+    float mean_x = mean * seen_x * weft / deviation, mean_y = mean * seen_y * warp / deviation;
+    float facing = (z + x * mean_x + y * mean_y) / sqrtf(1 + mean_x * mean_x + mean_y * mean_y);
+    const struct tl_slope_axes axes = tl_slope_axes_of(weft, warp, x, y, tl_maxf(facing, 0.02f));
+
+    float towards = x * axes.slope_x + y * axes.slope_y, side = copysignf(1, towards);
+    float slope_x = side * axes.slope_x, slope_y = side * axes.slope_y;
+    float square = slope_x * slope_x + slope_y * slope_y;
+    towards *= side;
+    /* A slope of t deviations sends light up where square z t^2 - 2 towards t - z < 0. */
+    float root = sqrtf(towards * towards + square * z * z);
+    float lowest = -z / tl_maxf(towards + root, 1e-12f);
+    float highest = (towards + root) / tl_maxf(square * z, 1e-9f);
+
+    float thin = 2 * TL_SLOPE_LEAST_COSINE * tl_minf(weft, warp), narrow = tl_maxf(axes.narrow, thin * thin);
+    float span = tl_minf(highest, TL_FAN_REACH) - tl_maxf(lowest, -TL_FAN_REACH);
+    float apart = sqrtf(tl_maxf(axes.broad - narrow, 0) / narrow);
+    float wanted = tl_minf(TL_FAN_OVERLAP * apart * span, (float)most + 1);
+    wanted = (float)(int)(wanted + 0.9999f);
+    float is_broad = axes.broad > 1.5f * narrow ? 1.0f : 0.0f;
+    wanted = 1 + is_broad * (tl_maxf(wanted, 3) - 1);
+    float few = wanted > (float)most ? 1.0f : 0.0f;
+    float count = tl_minf(tl_maxf(wanted, (float)least), (float)most);
+    float reach = TL_FAN_REACH + few * (TL_FAN_REACH_FEW - TL_FAN_REACH);
+    reach = count <= 4 ? TL_FAN_REACH_OF_FOUR : reach;
+    float from = tl_maxf(lowest, -reach), step = (tl_minf(highest, reach) - from) / count;
+    float first = tl_minf(count - 1, 1) * (from + step / 2);
+    return (struct tl_slope_fan){count,
+                                 first,
+                                 step,
+                                 slope_x,
+                                 slope_y,
+                                 -slope_y * weft / warp,
+                                 slope_x * warp / weft,
+                                 TL_FAN_OVERLAP + few * (TL_FAN_OVERLAP_FEW - TL_FAN_OVERLAP),
+                                 thin * thin};
+}
+
+/* A lobe of a fan. */
+struct tl_slope_lobe {
+    float slope_x, slope_y; /* in whose mirror direction it lies */
+    float share;            /* of all lobes, not normalised: the density of the slopes */
+    float variance;
+};
+
+/* The square of the change of the mirror direction 2 (n v) n / n^2 - v, n = (x, y, 1), by a change of the
+ * slope. `p`: n v; `square`: n^2. */
+TL_INLINE float tl_slope_turned(float dp, float dn_n, float dn_dn, float p, float square)
+{
+    float along = 2 * (dp - 2 * p * dn_n / square) / square, own = 2 * p / square;
+    return along * along * square + 2 * along * own * dn_n + own * own * dn_dn;
+}
+
+/* Lobe `k` towards the viewer (x, y, z). Its own width adds to that of the fan, which is made narrower by as
+ * much. */
+TL_INLINE struct tl_slope_lobe tl_slope_lobe_of(const struct tl_slope_fan *fan, float k, float x, float y,
+                                                float z)
+{
+    float at = fan->first + k * fan->step, slope_x = at * fan->slope_x, slope_y = at * fan->slope_y;
+    float p = z + x * slope_x + y * slope_y, square = 1 + slope_x * slope_x + slope_y * slope_y;
+    float broad =
+        tl_slope_turned(x * fan->slope_x + y * fan->slope_y, slope_x * fan->slope_x + slope_y * fan->slope_y,
+                        fan->slope_x * fan->slope_x + fan->slope_y * fan->slope_y, p, square);
+    float narrow = tl_slope_turned(x * fan->across_x + y * fan->across_y,
+                                   slope_x * fan->across_x + slope_y * fan->across_y,
+                                   fan->across_x * fan->across_x + fan->across_y * fan->across_y, p, square);
+    float between = fan->overlap * fan->step;
+    float alone = sqrtf(tl_maxf(broad * narrow, 0)), variance = tl_maxf(narrow, between * between * broad);
+    variance = tl_maxf(fan->count > 1 ? variance : alone, fan->least);
+    float shrink = sqrtf(tl_maxf(1 - variance / tl_maxf(broad, 1e-20f), 0));
+    return (struct tl_slope_lobe){shrink * slope_x, shrink * slope_y, tl_exp2(-0.72134752f * at * at),
+                                  variance};
 }
 
 /* The squared width of facets by that without maps and bumps, and what these add to it. */

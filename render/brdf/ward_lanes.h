@@ -17,7 +17,7 @@ struct tl_ward_lanes {
      */
     int count;                                 /* the greatest number of lobes of a lane */
     float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* directions, unit */
-    float exponent[TL_LANES];
+    float exponent[TL_LOBE_FIT_MAX][TL_LANES];
     float plain[TL_LOBE_FIT_MAX][TL_LANES], away[TL_LOBE_FIT_MAX][TL_LANES];
     float sum[2][TL_LANES], albedo[2][TL_LANES];
 };
@@ -47,42 +47,55 @@ TL_INLINE struct tl_ward_slope tl_ward_slope_at(const struct tl_gloss *gloss, bo
     return (struct tl_ward_slope){value, schlick ? value * square * square * rest : 0, p * q};
 }
 
-TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_count, int lane_count)
+/* tl_slope_fan of each lane. */
+struct tl_fan_lanes {
+    float count[TL_LANES], first[TL_LANES], step[TL_LANES], overlap[TL_LANES], least[TL_LANES];
+    float slope_x[TL_LANES], slope_y[TL_LANES], across_x[TL_LANES], across_y[TL_LANES];
+};
+
+TL_INLINE void tl_ward_fans(const struct tl_ward_lanes *w, int max_count, struct tl_fan_lanes *fans)
 {
     const float root_half = 0.707106781f;
-    float counts[TL_LANES], step[TL_LANES], slope[2][TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
-        struct tl_slope_fan fan =
+        const struct tl_slope_fan fan =
             tl_slope_fan_of(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
-                            w->viewer[0][i], w->viewer[1][i], w->viewer[2][i], max_count);
-        counts[i] = (float)fan.count;
-        step[i] = fan.step;
-        slope[0][i] = fan.slope_x;
-        slope[1][i] = fan.slope_y;
-        w->exponent[i] = tl_slope_exponent(fan.variance);
-        w->sum[0][i] = w->sum[1][i] = 0;
+                            w->viewer[0][i], w->viewer[1][i], w->viewer[2][i], 1, max_count);
+        fans->count[i] = fan.count, fans->first[i] = fan.first, fans->step[i] = fan.step;
+        fans->overlap[i] = fan.overlap, fans->least[i] = fan.least;
+        fans->slope_x[i] = fan.slope_x, fans->slope_y[i] = fan.slope_y;
+        fans->across_x[i] = fan.across_x, fans->across_y[i] = fan.across_y;
     }
+}
+
+TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_count, int lane_count)
+{
+    struct tl_fan_lanes fans;
+    tl_ward_fans(w, max_count, &fans);
     w->count = 1;
     for (int i = 0; i < lane_count; i++)
-        w->count = counts[i] > (float)w->count ? (int)counts[i] : w->count;
-    const int middle = w->count / 2;
-    for (int k = 0; k < w->count; k++) {
-        const float at = (float)(k - middle);
+        w->count = fans.count[i] > (float)w->count ? (int)fans.count[i] : w->count;
+    for (int i = 0; i < TL_LANES; i++)
+        w->sum[0][i] = w->sum[1][i] = 0;
+    for (int k = 0; k < w->count; k++)
         for (int i = 0; i < TL_LANES; i++) {
+            const struct tl_slope_fan fan = {fans.count[i],    fans.first[i],   fans.step[i],
+                                             fans.slope_x[i],  fans.slope_y[i], fans.across_x[i],
+                                             fans.across_y[i], fans.overlap[i], fans.least[i]};
             float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
-            float slope_x = at * slope[0][i], slope_y = at * slope[1][i], apart = at * step[i];
-            struct tl_ward_slope lobe = tl_ward_slope_at(w->gloss, schlick, x, y, z, slope_x, slope_y);
-            float fall = 2 * fabsf(at) < counts[i] ? tl_exp2(-0.72134752f * apart * apart) : 0;
-            float axis = 2 * lobe.towards - z, above = tl_slope_above(axis, w->exponent[i]);
-            w->plain[k][i] = fall * lobe.value;
-            w->away[k][i] = fall * lobe.away;
-            w->local[k][0][i] = 2 * lobe.towards * slope_x - x;
-            w->local[k][1][i] = 2 * lobe.towards * slope_y - y;
+            struct tl_slope_lobe at = tl_slope_lobe_of(&fan, (float)k, x, y, z);
+            struct tl_ward_slope lobe = tl_ward_slope_at(w->gloss, schlick, x, y, z, at.slope_x, at.slope_y);
+            float share = (float)k < fan.count ? at.share : 0;
+            float exponent = tl_slope_exponent(at.variance), axis = 2 * lobe.towards - z;
+            float above = tl_slope_above(axis, exponent);
+            w->exponent[k][i] = exponent;
+            w->plain[k][i] = share * lobe.value;
+            w->away[k][i] = share * lobe.away;
+            w->local[k][0][i] = 2 * lobe.towards * at.slope_x - x;
+            w->local[k][1][i] = 2 * lobe.towards * at.slope_y - y;
             w->local[k][2][i] = axis;
             w->sum[0][i] += above * w->plain[k][i];
             w->sum[1][i] += above * w->away[k][i];
         }
-    }
 }
 
 TL_INLINE void tl_ward_albedo(struct tl_ward_lanes *w, bool schlick)

@@ -62,22 +62,17 @@ TL_INLINE void tl_add_group_of_lobes(float sums[3][TL_LANES], const struct tl_re
                                      const float visibility[TL_LANES])
 {
     float through[3][TL_LANES] = {0};
-    float exponents[TL_LANES] = {0}, broadened = -1; /* all lobes of a fan have the same */
     for (int k = 0; k < count; k++) {
         const vec3s d = terms[k].direction;
         const float limit =
             terms[k].reach_cosine * group->reach_cosine - terms[k].reach_sine * group->reach_sine;
         if (glms_vec3_dot(group->axis, d) < limit)
             continue;
-        if (terms[k].exponent != broadened)
-            for (int lane = 0; lane < TL_LANES; lane++)
-                exponents[lane] = lobe_broadened_exponent(terms[k].exponent, group->spread[lane]);
-        broadened = terms[k].exponent;
         const float r = terms[k].coefficient[0], g = terms[k].coefficient[1], b = terms[k].coefficient[2];
         for (int lane = 0; lane < TL_LANES; lane++) {
             float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
-            float lobe =
-                tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponents[lane]);
+            float exponent = lobe_broadened_exponent(terms[k].exponent, group->spread[lane]);
+            float lobe = tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
             through[0][lane] += r * lobe;
             through[1][lane] += g * lobe;
             through[2][lane] += b * lobe;

@@ -12,25 +12,9 @@ static float cosine_of(int row)
     return sinf(0.5f * (float)M_PI * fminf(at * at, 1));
 }
 
-/* Nodes with fewer lobes than the table repeat the middle one without weight. */
-static void fill_node(const struct tl_fitted_lobe low[], const struct tl_fitted_lobe high[], int count,
-                      int wanted, struct tl_fan_node *node)
-{
-    int before = (wanted - count) / 2;
-    for (int k = 0; k < wanted; k++) {
-        bool is_one = k >= before && k < before + count;
-        int from = is_one ? k - before : count / 2;
-        struct tl_fan_lobe *lobe = &node->lobes[k];
-        for (int i = 0; i < 3; i++)
-            lobe->direction[i] = low[from].direction.raw[i];
-        lobe->log_exponent = log2f(low[from].exponent);
-        lobe->low = is_one ? low[from].weight.x : 0;
-        lobe->high = is_one ? high[from].weight.x : 0;
-    }
-}
-
-static void fit_node(const tl_material *material, float glossiness, float cosine, float azimuth,
-                     int max_count, int wanted, struct tl_fan_node *node)
+/* All nodes have `count` lobes, so that they can be interpolated. */
+static void fit_node(const tl_material *material, float glossiness, float cosine, float azimuth, int count,
+                     struct tl_fan_node *node)
 {
     static const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
     float sine = sqrtf(1 - cosine * cosine);
@@ -38,10 +22,17 @@ static void fit_node(const tl_material *material, float glossiness, float cosine
     struct tl_fitted_lobe low[TL_LOBE_FIT_MAX], high[TL_LOBE_FIT_MAX];
     struct tl_brdf brdf =
         tl_brdf_of(material, (vec3s){{TL_FAN_LOW_F0, TL_FAN_LOW_F0, TL_FAN_LOW_F0}}, glossiness);
-    int count = tl_lobe_fit_make(&brdf, &frame, viewer, max_count, low);
+    tl_lobe_fit_make(&brdf, &frame, viewer, count, count, low);
     brdf.f0 = (vec3s){{1, 1, 1}};
-    tl_lobe_fit_make(&brdf, &frame, viewer, max_count, high);
-    fill_node(low, high, count, wanted, node);
+    tl_lobe_fit_make(&brdf, &frame, viewer, count, count, high);
+    for (int k = 0; k < count; k++) {
+        struct tl_fan_lobe *lobe = &node->lobes[k];
+        for (int i = 0; i < 3; i++)
+            lobe->direction[i] = low[k].direction.raw[i];
+        lobe->log_exponent = log2f(low[k].exponent);
+        lobe->low = low[k].weight.x;
+        lobe->high = high[k].weight.x;
+    }
 }
 
 static float distance_of(const struct tl_fan_node *a, const struct tl_fan_node *b, int count, bool reversed)
@@ -100,7 +91,7 @@ static int largest_count(const tl_material *material, float glossiness, int max_
             float azimuth = (float)M_PI * (float)column / (TL_FAN_AZIMUTHS - 1);
             vec3s viewer = {{sine * cosf(azimuth), sine * sinf(azimuth), cosine}};
             struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-            int count = tl_lobe_fit_make(&brdf, &frame, viewer, max_count, lobes);
+            int count = tl_lobe_fit_make(&brdf, &frame, viewer, 1, max_count, lobes);
             largest = count > largest ? count : largest;
         }
     return largest;
@@ -123,7 +114,7 @@ void tl_fan_table_make(const tl_material *material, float gloss_low, float gloss
         for (int row = 0; row < TL_FAN_COSINES; row++)
             for (int column = 0; column < TL_FAN_AZIMUTHS; column++)
                 fit_node(material, glossiness_at(out, gloss), cosine_of(row),
-                         (float)M_PI * (float)column / (TL_FAN_AZIMUTHS - 1), max_count, out->lobe_count,
+                         (float)M_PI * (float)column / (TL_FAN_AZIMUTHS - 1), out->lobe_count,
                          node_at(out, gloss, row, column));
     for (int gloss = 0; gloss == 0 || gloss < out->gloss_count - 1; gloss++)
         for (int row = 0; row < TL_FAN_COSINES - 1; row++)

@@ -221,7 +221,6 @@ TL_INLINE struct reflected of_thread(const struct tl_look_lanes *look, int threa
 struct lobe_lanes {
     int count;
     float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* in the frame of the threads, not normalised */
-    bool is_varied; /* lobes have exponents of their own: of GGX; else that of lobe 0 */
     float log_exponent[TL_LOBE_FIT_MAX][TL_LANES];
     tl_quad weight[TL_LOBE_FIT_MAX][TL_LANES];
 };
@@ -231,9 +230,7 @@ TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct gloss_
 {
     const struct tl_fan_table *fan = lanes->look.part->fan;
     struct tl_fan_place places[TL_LANES];
-    const size_t middle = (size_t)fan->lobe_count / 2;
     lobes->count = fan->lobe_count;
-    lobes->is_varied = tl_gloss_has_tails(&lanes->look.part->material->gloss);
     for (int i = 0; i < TL_LANES; i++)
         places[i] = tl_fan_place(fan, gloss->viewer[0][i], gloss->viewer[1][i], gloss->viewer[2][i],
                                  lanes->look.glossiness[i]);
@@ -248,7 +245,7 @@ TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct gloss_
             lobes->local[k][1][i] = places[i].side * local[1];
             lobes->local[k][2][i] = local[2];
             lobes->weight[k][i] = shares.low * weight[0] + shares.high * weight[1];
-            lobes->log_exponent[k][i] = lobes->is_varied ? local[3] : nodes[2 * middle][3];
+            lobes->log_exponent[k][i] = local[3];
         }
     }
 }
@@ -281,16 +278,14 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
     }
     tl_ward_fit(&ward, look->part->fan_count, look->count);
     lobes->count = ward.count;
-    lobes->is_varied = false;
     for (int k = 0; k < ward.count; k++)
         for (int i = 0; i < TL_LANES; i++) {
             const float x = ward.local[k][0][i], y = ward.local[k][1][i];
             lobes->local[k][0][i] = cosine[i] * x - sine[i] * y;
             lobes->local[k][1][i] = cosine[i] * y + sine[i] * x;
             lobes->local[k][2][i] = ward.local[k][2][i];
+            lobes->log_exponent[k][i] = tl_log2(ward.exponent[k][i]);
         }
-    for (int i = 0; i < TL_LANES; i++)
-        lobes->log_exponent[0][i] = tl_log2(ward.exponent[i]);
     for (int i = 0; i < look->count; i++) {
         const struct reflected f = thread < 0 ? of_surface(look, i) : of_thread(look, thread, i);
         const tl_quad scale = divide_or_zero(f.plain * ward.albedo[0][i] + f.away * ward.albedo[1][i],
@@ -311,9 +306,9 @@ TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss
     }
 }
 
-/* The exact light of lobes that each have maps of their own. */
-TL_INLINE void add_varied(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
-                          const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
+/* The exact light of the lobes of a fan. */
+TL_INLINE void add_fan(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                       const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
 {
     const int count = lanes->look.count;
     for (int k = 0; k < lobes->count; k++) {
@@ -324,29 +319,6 @@ TL_INLINE void add_varied(const struct tl_pixel_scene *scene, const struct tl_pi
         for (int i = 0; i < count; i++)
             if (gloss->viewer[2][i] > 0)
                 light[i] += fetch_pair(&blends, i, &pair) * lobes->weight[k][i] * lanes->glossy_ratio[i];
-    }
-}
-
-/* The exact light of the lobes of a fan. */
-TL_INLINE void add_fan(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
-                       const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
-{
-    const int count = lanes->look.count;
-    struct blend_lanes blends;
-    struct pair_lanes pairs[TL_LOBE_FIT_MAX];
-    if (lobes->is_varied) {
-        add_varied(scene, lanes, gloss, lobes, light);
-        return;
-    }
-    choose_maps(scene, lobes->log_exponent[0], count, &blends);
-    for (int k = 0; k < lobes->count; k++)
-        place_lobe(scene, gloss, lobes->local[k], &blends, &pairs[k]);
-    for (int i = 0; i < count; i++) {
-        tl_quad sum = {0, 0, 0, 0};
-        for (int k = 0; k < lobes->count; k++)
-            sum += fetch_pair(&blends, i, &pairs[k]) * lobes->weight[k][i];
-        if (gloss->viewer[2][i] > 0)
-            light[i] += sum * lanes->glossy_ratio[i];
     }
 }
 

@@ -177,7 +177,7 @@ static void test_fan(void **state)
         for (size_t a = 0; a < TL_COUNT(azimuths); a++, views++) {
             struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
             vec3s v = from_angles(polars[p], azimuths[a]);
-            int count = tl_lobe_fit_make(&sum.items[1], &frame, v, 7, lobes);
+            int count = tl_lobe_fit_make(&sum.items[1], &frame, v, 1, 7, lobes);
             struct sums sums = integrate(&sum.items[1], v, lobes, count);
             for (int c = 0; c < 2; c++)
                 assert_near(sums.fan[c] / sums.gloss[c], 1, 0.06);
@@ -201,7 +201,7 @@ static void test_fit_of_sum(void **state)
                 struct tl_fitted_lobe at_once[TL_LOBE_FIT_SUM_MAX], lobes[TL_LOBE_FIT_MAX];
                 int first = 0, count = tl_lobe_fit_sum(&sum, &frame, v, 5, at_once);
                 for (int i = 0; i < sum.count; i++) {
-                    const int own = tl_lobe_fit_make(&sum.items[i], &frame, v, 5, lobes);
+                    const int own = tl_lobe_fit_make(&sum.items[i], &frame, v, 1, 5, lobes);
                     for (int k = 0; k < own; k++) {
                         if (!(glms_vec3_max(lobes[k].weight) > 0))
                             continue; /* nothing is reflected there */

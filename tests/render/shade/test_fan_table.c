@@ -60,7 +60,7 @@ static const struct fan_case cases[] = {
      {0.9f, 0.9f},
      0.002,
      0.22,
-     0.0004},
+     0.002},
     {"blinn-phong", TL_REFLECT_BLINN_PHONG, 0, 0, 0, 0, {0.5f, 0.95f}, 0.0135, 1.42, 0.003},
     {"banks", TL_REFLECT_BANKS, 0, 0, 0, 0, {0.75f, 0.95f}, 0.0017, 0.015, 0.0015},
 };
@@ -163,7 +163,8 @@ static void compare(const struct fan_case *item, const struct tl_fan_table *tabl
     struct tl_fitted_lobe fitted[TL_LOBE_FIT_MAX], found[TL_LOBE_FIT_MAX];
     for (size_t i = 0; i < TL_COUNT(reflectances); i++) {
         struct tl_brdf brdf = tl_brdf_of(&material, reflectances[i], query.glossiness);
-        int count = tl_lobe_fit_make(&brdf, &query.frame, query.viewer, LOBES, fitted);
+        int count =
+            tl_lobe_fit_make(&brdf, &query.frame, query.viewer, table->lobe_count, table->lobe_count, fitted);
         int known =
             tl_fan_table_look_up(table, &query.frame, query.viewer, reflectances[i], query.glossiness, found);
         struct fetched is = fetch(found, known), want = fetch(fitted, count);
@@ -244,7 +245,7 @@ static int fit_lanes(const struct tl_brdf *brdf, const struct query *query, stru
         vec3s d = glms_vec3_scale(frame->tangent, ward.local[k][0][lane]);
         d = glms_vec3_add(d, glms_vec3_scale(frame->bitangent, ward.local[k][1][lane]));
         lobes[k].direction = glms_vec3_add(d, glms_vec3_scale(frame->normal, ward.local[k][2][lane]));
-        lobes[k].exponent = ward.exponent[lane];
+        lobes[k].exponent = ward.exponent[k][lane];
         for (int c = 0; c < CHANNELS; c++) {
             bool is_schlick = brdf->gloss.fresnel == TL_FRESNEL_SCHLICK;
             float f0 = brdf->f0.raw[c], missing = is_schlick ? fminf(50 * f0, 1) - f0 : 0;
@@ -271,7 +272,7 @@ static void test_lanes_match_the_fit(void **state)
             struct query query = random_query(item, &random);
             struct tl_fitted_lobe fitted[TL_LOBE_FIT_MAX], found[TL_LOBE_FIT_MAX];
             struct tl_brdf brdf = tl_brdf_of(&material, reflectances[i % 4], query.glossiness);
-            int count = tl_lobe_fit_make(&brdf, &query.frame, query.viewer, LOBES, fitted);
+            int count = tl_lobe_fit_make(&brdf, &query.frame, query.viewer, 1, LOBES, fitted);
             struct fetched want = fetch(fitted, count), is = fetch(found, fit_lanes(&brdf, &query, found));
             for (int c = 0; c < CHANNELS; c++)
                 add_error(query.cosine < GRAZING ? &grazing : &light, is.light[c], want.light[c]);

@@ -25,7 +25,7 @@
 #define SHAPES    2 /* a ball under a sheet */
 #define TEXELS    32
 #define CUBE      16
-#define EXPONENTS 21 /* to 102 */
+#define EXPONENTS 31 /* to 1024 */
 #define PARTS     5  /* pictures that a picture is divided into, pixel by pixel */
 #define LAYERS    (1 + TL_TRANSPARENCY_LAYERS)
 #define COVER_M   0.06f /* what is closer covers; in the sheet's and the ball's scene both happens */
@@ -225,11 +225,11 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     } else {
         for (int g = 0; g < point->layers.gloss.count; g++) {
             struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-            int count = g == 0 && fan
-                            ? tl_fan_table_look_up(fan, &point->layers.frame, point->viewer, point->f0,
-                                                   point->glossiness, lobes)
-                            : tl_lobe_fit_make(&point->layers.gloss.items[g], &point->layers.frame,
-                                               point->viewer, one->materials->parts[part].fan_count, lobes);
+            int count = g == 0 && fan ? tl_fan_table_look_up(fan, &point->layers.frame, point->viewer,
+                                                             point->f0, point->glossiness, lobes)
+                                      : tl_lobe_fit_make(&point->layers.gloss.items[g], &point->layers.frame,
+                                                         point->viewer, 1,
+                                                         one->materials->parts[part].fan_count, lobes);
             for (int k = 0; k < count; k++)
                 *light = glms_vec3_add(
                     *light,
