@@ -27,6 +27,6 @@ stability() {
         END { exit wrong > 0 || rows != cells || remedies != coarse }' found.json
     [ $failed -eq 0 ] || grep -B3 -A3 -E 'SILENT|NaN' found.json || true
 }
-stability light 70 0 2 15      # for two methods; cameras that see nothing are refused
+stability light 70 0 2 16      # for two methods; cameras that see nothing are refused
 stability detail 180 24 0 45   # 6 fields x 6 views x 5 ways of seeing them; parallax is coarse where it slants
 stability shading 300 120 0 0  # 10 extremes x 6 models x 5 glossinesses; four of the extremes send nothing back
