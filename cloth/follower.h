@@ -7,7 +7,7 @@
  * 3. Where triangles cross (apart/patches.h), as at folds that are sharper than the cage's triangles, they
  *    approach the flat triangles of the cage, which do not cross, until they do not either; from then on they
  *    return over some frames. Triangles that span a sharp side of the cage may still cross then (23 pairs of
- *    241,000 triangles in a storm).
+ *    241,000 triangles in a gusty wind of 4 m/s).
  *
  * Metres. Errors: none. Threads: one call at a time; parallel inside, with the same results at any number of
  * threads. */

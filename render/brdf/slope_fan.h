@@ -50,8 +50,9 @@ struct tl_slope_fan {
 };
 
 /* How much of the spread lobes stand for, in standard deviations, and how far they overlap, where there are
- * as many as it takes; else a gap between them costs more than what they leave out. These and the figures for
- * up to four lobes make the L1 error of the mixture least, over the models and viewers of test_lobe_fit.c. */
+ * as many as it takes; else a gap between them costs more than what they leave out. These and the figure for
+ * up to four lobes had the least L1 error of some twenty sets, over satin's facets and threads and a round
+ * gloss, from in front to 1.45 rad; the next best sets are within a tenth of it. */
 #define TL_FAN_REACH         2.5f
 #define TL_FAN_OVERLAP       0.42f
 #define TL_FAN_REACH_FEW     2.0f
@@ -59,7 +60,8 @@ struct tl_slope_fan {
 #define TL_FAN_REACH_OF_FOUR 2.1f
 
 /* The mean of the slopes that the viewer sees, in standard deviations towards the viewer, where those below
- * `cut`, at most 0, are turned away: phi / Phi of a normal distribution within .06. */
+ * `cut`, at most 0, are turned away: phi / Phi of a normal distribution within .13, which only a
+ * cosine depends on: 0.6 times the mean fits as well. */
 TL_INLINE float tl_slope_mean_seen(float cut)
 {
     float fall = tl_exp2(-0.72134752f * cut * cut);

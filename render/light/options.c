@@ -91,8 +91,7 @@ static const struct tl_option light_rows[] = {
                     "Of scenes less than 1 m across less, in proportion"),
     TL_OPTION_FLOAT(light_params, depth_bias_m, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m",
                     "minimum depth difference of a shadow; larger: fewer false shadows, but small ones are "
-                    "lost. Of scenes "
-                    "less than 1 m across less, in proportion"),
+                    "lost. Of scenes less than 1 m across less, in proportion"),
     TL_OPTION_FLOAT(
         light_params, min_variance, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 0, 1, "m^2",
         "minimum variance of depth in a shadow map; larger: fewer false shadows, more light leaks"),

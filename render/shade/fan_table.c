@@ -12,7 +12,7 @@ static float cosine_of(int row)
     return sinf(0.5f * (float)M_PI * fminf(at * at, 1));
 }
 
-/* All nodes have `count` lobes, so that they can be interpolated. */
+/* All nodes have `count` lobes, the largest number of any, so that they can be interpolated. */
 static void fit_node(const tl_material *material, float glossiness, float cosine, float azimuth, int count,
                      struct tl_fan_node *node)
 {
