@@ -1,5 +1,6 @@
 #include "render/brdf/lobe_fit.h"
 
+#include "render/brdf/ggx_lobes.h"
 #include "render/brdf/slope_fan.h"
 #include "render/brdf/ward_lanes.h"
 
@@ -8,17 +9,6 @@
 struct slopes {
     float weft, warp; /* standard deviations along tangent and bitangent */
 };
-
-/* Slopes of GGX facets, of width 1, as a sum of Gaussians: standard deviations, and shares of all facets.
- * They minimise the L1 distance of the two distributions over the plane, which is .36, .12 and .045. */
-#define GGX_PARTS 3
-struct slope_part {
-    float deviation, share;
-};
-static const struct slope_part ggx_parts[GGX_PARTS][GGX_PARTS] = {
-    {{0.8124f, 1}},
-    {{0.5827f, 0.5545f}, {1.4938f, 0.4455f}},
-    {{0.4992f, 0.3580f}, {1.0098f, 0.4692f}, {2.5254f, 0.1728f}}};
 
 static bool is_ggx(const struct tl_brdf *brdf)
 {
@@ -66,11 +56,6 @@ static vec3s value_of_slope(const struct tl_brdf *brdf, const struct tl_brdf_fra
         return (vec3s){{0, 0, 0}};
     float x = slope.x / slopes->weft, y = slope.y / slopes->warp;
     float pdf = expf(-0.5f * (x * x + y * y)) / (2 * GLM_PIf * slopes->weft * slopes->warp);
-    if (is_ggx(brdf)) {
-        const float square = brdf->gloss.width_weft * brdf->gloss.width_weft;
-        const float far = 1 + (slope.x * slope.x + slope.y * slope.y) / square;
-        pdf = 1 / (GLM_PIf * square * far * far);
-    }
     pdf /= cosine * cosine * cosine * 4 * towards;
     return glms_vec3_scale(tl_brdf_gloss(brdf, frame, l, v), 1 / pdf);
 }
@@ -152,88 +137,34 @@ static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
     return fit_facets(&straight, &own, v, least, most, lobes);
 }
 
-/* The albedo of GGX facets: the mean of F G / G1 over the facets that the viewer sees, which are sampled by
- * Heitz's map from a disc [2018, "Sampling the GGX Distribution of Visible Normals"]. Both halves of the disc
- * show the same; within 2 % of the integral (test_lobe_fit). */
-static vec3s ggx_albedo(const struct tl_brdf *brdf, float facing)
+/* V-grooves mask light otherwise than the table's facets do. */
+static float masked_by_grooves(const struct tl_brdf *brdf, vec3s h, vec3s l, vec3s v)
 {
-    static const float squares[3] = {0.1127017f, 0.5f, 0.8872983f}; /* Gauss and Legendre, of the radius */
-    static const float shares[3] = {0.2777778f, 0.4444444f, 0.2777778f};
-    enum { TURNS = 8 };
-    const float width = brdf->gloss.width_weft, cosine = fminf(facing, 1), sine = sqrtf(1 - cosine * cosine);
-    const float length = hypotf(width * sine, cosine), x = width * sine / length, z = cosine / length;
-    const float half = 0.5f * (1 + z), only_viewer = tl_brdf_smith(brdf, 1, cosine);
-    vec3s sum = {{0, 0, 0}};
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < TURNS; k++) {
-            const float radius = sqrtf(squares[i]), turn = GLM_PIf * (((float)k + 0.5f) / TURNS - 0.5f);
-            const float aside = radius * cosf(turn), level = sqrtf(1 - aside * aside);
-            const float up = (1 - half) * level + half * radius * sinf(turn);
-            const float out = sqrtf(fmaxf(level * level - up * up, 0));
-            /* across the plane of incidence, along it, and up */
-            vec3s h = {{width * (out * x - up * z), width * aside, fmaxf(out * z + up * x, 0)}};
-            h = glms_vec3_normalize(h);
-            const float towards = h.x * sine + h.z * cosine, below = 2 * towards * h.z - cosine;
-            if (below > 0)
-                sum =
-                    glms_vec3_add(sum, glms_vec3_scale(tl_brdf_fresnel(brdf, towards),
-                                                       shares[i] / TURNS *
-                                                           tl_brdf_smith(brdf, below, cosine) / only_viewer));
-        }
-    return sum;
+    const float cos_a = fmaxf(l.z, 0.02f);
+    return tl_brdf_v_grooves(cos_a, v.z, fmaxf(glms_vec3_dot(h, v), 0.02f), h.z) /
+           tl_brdf_smith(brdf, cos_a, v.z);
 }
 
-/* The least cosine to the viewer of GGX facets: towards a grazing viewer lobes become ever narrower across
- * the plane of incidence, and the horizon cuts them along it. */
-#define LEAST_COSINE (1 / 3.0f)
-
-/* One to three lobes for a Gaussian of the slopes, at the nodes of its axis across which light spreads most.
- * Two and three points have the variance of the axis with the lobes' own, which keeps them wide enough to
- * overlap. */
-static void fit_part(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v,
-                     const struct slope_part *part, int count, struct tl_fitted_lobe lobes[3])
-{
-    static const float places[3][3] = {{0}, {-1, 1}, {-1.7320508f, 0, 1.7320508f}};
-    static const float shares[3][3] = {{1}, {0.5f, 0.5f}, {1 / 6.0f, 2 / 3.0f, 1 / 6.0f}};
-    static const float least[3] = {0, 0.4f, 0.25f}; /* of a lobe's variance to that along the axis */
-    const float deviation = part->deviation * brdf->gloss.width_weft;
-    const struct slopes slopes = {deviation, deviation};
-    const vec3s local = local_of(frame, v);
-    const struct tl_slope_axes axes =
-        tl_slope_axes_of(deviation, deviation, local.x, local.y, fmaxf(local.z, LEAST_COSINE));
-    const float variance =
-        count == 1 ? sqrtf(axes.broad * axes.narrow) : fmaxf(axes.narrow, least[count - 1] * axes.broad);
-    const float extent = sqrtf(fmaxf(1 - variance / fmaxf(axes.broad, 1e-20f), 0));
-    for (int i = 0; i < count; i++) {
-        const float at = places[count - 1][i] * (count > 1 ? extent : 0);
-        const vec2s slope = {{at * axes.slope_x, at * axes.slope_y}};
-        lobes[i] =
-            (struct tl_fitted_lobe){.direction = mirrored(facet_of(frame, slope), v),
-                                    .exponent = tl_slope_exponent(variance),
-                                    .weight = glms_vec3_scale(value_of_slope(brdf, frame, &slopes, v, slope),
-                                                              part->share * shares[count - 1][i])};
-    }
-}
-
-/* The Gaussians' lobes, in an order that means the same from both ends: a table of lobes (fan_table.h) turns
- * it round where it turns the axis. */
-static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int max_count,
+static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
                    struct tl_fitted_lobe *lobes)
 {
-    struct tl_fitted_lobe core[3] = {0}, middle[3] = {0}, tail[3] = {0};
-    const int parts = max_count < GGX_PARTS ? max_count : GGX_PARTS;
-    const bool five = max_count >= 5, seven = max_count >= 7;
-    struct tl_fitted_lobe *const made[GGX_PARTS] = {core, middle, tail};
-    const int counts[GGX_PARTS] = {seven ? 3 : five ? 2 : 1, five ? 2 : 1, seven ? 2 : 1};
-    for (int k = 0; k < parts; k++)
-        fit_part(brdf, frame, v, &ggx_parts[parts - 1][k], counts[k], made[k]);
-    const struct tl_fitted_lobe of_seven[] = {core[0], middle[0], tail[0], core[1],
-                                              tail[1], middle[1], core[2]};
-    const struct tl_fitted_lobe of_five[] = {core[0], middle[0], tail[0], middle[1], core[1]};
-    const int count = seven ? 7 : five ? 5 : parts;
-    for (int k = 0; k < count; k++)
-        lobes[k] = seven ? of_seven[k] : five ? of_five[k] : made[k][0];
-    scale_to_albedo(ggx_albedo(brdf, glms_vec3_dot(frame->normal, v)), frame, count, lobes);
+    const vec3s local = local_of(frame, v);
+    const float flat = hypotf(local.x, local.y), x = flat > 0 ? local.x / flat : 1,
+                y = flat > 0 ? local.y / flat : 0;
+    struct tl_ggx_lobe found[TL_GGX_LOBES_MAX];
+    const int count = tl_ggx_lobes(brdf->gloss.width_weft, local.z, most, found);
+    for (int k = 0; k < count; k++) {
+        const float sine = sinf(found[k].facet);
+        const vec3s h = {{x * sine, y * sine, cosf(found[k].facet)}}, l = mirrored(h, local);
+        const float grooves =
+            brdf->gloss.masking == TL_MASKING_V_GROOVES ? masked_by_grooves(brdf, h, l, local) : 1;
+        vec3s direction = glms_vec3_scale(frame->tangent, l.x);
+        direction = glms_vec3_muladds(frame->bitangent, l.y, direction);
+        direction = glms_vec3_muladds(frame->normal, l.z, direction);
+        lobes[k] = (struct tl_fitted_lobe){
+            direction, found[k].exponent,
+            glms_vec3_scale(tl_brdf_fresnel(brdf, found[k].cosine), grooves * found[k].weight)};
+    }
     return count;
 }
 
@@ -407,8 +338,8 @@ void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *min, float *max)
     struct slopes slopes = slopes_of(brdf);
     float wide = fmaxf(slopes.weft, slopes.warp), thin = fminf(slopes.weft, slopes.warp);
     if (is_ggx(brdf)) {
-        wide = brdf->gloss.width_weft * ggx_parts[GGX_PARTS - 1][GGX_PARTS - 1].deviation;
-        thin = brdf->gloss.width_weft * ggx_parts[GGX_PARTS - 1][0].deviation;
+        tl_ggx_exponents(brdf->gloss.width_weft, min, max);
+        return;
     }
     switch (brdf->gloss.model) {
     case TL_REFLECT_PHONG:

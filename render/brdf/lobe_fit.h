@@ -13,7 +13,7 @@
  * towards the viewer, computed by Gauss-Legendre quadrature; this keeps light that is the same from
  * everywhere. The part of a lobe above the horizon is scaled up for the part that lies below it.
  *
- * GGX facets have slopes that are no Gaussian but close to a sum of three: one lobe stands for each.
+ * GGX facets, whose slopes have long tails, have lobes from a table of fits (ggx_lobes.h): 1, 3, 5 or 7.
  *
  * tests/render/brdf/test_lobe_fit.c prints the errors. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_LOBE_FIT_H

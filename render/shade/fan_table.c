@@ -35,14 +35,19 @@ static void fit_node(const tl_material *material, float glossiness, float cosine
     }
 }
 
+/* Widths count for lobes of one direction only: those of GGX towards a viewer in front. */
 static float distance_of(const struct tl_fan_node *a, const struct tl_fan_node *b, int count, bool reversed)
 {
     float sum = 0;
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; k++) {
+        const struct tl_fan_lobe *other = &b->lobes[reversed ? count - 1 - k : k];
         for (int i = 0; i < 3; i++) {
-            float d = a->lobes[k].direction[i] - b->lobes[reversed ? count - 1 - k : k].direction[i];
+            float d = a->lobes[k].direction[i] - other->direction[i];
             sum += d * d;
         }
+        const float wider = a->lobes[k].log_exponent - other->log_exponent;
+        sum += 1e-3f * wider * wider;
+    }
     return sum;
 }
 

@@ -13,6 +13,7 @@ foreach(name
     brdf/factor
     plan/first_second
     brdf/fuzz
+    brdf/ggx_lobes
     brdf/lobe_fit
     metrics/flip
     surfaces/ground
@@ -44,3 +45,4 @@ foreach(name
     )
   toile_test(${name} unit toile_light)
 endforeach()
+target_sources(test_ggx_lobes PRIVATE ./brdf/ggx_fitter.c)
