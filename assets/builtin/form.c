@@ -1,5 +1,7 @@
 #include "assets/builtin/form.h"
 
+#include "assets/builtin/version.h"
+#include "config/cache/cache.h"
 #include "config/memory.h"
 
 #include <assert.h>
@@ -347,7 +349,13 @@ static tl_material *form_materials(void)
 tl_avatar tl_avatar_form(void)
 {
     struct loft *loft = TL_NEW(struct loft);
-    build_loft(loft);
+    struct tl_cache_key key = tl_cache_key_begin();
+    tl_cache_key_add(&key, TL_BUILTIN_VERSION, sizeof TL_BUILTIN_VERSION);
+    tl_cache_key_add(&key, "form", strlen("form"));
+    if (!tl_cache_read(&key, loft, sizeof *loft)) {
+        build_loft(loft);
+        tl_cache_store(&key, loft, sizeof *loft);
+    }
     tl_avatar avatar = {.model = {.name = tl_copy_string("form"),
                                   .mesh = mesh_of(loft),
                                   .material_count = FORM_MATERIALS,

@@ -1,9 +1,12 @@
 #include "assets/builtin/studio.h"
 
+#include "assets/builtin/version.h"
+#include "config/cache/cache.h"
 #include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     STUDIO_WIDTH = 512,
@@ -127,10 +130,10 @@ static float peak_of(const tl_image *image)
     return peak;
 }
 
-static tl_image studio_image(const struct sample_angles *angles, const struct tl_studio_axes *axes)
+static void fill_image(const struct tl_studio_axes *axes, tl_image *image)
 {
-    tl_image image = tl_image_create(STUDIO_WIDTH, STUDIO_HEIGHT, 3, TL_IMAGE_F32);
-    float *texels = tl_image_floats(&image);
+    struct sample_angles *angles = sample_angles();
+    float *texels = tl_image_floats(image);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < STUDIO_HEIGHT; y++) {
         for (int x = 0; x < STUDIO_WIDTH; x++) {
@@ -138,6 +141,22 @@ static tl_image studio_image(const struct sample_angles *angles, const struct tl
             for (int c = 0; c < 3; c++)
                 texels[((size_t)y * STUDIO_WIDTH + (size_t)x) * 3 + (size_t)c] = texel.raw[c];
         }
+    }
+    free(angles);
+}
+
+/* From the cache, if one is used that has it. */
+static tl_image studio_image(const struct tl_studio_axes *axes)
+{
+    const char *name = axes ? "studio" : "backdrop";
+    const size_t bytes = (size_t)3 * STUDIO_WIDTH * STUDIO_HEIGHT * sizeof(float);
+    struct tl_cache_key key = tl_cache_key_begin();
+    tl_cache_key_add(&key, TL_BUILTIN_VERSION, sizeof TL_BUILTIN_VERSION);
+    tl_cache_key_add(&key, name, strlen(name));
+    tl_image image = tl_image_create(STUDIO_WIDTH, STUDIO_HEIGHT, 3, TL_IMAGE_F32);
+    if (!tl_cache_read(&key, tl_image_floats(&image), bytes)) {
+        fill_image(axes, &image);
+        tl_cache_store(&key, tl_image_floats(&image), bytes);
     }
     return image;
 }
@@ -147,12 +166,10 @@ tl_environment tl_environment_studio(void)
     struct tl_studio_axes axes[TL_COUNT(tl_studio_lights)];
     for (size_t i = 0; i < tl_studio_light_count; i++)
         axes[i] = tl_studio_light_axes(&tl_studio_lights[i]);
-    struct sample_angles *angles = sample_angles();
     tl_environment environment = {.name = tl_copy_string("studio"),
                                   .layout = TL_ENV_LATLONG,
-                                  .image = studio_image(angles, axes),
-                                  .backdrop = studio_image(angles, NULL)};
-    free(angles);
+                                  .image = studio_image(axes),
+                                  .backdrop = studio_image(NULL)};
     environment.peak = peak_of(&environment.image);
     return environment;
 }

@@ -1,8 +1,10 @@
 #include "assets/cut/garment_cut.h"
 
 #include "assets/builtin/form.h"
+#include "assets/builtin/version.h"
 #include "assets/cut/fit.h"
 #include "assets/cut/garment_cut_internal.h"
+#include "config/cache/cache.h"
 #include "config/memory.h"
 
 #include <assert.h>
@@ -326,13 +328,41 @@ static struct tl_cut_plan make_plan(const struct cut_order *order)
     return plan;
 }
 
+/* Of the start shape around the form. */
+static struct tl_cache_key key_of(const struct cut_order *order, float edge_m)
+{
+    struct tl_cache_key key = tl_cache_key_begin();
+    tl_cache_key_add(&key, TL_BUILTIN_VERSION, sizeof TL_BUILTIN_VERSION);
+    tl_cache_key_add(&key, order->kind->name, strlen(order->kind->name));
+    tl_cache_key_add(&key, order->sizes, sizeof *order->sizes);
+    tl_cache_key_add(&key, &edge_m, sizeof edge_m);
+    return key;
+}
+
+static void cut(const struct cut_order *order, float edge_m, tl_garment *out);
+
+/* Start shapes around other bodies are not kept: hashing a body takes long. */
+static void place_or_restore(const struct cut_order *order, const struct cutting *cutting, float edge_m,
+                             tl_garment *out)
+{
+    const float coarse_edge_m = edge_m < EDGE_FIRST_M ? 2 * edge_m : 0;
+    const struct tl_cache_key key = key_of(order, edge_m);
+    tl_mesh *mesh = &out->model.mesh;
+    const size_t bytes = mesh->vertex_count * sizeof *mesh->positions;
+    tl_garment coarse = {0};
+    if (!order->body && tl_cache_read(&key, mesh->positions, bytes))
+        return;
+    if (coarse_edge_m > 0)
+        cut(order, coarse_edge_m, &coarse);
+    place(cutting, &coarse, (double)coarse_edge_m, out);
+    tl_garment_release(&coarse);
+    if (!order->body)
+        tl_cache_store(&key, mesh->positions, bytes);
+}
+
 static void cut(const struct cut_order *order, float edge_m, tl_garment *out)
 {
     const struct cut_kind *kind = order->kind;
-    const float coarse_edge_m = edge_m < EDGE_FIRST_M ? 2 * edge_m : 0;
-    tl_garment coarse = {0};
-    if (coarse_edge_m > 0)
-        cut(order, coarse_edge_m, &coarse);
     struct tl_cut_plan plan = make_plan(order);
     struct cutting cutting = {.plan = &plan, .reach_m = kind->for_body ? REACH_DRAFTED_M : REACH_M};
     choose_segments(&plan, (double)edge_m);
@@ -341,12 +371,11 @@ static void cut(const struct cut_order *order, float edge_m, tl_garment *out)
     lay_out(&cutting, out);
     sew(&cutting, out);
     pin(&cutting, out);
-    place(&cutting, &coarse, (double)coarse_edge_m, out);
+    place_or_restore(order, &cutting, edge_m, out);
     fill_normals(out);
     for (size_t p = 0; p < plan.piece_count; p++)
         tl_panel_release(&cutting.panels[p]);
     free(plan.placement);
-    tl_garment_release(&coarse);
 }
 
 /* NULL when the name is unknown or the edge is out of range. */

@@ -1,6 +1,8 @@
 #include "assets/cut/wrap.h"
 
 #include "assets/builtin/form.h"
+#include "assets/builtin/version.h"
+#include "config/cache/cache.h"
 
 #include <math.h>
 
@@ -55,12 +57,20 @@ void tl_ring_around_form(double y, double length, struct tl_ring *out)
 {
     enum { SECTION = 256 };
     struct tl_point section[SECTION];
+    const double order[] = {y, length};
+    struct tl_cache_key key = tl_cache_key_begin();
+    tl_cache_key_add(&key, TL_BUILTIN_VERSION, sizeof TL_BUILTIN_VERSION);
+    tl_cache_key_add(&key, order, sizeof order);
+    if (tl_cache_read(&key, out, sizeof *out))
+        return;
+    *out = (struct tl_ring){0};
     for (int i = 0; i < SECTION; i++) {
         double angle = 2 * M_PI * i / SECTION, r = tl_form_radius(y, angle);
         section[i] = (struct tl_point){-r * sin(angle), -r * cos(angle)};
     }
     out->y = y;
     tl_ring_around(section, SECTION, tl_form_girth(y), true, length, out);
+    tl_cache_store(&key, out, sizeof *out);
 }
 
 static struct tl_point mix(struct tl_point a, struct tl_point b, double t)
@@ -80,18 +90,32 @@ struct tl_point tl_ring_at(const struct tl_ring *ring, double distance)
     return at_fraction(ring->points, TL_RING_STEPS, distance / ring->length);
 }
 
-/* One row: the ring moved outwards by `out`, waved by `wave`. Directions turn evenly along the ring, which
- * keeps the cone of an oval waist nearly as developable as a round one's. The fold's phase varies a little:
- * real folds are not evenly spaced. */
-static double waved_row(const struct tl_ring *ring, double out, double wave, int folds, struct tl_point *row)
+/* The ring in the directions of a flare, the same for all its rows. Directions turn evenly along the ring,
+ * which keeps the cone of an oval waist nearly as developable as a round one's. The fold's phase varies a
+ * little: real folds are not evenly spaced. */
+struct flare_steps {
+    struct tl_point base[TL_FLARE_STEPS], out[TL_FLARE_STEPS]; /* `out` is a unit vector */
+    double fold[TL_FLARE_STEPS];                               /* -1 to 1 */
+};
+
+static void fill_steps(const struct tl_ring *ring, int folds, struct flare_steps *steps)
+{
+    for (int k = 0; k < TL_FLARE_STEPS; k++) {
+        double turn = 2 * M_PI * k / TL_FLARE_STEPS;
+        steps->base[k] = at_fraction(ring->points, TL_RING_STEPS, (double)k / TL_FLARE_STEPS);
+        steps->out[k] = (struct tl_point){sin(turn), cos(turn)};
+        steps->fold[k] = cos(folds * turn + 0.3 * sin(2 * turn + 0.7) + 0.2 * sin(3 * turn + 2));
+    }
+}
+
+/* One row: the ring moved outwards by `out`, waved by `wave`. */
+static double waved_row(const struct flare_steps *steps, double out, double wave, struct tl_point *row)
 {
     struct tl_point raw[TL_FLARE_STEPS];
     for (int k = 0; k < TL_FLARE_STEPS; k++) {
-        double turn = 2 * M_PI * k / TL_FLARE_STEPS;
-        struct tl_point base = at_fraction(ring->points, TL_RING_STEPS, (double)k / TL_FLARE_STEPS);
-        double phase = folds * turn + 0.3 * sin(2 * turn + 0.7) + 0.2 * sin(3 * turn + 2);
-        double reach = out + wave * cos(phase);
-        raw[k] = (struct tl_point){base.x + reach * sin(turn), base.y + reach * cos(turn)};
+        double reach = out + wave * steps->fold[k];
+        raw[k] = (struct tl_point){steps->base[k].x + reach * steps->out[k].x,
+                                   steps->base[k].y + reach * steps->out[k].y};
     }
     return even_out(raw, TL_FLARE_STEPS, row, TL_FLARE_STEPS);
 }
@@ -99,13 +123,15 @@ static double waved_row(const struct tl_ring *ring, double out, double wave, int
 void tl_flare_from_ring(const struct tl_ring *ring, double length, double full_angle, double slope, int folds,
                         struct tl_flare *out)
 {
+    struct flare_steps steps;
+    fill_steps(ring, folds, &steps);
     out->length = length;
     for (int i = 0; i < TL_FLARE_ROWS; i++) {
         double down = length * i / (TL_FLARE_ROWS - 1), wanted = ring->length + full_angle * down;
         double low = 0, high = down;
         for (int step = 0; step < 30; step++) {
             double wave = 0.5 * (low + high);
-            if (waved_row(ring, down * sin(slope), wave, folds, out->points[i]) < wanted)
+            if (waved_row(&steps, down * sin(slope), wave, out->points[i]) < wanted)
                 low = wave;
             else
                 high = wave;

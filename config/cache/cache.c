@@ -106,26 +106,50 @@ static char *read_file(const char *path, size_t *size, bool *found)
     return data;
 }
 
-bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size)
+/* The bytes of an intact file, header and data; NULL: there is none. */
+static char *load_file(const struct tl_cache_key *key, size_t *file_size)
 {
     if (!used.folder)
-        return false;
-    size_t file_size = 0;
+        return NULL;
     bool found;
-    char *path = path_of(key), *file = read_file(path, &file_size, &found);
-    bool intact = file && is_intact(key, file, file_size);
+    char *path = path_of(key), *file = read_file(path, file_size, &found);
+    bool intact = file && is_intact(key, file, *file_size);
     if (intact) {
-        *size = file_size - sizeof(struct drape_header);
-        *data = tl_alloc(*size, 1);
-        memcpy(*data, file + sizeof(struct drape_header), *size);
         utimensat(AT_FDCWD, path, NULL, 0); /* used now: it is the last to be removed */
     } else if (found) {
         tl_info("%s: is damaged: it is removed from the cache", path);
         unlink(path);
     }
-    free(file);
+    if (!intact) {
+        free(file);
+        file = NULL;
+    }
     free(path);
-    return intact;
+    return file;
+}
+
+bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size)
+{
+    size_t file_size = 0;
+    char *file = load_file(key, &file_size);
+    if (!file)
+        return false;
+    *size = file_size - sizeof(struct drape_header);
+    *data = tl_alloc(*size, 1);
+    memcpy(*data, file + sizeof(struct drape_header), *size);
+    free(file);
+    return true;
+}
+
+bool tl_cache_read(const struct tl_cache_key *key, void *data, size_t size)
+{
+    size_t file_size = 0;
+    char *file = load_file(key, &file_size);
+    bool fits = file && file_size == sizeof(struct drape_header) + size;
+    if (fits)
+        memcpy(data, file + sizeof(struct drape_header), size);
+    free(file);
+    return fits;
 }
 
 static bool is_entry(const char *name)

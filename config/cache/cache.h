@@ -33,6 +33,8 @@ void tl_cache_key_add(struct tl_cache_key *key, const void *bytes, size_t size);
 
 /* False when there is no such file, or it was damaged. */
 bool tl_cache_load(const struct tl_cache_key *key, void **data, size_t *size);
+/* The same into `size` bytes of the caller's; false as well where it has another size. */
+bool tl_cache_read(const struct tl_cache_key *key, void *data, size_t size);
 void tl_cache_store(const struct tl_cache_key *key, const void *data, size_t size);
 
 /* The entries of a folder, the most recently used first. */

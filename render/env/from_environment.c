@@ -1,5 +1,8 @@
 #include "render/env/from_environment.h"
 
+#include "config/cache/cache.h"
+#include "render/env/version.h"
+
 #include <assert.h>
 #include <math.h>
 
@@ -113,16 +116,43 @@ static void average_cube(const tl_cube *source, tl_cube *target)
     }
 }
 
+static struct tl_cache_key key_of(const tl_environment *environment, int size)
+{
+    const tl_image *image = &environment->image;
+    const int shape[] = {environment->layout, size, image->width, image->height};
+    struct tl_cache_key key = tl_cache_key_begin();
+    tl_cache_key_add(&key, TL_ENV_VERSION, sizeof TL_ENV_VERSION);
+    tl_cache_key_add(&key, shape, sizeof shape);
+    tl_cache_key_add(&key, tl_image_floats(image),
+                     3 * (size_t)image->width * (size_t)image->height * sizeof(float));
+    return key;
+}
+
+static void fill_cube(const tl_environment *environment, tl_cube *target, struct tl_resampling *weights)
+{
+    if (environment->layout == TL_ENV_CUBE) {
+        tl_cube source = environment_as_cube(environment);
+        average_cube(&source, target);
+    } else {
+        tl_resample_latlong(&environment->image, target->size, target->texels, weights);
+    }
+}
+
+/* With weights that are there already a cube takes no longer than reading it from the cache. */
 tl_cube tl_cube_from_environment_with(const tl_environment *environment, int size,
                                       struct tl_resampling *weights)
 {
     assert(environment->image.type == TL_IMAGE_F32 && environment->image.channels == 3);
     tl_cube target = tl_cube_create(size);
-    if (environment->layout == TL_ENV_CUBE) {
-        tl_cube source = environment_as_cube(environment);
-        average_cube(&source, &target);
-    } else {
-        tl_resample_latlong(&environment->image, size, target.texels, weights);
+    const size_t bytes = 18 * (size_t)size * (size_t)size * sizeof *target.texels;
+    if (!tl_cache_is_used() || weights->size > 0) {
+        fill_cube(environment, &target, weights);
+        return target;
+    }
+    const struct tl_cache_key key = key_of(environment, size);
+    if (!tl_cache_read(&key, target.texels, bytes)) {
+        fill_cube(environment, &target, weights);
+        tl_cache_store(&key, target.texels, bytes);
     }
     return target;
 }

@@ -1,5 +1,6 @@
-/* Cubes from environments, and look-ups in an environment in its own layout. Pure; results do not depend on
- * the number of threads.
+/* Cubes from environments, and look-ups in an environment in its own layout. Pure, but for the cache of files
+ * (config/cache/cache.h), which cubes are kept in between runs; results depend neither on it nor on the
+ * number of threads.
  *
  * Environments must hold RGB floats. Directions are in the environment's own frame (before its yaw). */
 #ifndef TOILE_RENDER_ENV_FROM_ENVIRONMENT_H

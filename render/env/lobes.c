@@ -212,7 +212,7 @@ static struct tl_cache_key key_of(const tl_cube *cube)
 {
     struct tl_cache_key key = tl_cache_key_begin();
     size_t size = (size_t)cube->size;
-    tl_cache_key_add(&key, TL_LOBES_VERSION, sizeof TL_LOBES_VERSION);
+    tl_cache_key_add(&key, TL_ENV_VERSION, sizeof TL_ENV_VERSION);
     tl_cache_key_add(&key, &size, sizeof size);
     tl_cache_key_add(&key, cube->texels, 3 * 6 * size * size * sizeof *cube->texels);
     return key;
@@ -220,15 +220,13 @@ static struct tl_cache_key key_of(const tl_cube *cube)
 
 static bool load_map(struct tl_cache_key key, int index, int side, struct tl_lobe_map *map)
 {
-    void *data;
-    size_t size;
+    struct tl_lobe_map kept = create_map(side);
     tl_cache_key_add(&key, &index, sizeof index);
-    if (!tl_cache_load(&key, &data, &size))
-        return false;
-    *map = (struct tl_lobe_map){side, data};
-    if (size == map_bytes(map))
+    if (tl_cache_read(&key, kept.texels, map_bytes(&kept))) {
+        *map = kept;
         return true;
-    free(data);
+    }
+    free(kept.texels);
     return false;
 }
 
@@ -263,27 +261,40 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
     free(texels);
 }
 
+static struct tl_lobe_map apply(const struct tl_lobe_map *source, float exponent,
+                                tl_lobe_map_function *function, const void *context)
+{
+    struct tl_lobe_map map = create_map(source->side);
+    float step = 2 / (float)source->side;
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int y = 0; y < source->side; y++)
+        for (int x = 0; x < source->side; x++) {
+            const float *light = texel_of(source, x, y);
+            vec3s direction = unfold(((float)x + 0.5f) * step - 1, ((float)y + 0.5f) * step - 1);
+            vec3s result = function(glms_vec3_normalize(direction), exponent,
+                                    (vec3s){{light[0], light[1], light[2]}}, context);
+            memcpy(texel_of(&map, x, y), result.raw, sizeof result);
+        }
+    fill_border(&map);
+    return map;
+}
+
 struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lobe_map_function *function,
-                             const void *context)
+                             const void *context, const struct tl_cache_key *key)
 {
     struct tl_lobes lobes = {.made = from->made & which};
     for (int k = 0; k <= TL_EXPONENT_COUNT; k++) {
         if (!(lobes.made & 1u << k))
             continue;
         const struct tl_lobe_map *source = &from->maps[k];
-        lobes.maps[k] = create_map(source->side);
-        float exponent = k < TL_EXPONENT_COUNT ? tl_exponent(k) : MIRROR_EXPONENT;
-        float step = 2 / (float)source->side;
-#pragma omp parallel for schedule(dynamic, 4)
-        for (int y = 0; y < source->side; y++)
-            for (int x = 0; x < source->side; x++) {
-                const float *light = texel_of(source, x, y);
-                vec3s direction = unfold(((float)x + 0.5f) * step - 1, ((float)y + 0.5f) * step - 1);
-                vec3s result = function(glms_vec3_normalize(direction), exponent,
-                                        (vec3s){{light[0], light[1], light[2]}}, context);
-                memcpy(texel_of(&lobes.maps[k], x, y), result.raw, sizeof result);
-            }
-        fill_border(&lobes.maps[k]);
+        struct tl_cache_key of_map = *key;
+        if (tl_cache_is_used())
+            tl_cache_key_add(&of_map, source->texels, map_bytes(source));
+        if (load_map(of_map, k, source->side, &lobes.maps[k]))
+            continue;
+        lobes.maps[k] =
+            apply(source, k < TL_EXPONENT_COUNT ? tl_exponent(k) : MIRROR_EXPONENT, function, context);
+        keep_map(of_map, k, &lobes.maps[k]);
     }
     return lobes;
 }

@@ -46,10 +46,12 @@ void tl_lobes_release(struct tl_lobes *lobes);
 void tl_lobes_keep(struct tl_lobes *lobes, uint32_t which);
 
 /* Applies a function to every texel of the exponents in `which` and returns the results as maps of the same
- * sizes. `function` is called from several threads at once. */
+ * sizes. `function` is called from several threads at once. `key` covers all that the function's results
+ * depend on but for its arguments: results are kept under it, where a cache is used. */
+struct tl_cache_key; /* config/cache/cache.h */
 typedef vec3s tl_lobe_map_function(vec3s direction, float exponent, vec3s light, const void *context);
 struct tl_lobes tl_lobes_map(const struct tl_lobes *from, uint32_t which, tl_lobe_map_function *function,
-                             const void *context);
+                             const void *context, const struct tl_cache_key *key);
 
 /* A deep copy. */
 struct tl_lobes tl_lobes_copy(const struct tl_lobes *lobes);

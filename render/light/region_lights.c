@@ -1,5 +1,8 @@
 #include "render/light/region_lights.h"
 
+#include "config/cache/cache.h"
+#include "render/light/version.h"
+
 #include <math.h>
 
 static void fill_lane(struct tl_region_group *group, int lane, const struct tl_region *region,
@@ -109,13 +112,25 @@ void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_reg
     lights->is_exact = weight == TL_WEIGHT_POWER;
 }
 
+/* Of all that gains depend on but for the lobes. */
+static struct tl_cache_key key_of(const struct tl_region_lights *lights, bool diffuse)
+{
+    struct tl_cache_key key = tl_cache_key_begin();
+    tl_cache_key_add(&key, TL_LIGHTS_VERSION, sizeof TL_LIGHTS_VERSION);
+    tl_cache_key_add(&key, &diffuse, sizeof diffuse);
+    tl_cache_key_add(&key, lights->groups, (size_t)lights->group_count * sizeof *lights->groups);
+    return key;
+}
+
 void tl_region_lights_add(struct tl_region_lights *lights, const struct tl_lobes *lobes, uint32_t exponents)
 {
     if (!lights->is_exact)
         return;
-    struct tl_lobes gain = tl_lobes_map(lobes, exponents & ~lights->gain.made, gain_of, lights);
+    const struct tl_cache_key key = key_of(lights, false), diffuse_key = key_of(lights, true);
+    struct tl_lobes gain = tl_lobes_map(lobes, exponents & ~lights->gain.made, gain_of, lights, &key);
     tl_lobes_merge(&lights->gain, &gain);
-    struct tl_lobes diffuse = tl_lobes_map(lobes, 1u & ~lights->diffuse_gain.made, diffuse_gain_of, lights);
+    struct tl_lobes diffuse =
+        tl_lobes_map(lobes, 1u & ~lights->diffuse_gain.made, diffuse_gain_of, lights, &diffuse_key);
     tl_lobes_merge(&lights->diffuse_gain, &diffuse);
 }
 
