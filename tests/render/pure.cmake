@@ -6,6 +6,7 @@ foreach(name
     pem/chain
     metrics/compare
     light/compose
+    light/kept_light
     env/convert
     plan/cost
     env/cube

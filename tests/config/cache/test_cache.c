@@ -71,6 +71,12 @@ static void stored_bytes_are_loaded(void **state)
     assert_true(holds(2, "two"));
     store(1, "another");
     assert_true(holds(1, "another"));
+    char text[8];
+    struct tl_cache_key key = key_of(2);
+    assert_true(tl_cache_read(&key, text, 3));
+    assert_memory_equal(text, "two", 3);
+    assert_false(tl_cache_read(&key, text, 2)); /* of another size: no part of it */
+    assert_false(tl_cache_read(&key, text, 4));
     size_t count;
     struct tl_cache_entry *entries = tl_cache_list(folder, &count);
     assert_int_equal(count, 2);
