@@ -12,7 +12,7 @@
 
 #define FOLDER TOILE_SCRATCH_DIR "/kept_light"
 
-enum { CUBE, GAIN, DIFFUSE_GAIN, COUNT, WIDTH = 64, SIZE = 16 };
+enum { CUBE, GAIN, DIFFUSE_GAIN, TWICE, COUNT, WIDTH = 64, SIZE = 16 };
 
 static uint64_t hash_lobes(const struct tl_lobes *lobes)
 {
@@ -42,6 +42,11 @@ static void make_light(float brightest, int regions, uint64_t hashes[COUNT])
     hashes[CUBE] = tl_hash_words(TL_HASH_START, cube.texels, (size_t)18 * SIZE * SIZE * sizeof(float));
     hashes[GAIN] = hash_lobes(&lights.gain);
     hashes[DIFFUSE_GAIN] = hash_lobes(&lights.diffuse_gain);
+    /* The same regions for other light. */
+    for (size_t i = 0, side = (size_t)lobes.maps[6].side + 2; i < 4 * side * side; i++)
+        lobes.maps[6].texels[i] *= 2;
+    tl_region_lights_make(&lights, &cut, TL_WEIGHT_POWER, &lobes);
+    hashes[TWICE] = hash_lobes(&lights.gain);
     tl_region_lights_release(&lights);
     tl_lobes_release(&lobes);
     tl_regions_release(&cut);
@@ -68,14 +73,16 @@ static void kept_light_is_made_light(void **state)
     free(tl_cache_list(FOLDER, &files));
     make_all(second);
     free(tl_cache_list(FOLDER, &more));
-    /* Two cubes, two lobes of each; of each of three lights two gains and a diffuse one. */
-    assert_int_equal(files, 2 + 2 * 2 + 3 * 3);
+    /* Two cubes, two lobes of each; of each of three lights two gains, one of them twice, and a diffuse one.
+     */
+    assert_int_equal(files, 2 + 2 * 2 + 3 * 4);
     assert_int_equal(more, files);
     assert_memory_equal(plain, first, sizeof plain);
     assert_memory_equal(plain, second, sizeof plain);
     assert_true(plain[0][CUBE] != plain[1][CUBE] && plain[0][CUBE] == plain[2][CUBE]);
     assert_true(plain[0][GAIN] != plain[1][GAIN] && plain[0][GAIN] != plain[2][GAIN]);
     assert_true(plain[0][DIFFUSE_GAIN] != plain[2][DIFFUSE_GAIN]);
+    assert_true(plain[0][TWICE] != plain[0][GAIN]);
     tl_cache_clear(FOLDER);
     tl_cache_use(NULL, 0);
     rmdir(FOLDER);
