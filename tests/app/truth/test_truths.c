@@ -2,6 +2,9 @@
  * scenes whose truths Cycles rendered (make_truths.py). What both leave out, or get wrong in the same way, no
  * other test can see.
  *
+ * With TOILE_TRUTH_TABLE set it prints the table of docs/measuring.md: presets, with bounces and
+ * without, against the truth and against the reference.
+ *
  * Compared are means of 8 x 8 pixels that are wholly covered in both pictures: noise, the tracer's and the
  * reference's, is an eighth of a pixel's there. */
 #include "tests/testing.h"
@@ -90,51 +93,45 @@ static void run(bool (*command)(const struct tl_arguments *, tl_error *), unsign
     tl_arguments_release(&arguments);
 }
 
-/* Four samples a side, because Cycles' filter is a box as wide as a pixel. */
-static tl_image render(const char *scene, const char *mesh, bool is_reference, const char *bounce)
+/* Renders a scene with further options. Four samples a side, because Cycles' filter is a box as wide as a
+ * pixel. */
+static tl_image render(const char *scene, const char *mesh, const char *const *options)
 {
+    const char *path = TOILE_SCRATCH_DIR "/truth.exr", *words[WORDS] = {NULL};
     char yaml[256];
-    const char *path = TOILE_SCRATCH_DIR "/truth.exr";
+    int count = 0;
     snprintf(yaml, sizeof yaml, FOLDER "%s.yaml", scene);
-    const char *const reference[] = {yaml,
-                                     "-o",
-                                     path,
-                                     "--set",
-                                     "image.supersample=4",
-                                     "--garment",
-                                     mesh,
-                                     "--set",
-                                     bounce,
-                                     "--method",
-                                     "reference",
-                                     "--set",
-                                     "reference.strata=32",
-                                     "--set",
-                                     "reference.replicates=2",
-                                     "--set",
-                                     "reference.bounce_samples=4",
-                                     NULL};
-    const char *const drawn[] = {yaml,        "-o", path,    "--set", "image.supersample=4",
-                                 "--garment", mesh, "--set", bounce,  NULL};
-    run(tl_command_render, TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AOV, is_reference ? reference : drawn);
+    const char *const always[] = {yaml, "-o", path, "--set", "image.supersample=4", "--garment", mesh, NULL};
+    for (const char *const *word = always; *word; word++)
+        words[count++] = *word;
+    for (; *options; options++)
+        words[count++] = *options;
+    run(tl_command_render, TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AOV, words);
     return read_picture(path);
 }
 
-static struct difference compare_with(tl_image truth, const char *scene, const char *mesh, bool is_reference,
-                                      const char *bounce)
+static tl_image read_truth(const char *scene)
 {
-    tl_image tested = render(scene, mesh, is_reference, bounce);
+    char path[256];
+    snprintf(path, sizeof path, FOLDER "%s.truth.exr", scene);
+    return read_picture(path);
+}
+
+#define RAYS                                                                                                 \
+    "--method", "reference", "--set", "reference.strata=32", "--set", "reference.replicates=2", "--set",     \
+        "reference.bounce_samples=4"
+#define BOUNCE(choice) "--set", "light.bounce=" choice
+
+static const char *const reference[] = {RAYS, BOUNCE("all"), NULL}, *const drawn[] = {NULL};
+
+/* The picture of the scene with these options, against the truth. */
+static struct difference render_and_compare(const char *scene, const char *mesh, const char *const *options)
+{
+    tl_image tested = render(scene, mesh, options), truth = read_truth(scene);
     const struct difference out = compare(&tested, &truth);
     tl_image_release(&tested);
     tl_image_release(&truth);
     return out;
-}
-
-static struct difference compare_with_truth(const char *scene, const char *mesh, bool is_reference)
-{
-    char path[256];
-    snprintf(path, sizeof path, FOLDER "%s.truth.exr", scene);
-    return compare_with(read_picture(path), scene, mesh, is_reference, "light.bounce=all");
 }
 
 /* Bounds in percent, a third above what was measured (docs/measuring.md). The reference is free of bias on
@@ -192,18 +189,30 @@ static void pictures_meet_an_independent_tracer(void **state)
     for (size_t i = 0; i < TL_COUNT(scenes); i++) {
         if (!has_drape && strncmp(scenes[i].name, "drape", 5) == 0)
             continue;
-        const struct difference reference = compare_with_truth(scenes[i].name, scenes[i].mesh, true);
-        const struct difference drawn = compare_with_truth(scenes[i].name, scenes[i].mesh, false);
-        printf("%-20s    %8.2f %8.2f        %8.2f %8.2f\n", scenes[i].name, 100 * reference.mean,
-               100 * reference.rms, 100 * drawn.mean, 100 * drawn.rms);
-        failures += judge("reference, mean", reference.mean, scenes[i].reference_mean);
-        failures += judge("reference, rms", reference.rms, scenes[i].reference_rms);
-        failures += judge("as drawn, mean", drawn.mean, scenes[i].drawn_mean);
-        failures += judge("as drawn, rms", drawn.rms, scenes[i].drawn_rms);
+        const struct difference traced = render_and_compare(scenes[i].name, scenes[i].mesh, reference);
+        const struct difference shown = render_and_compare(scenes[i].name, scenes[i].mesh, drawn);
+        printf("%-20s    %8.2f %8.2f        %8.2f %8.2f\n", scenes[i].name, 100 * traced.mean,
+               100 * traced.rms, 100 * shown.mean, 100 * shown.rms);
+        failures += judge("reference, mean", traced.mean, scenes[i].reference_mean);
+        failures += judge("reference, rms", traced.rms, scenes[i].reference_rms);
+        failures += judge("as drawn, mean", shown.mean, scenes[i].drawn_mean);
+        failures += judge("as drawn, rms", shown.rms, scenes[i].drawn_rms);
         fflush(stdout);
     }
     assert_int_equal(failures, 0);
 }
+
+/* Each preset at rest, with and without light between surfaces, and the reference with the same. */
+static const struct {
+    const char *name;
+    const char *const *reference, *const *draft, *const *review;
+} bounces[] = {
+    {"bounces", reference, (const char *const[]){"--preset", "draft", BOUNCE("all"), NULL},
+     (const char *const[]){"--preset", "review", BOUNCE("all"), NULL}},
+    {"no bounces", (const char *const[]){RAYS, BOUNCE("off"), NULL},
+     (const char *const[]){"--preset", "draft", BOUNCE("off"), NULL},
+     (const char *const[]){"--preset", "review", BOUNCE("off"), NULL}},
+};
 
 /* Metal as drawn, under the environment alone: what its lobes and the visibility of regions leave. Bounds as
  * above. */
@@ -219,22 +228,68 @@ static void metal_without_bounces_meets_the_reference(void **state)
         {"fold_metal_studio", FOLDER "fold_metal.glb", 1.6, 3.3},
         {"fold_metal_sun", FOLDER "fold_metal.glb", 1.3, 4.6},
     };
-    const char *const off = "light.bounce=off";
     int failures = 0;
     for (size_t i = 0; i < TL_COUNT(metals); i++) {
-        const char *const name = metals[i].name, *const mesh = metals[i].mesh;
-        const struct difference drawn = compare_with(render(name, mesh, true, off), name, mesh, false, off);
-        printf("%-20s    without bounces, as drawn: %8.2f %8.2f\n", name, 100 * drawn.mean, 100 * drawn.rms);
-        failures += judge("as drawn, mean", drawn.mean, metals[i].mean);
-        failures += judge("as drawn, rms", drawn.rms, metals[i].rms);
+        tl_image exact = render(metals[i].name, metals[i].mesh, bounces[1].reference),
+                 shown = render(metals[i].name, metals[i].mesh, bounces[1].review);
+        const struct difference off = compare(&shown, &exact);
+        printf("%-20s    without bounces, as drawn: %8.2f %8.2f\n", metals[i].name, 100 * off.mean,
+               100 * off.rms);
+        failures += judge("as drawn, mean", off.mean, metals[i].mean);
+        failures += judge("as drawn, rms", off.rms, metals[i].rms);
+        tl_image_release(&exact);
+        tl_image_release(&shown);
     }
     assert_int_equal(failures, 0);
+}
+
+/* ---- The table of docs/measuring.md ---- */
+
+static void print_against(const tl_image *tested, const tl_image *against)
+{
+    const struct difference found = compare(tested, against);
+    printf(" | %.2f, %.2f", 100 * found.rms, 100 * found.mean);
+}
+
+static void print_row(const char *scene, const char *mesh, size_t bounce)
+{
+    tl_image truth = read_truth(scene), exact = render(scene, mesh, bounces[bounce].reference),
+             draft = render(scene, mesh, bounces[bounce].draft),
+             review = render(scene, mesh, bounces[bounce].review);
+    printf("| %s, %s", scene, bounces[bounce].name);
+    print_against(&exact, &truth);
+    print_against(&draft, &truth);
+    print_against(&review, &truth);
+    print_against(&draft, &exact);
+    print_against(&review, &exact);
+    puts(" |");
+    fflush(stdout);
+    tl_image_release(&truth);
+    tl_image_release(&exact);
+    tl_image_release(&draft);
+    tl_image_release(&review);
+}
+
+/* Takes three times as long as the test, and asserts nothing: on request only. */
+static void presets_are_tabled(void **state)
+{
+    (void)state;
+    const bool has_drape = write_drape();
+    puts("| scene | reference, Cycles | draft, Cycles | review, Cycles | draft, reference | review, "
+         "reference |");
+    puts("|---|---|---|---|---|---|");
+    for (size_t bounce = 0; bounce < TL_COUNT(bounces); bounce++)
+        for (size_t i = 0; i < TL_COUNT(scenes); i++)
+            if (has_drape || strncmp(scenes[i].name, "drape", 5) != 0)
+                print_row(scenes[i].name, scenes[i].mesh, bounce);
 }
 
 int main(void)
 {
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {cmocka_unit_test(metal_without_bounces_meets_the_reference),
-                                       cmocka_unit_test(pictures_meet_an_independent_tracer)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+                                       cmocka_unit_test(pictures_meet_an_independent_tracer)},
+                            table[] = {cmocka_unit_test(presets_are_tabled)};
+    return getenv("TOILE_TRUTH_TABLE") ? cmocka_run_group_tests(table, NULL, NULL)
+                                       : cmocka_run_group_tests(tests, NULL, NULL);
 }
