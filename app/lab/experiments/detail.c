@@ -183,7 +183,7 @@ static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "c3",
      .scene = "gallery",
-     .title = "C3  Frames rebuilt every frame",
+     .title = "C3, E4  Frames rebuilt every frame",
      .text = "A highlight that follows the threads, on meshes of three sizes. In the strip the sheet "
              "falls.",
      .exact_text = "the same mesh ray traced",

@@ -68,6 +68,7 @@ enum tl_picture_motion {
     TL_MOTION_NONE,
     TL_MOTION_CAMERA, /* turns by motion_step degrees a frame */
     TL_MOTION_LAMP,   /* the same */
+    TL_MOTION_SKY,    /* the environment's sequence plays; motion_step frames from one picture to the next */
     TL_MOTION_CLOTH   /* the sheet falls; motion_step frames from one picture to the next */
 };
 
@@ -105,6 +106,7 @@ struct tl_experiment {
     struct tl_experiment_claim claims[TL_EXPERIMENT_CLAIMS]; /* pictures: {0} ends them */
     bool baked; /* pictures: its objects are coarse meshes and maps that were baked of finer ones, files of
                    which rows name "@coarse.obj", "@fine.obj", "@normals.png" and "@heights.exr" */
+    bool moving_sky;      /* pictures: its environment is a sequence of files, "@sky.####.exr" */
     bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
 };
 

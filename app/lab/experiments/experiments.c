@@ -5,8 +5,8 @@
 #include <string.h>
 
 static const struct tl_experiment_list *const families[] = {
-    &tl_shading_experiments, &tl_maps_experiments,     &tl_detail_experiments, &tl_light_experiments,
-    &tl_glossy_experiments,  &tl_material_experiments, &tl_budget_experiments};
+    &tl_shading_experiments, &tl_maps_experiments,  &tl_detail_experiments,   &tl_light_experiments,
+    &tl_glossy_experiments,  &tl_cloth_experiments, &tl_material_experiments, &tl_budget_experiments};
 
 const struct tl_experiment *tl_experiment_at(enum tl_output output, size_t index)
 {

@@ -1,5 +1,5 @@
-/* Materials. The gallery shows what makes cloth of them; a clear coat, fuzz, knits, open cloth that shows
- * what is behind it and a weave of two yarns have a golden alone. */
+/* Materials. Ids A13, C9, C10. The gallery shows what makes cloth of them; a clear coat, fuzz, knits, open
+ * cloth that shows what is behind it and a weave of two yarns have a golden alone. */
 #include "app/lab/experiments/rows_internal.h"
 
 static const struct tl_technique coats[] = {
@@ -34,57 +34,55 @@ static const struct tl_technique weaves[] = {
 #define DULL "material.thread=0", "material.model=phong", "material.glossiness=0.5"
 
 static const struct tl_technique cloths[] = {
-    {.picture = "threads: one lobe", .id = "A13", SET("material.thread_along=0")},
-    {.picture = "threads: surface and inside", .id = "A13", SET(BANDS)},
+    {.picture = "threads: one lobe", .id = "C10", SET("material.thread_along=0")},
+    {.picture = "threads: surface and inside", .id = "C10", SET(BANDS)},
     {.picture = "shot silk",
-     .id = "A13",
+     .id = "C10",
      SET(BANDS, "material.diffuse=[0.03, 0.32, 0.13]", "material.warp_share=0.6",
          "material.weft_colour=[0.9, 0, 0.15]")},
     {.picture = "GGX, roughness 0.5",
-     .id = "A13",
+     .id = "C10",
      SET("material.thread=0", "material.model=torrance_sparrow", "material.facets=ggx",
          "material.width_weft=0.25", "material.specular=[0.3, 0.3, 0.3]")},
-    {.picture = "fuzz", .id = "A13", SET(DULL, "material.fuzz=1", "material.fuzz_colour=[0.9, 0.6, 0.3]")},
+    {.picture = "fuzz", .id = "C10", SET(DULL, "material.fuzz=1", "material.fuzz_colour=[0.9, 0.6, 0.3]")},
     {.picture = "a rib knit",
-     .id = "A13",
+     .id = "C10",
      SET(DULL, "weave.pattern=rib", "weave.wale_mm=14", "weave.course_mm=11", "weave.yarn_mm=6")},
 };
 
 /* Twice as large as on cloth, so that a sheet's hem shows them at a gallery's size. */
 static const struct tl_technique seams[] = {
-    {.picture = "nothing sewn", .id = "A14", SET("construction.show=never")},
-    {.picture = "plain seams and hems",
-     .id = "A14",
-     SET("construction.seam=plain", "construction.hem=plain")},
+    {.picture = "nothing sewn", .id = "C9", SET("construction.show=never")},
+    {.picture = "plain seams and hems", .id = "C9", SET("construction.seam=plain", "construction.hem=plain")},
     {.picture = "topstitched",
-     .id = "A14",
+     .id = "C9",
      SET("construction.seam=topstitched", "construction.hem=topstitched")},
     {.picture = "flat-felled, hem of two rows",
-     .id = "A14",
+     .id = "C9",
      SET("construction.seam=flat_felled", "construction.hem=twice")},
-    {.picture = "bound in tape", .id = "A14", SET("construction.seam=bound", "construction.hem=bound")},
+    {.picture = "bound in tape", .id = "C9", SET("construction.seam=bound", "construction.hem=bound")},
 };
 
 #define ELONGATED "material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1"
 
 static const struct tl_technique factored[] = {
-    {.picture = "Ward, 16 texels", .id = "A15", SET(ELONGATED, "shading.table_size=16")},
-    {.picture = "Ward, 32 texels", .id = "A15", SET(ELONGATED, "shading.table_size=32")},
-    {.picture = "Ward", .id = "A15", SET(ELONGATED)},
-    {.picture = "Ward, two tables a pass", .id = "A15", SET(ELONGATED, "shading.max_textures_per_pass=2")},
+    {.picture = "Ward, 16 texels", .id = "A13", SET(ELONGATED, "shading.table_size=16")},
+    {.picture = "Ward, 32 texels", .id = "A13", SET(ELONGATED, "shading.table_size=32")},
+    {.picture = "Ward", .id = "A13", SET(ELONGATED)},
+    {.picture = "Ward, two tables a pass", .id = "A13", SET(ELONGATED, "shading.max_textures_per_pass=2")},
     {.picture = "Torrance-Sparrow",
      .golden = "brdf_factored",
-     .id = "A15",
+     .id = "A13",
      SET("material.model=torrance_sparrow", "material.width_weft=0.3")},
-    {.picture = "cosine lobe", .id = "A15", SET("material.model=cosine_lobe")},
-    {.picture = "Phong", .id = "A15", SET("material.model=phong")},
+    {.picture = "cosine lobe", .id = "A13", SET("material.model=cosine_lobe")},
+    {.picture = "Phong", .id = "A13", SET("material.model=phong")},
 };
 
 static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
-     .name = "a13",
+     .name = "c10",
      .scene = "gallery",
-     .title = "A13  Threads, fuzz, knits",
+     .title = "C10  Threads, fuzz, knits",
      .text = "Light that has been inside a thread is a coloured band under the white light of its surface; "
              "in shot "
              "silk warps and wefts have bands of different colours. Under an environment a few lobes stand "
@@ -95,12 +93,12 @@ static const struct tl_experiment experiments[] = {
      .base = {"scene.environment=studio", "light.method=pem", SATIN},
      .reference = {.assignments = {TRACED, FEW_SAMPLES}},
      .side = 384,
-     .ids = {"A13"},
+     .ids = {"C10"},
      TECHNIQUES(cloths)},
     {.output = TL_OUTPUT_PICTURES,
-     .name = "a14",
+     .name = "c9",
      .scene = "gallery",
-     .title = "A14  Seams, hems, stitches",
+     .title = "C9  Seams, hems, stitches",
      .text =
          "Heights over the distance to a border and the length along it, in closed form: the ditch of a "
          "seam, "
@@ -116,12 +114,12 @@ static const struct tl_experiment experiments[] = {
               "construction.thread_mm=0.8", "construction.pucker_mm=0.5", "construction.thickness_mm=0.5"},
      .reference = {.assignments = {TRACED, FEW_SAMPLES}},
      .side = 384,
-     .ids = {"A14"},
+     .ids = {"C9"},
      TECHNIQUES(seams)},
     {.output = TL_OUTPUT_PICTURES,
-     .name = "a15",
+     .name = "a13",
      .scene = "gallery",
-     .title = "A15  Tables factored out of samples",
+     .title = "A13  Tables factored out of samples",
      .text =
          "Samples of each model, 12 for each texel along and across, are factored numerically into four "
          "tables: of "
@@ -134,7 +132,7 @@ static const struct tl_experiment experiments[] = {
      .base = {LAMPLIT, "shading.reflectance=factored", "shading.table_size=64", "material.glossiness=0.9",
               "material.specular=[0.15, 0.15, 0.15]"},
      .reference = {.assignments = {"shading.reflectance=direct"}},
-     .ids = {"A15"},
+     .ids = {"A13"},
      TECHNIQUES(factored)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "coat",

@@ -12,7 +12,8 @@ struct tl_experiment_list {
     size_t count;
 };
 extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experiments, tl_detail_experiments,
-    tl_light_experiments, tl_glossy_experiments, tl_material_experiments, tl_budget_experiments;
+    tl_light_experiments, tl_glossy_experiments, tl_cloth_experiments, tl_material_experiments,
+    tl_budget_experiments;
 
 /* A technique's settings: assignments over the experiment's, or over a preset's. */
 #define SET(...)          .setup = {.assignments = {__VA_ARGS__}}

@@ -8,6 +8,8 @@
 #include "render/brdf/normalise.h"
 #include "render/brdf/power.h"
 #include "render/brdf/tables/table_error.h"
+#include "render/pem/lobe.h"
+#include "render/pem/lobe_error.h"
 #include "render/pem/memory.h"
 
 #include <math.h>
@@ -242,6 +244,64 @@ void tl_gallery_fresnel_figures(FILE *out)
         "angles alone, the second nearly everywhere.");
 }
 
+/* ---- D3, D4 ---- */
+
+enum { CHAIN_SIDE = 128 }; /* texels */
+
+/* Levels rise as exponents fall: each is narrower by half than the next, and a lobe's volume is
+ * 2 pi / (s + 1). */
+static void plot_levels(FILE *out)
+{
+    enum { STEPS = TL_LOBE_STEPS - 1 }; /* the last is a mirror, s infinite */
+    static struct tl_lobe_table table;
+    struct tl_plot_point *points = TL_NEW_ARRAY(struct tl_plot_point, STEPS);
+    tl_lobe_calibrate(CHAIN_SIDE, TL_CHAIN_SQRT_COSINE, &table);
+    for (int i = 0; i < STEPS; i++)
+        points[i] = (struct tl_plot_point){STEPS / (double)(STEPS - i), (double)table.level[i],
+                                           "level of equal volume", false};
+    const struct tl_plot_series series = {
+        .name = "level of equal volume", .points = points, .count = STEPS, .line = true};
+    tl_report_plot(
+        out, &(struct tl_plot){"exponent s", "level of the chain", true, false, &series, 1},
+        "D3: the level of a chain of 128 texels a face whose response to a texel has the volume of "
+        "the cosine lobe, by the filter of the paper. It falls from the first exponent to the last.");
+    free(points);
+}
+
+static void plot_lobe_errors(FILE *out)
+{
+    static const float exponents[] = {1, 4, 16, 64, 256, 1024};
+    static const int methods[] = {TL_CHAIN_SQRT_COSINE, TL_LOBE_SLICES};
+    enum { COUNT = TL_COUNT(exponents) };
+    const struct tl_lobe_curves curves = {.cube_size = CHAIN_SIDE,
+                                          .direction_count = 26,
+                                          .region_count = 24,
+                                          .exponent_count = COUNT,
+                                          .exponents = exponents};
+    struct tl_plot_point points[TL_COUNT(methods)][COUNT];
+    struct tl_plot_series series[TL_COUNT(methods)];
+    for (size_t m = 0; m < TL_COUNT(methods); m++) {
+        const char *name = tl_lobe_method_names[methods[m]];
+        struct tl_lobe_curve_point curve[COUNT];
+        tl_lobe_curve(&curves, methods[m], curve);
+        for (size_t i = 0; i < COUNT; i++)
+            points[m][i] = (struct tl_plot_point){(double)exponents[i], 100 * curve[i].mean, name, false};
+        series[m] = (struct tl_plot_series){.name = name, .points = points[m], .count = COUNT, .line = true};
+    }
+    tl_report_plot(
+        out,
+        &(struct tl_plot){"exponent s", "mean L1 error of the lobe, %", true, true, series, TL_COUNT(series)},
+        "D4: integral |E - K| / integral K over the sphere, E being what is shown of one lit texel "
+        "and K the cosine lobe, mean over 26 texels: the middles, edges and corners of the cube's "
+        "faces.");
+}
+
+void tl_gallery_lobe_figures(FILE *out)
+{
+    plot_levels(out);
+    plot_lobe_errors(out);
+}
+
 /* ---- D8 ---- */
 
 void tl_gallery_memory_figures(FILE *out)
@@ -304,7 +364,8 @@ void tl_gallery_write_figures(const char *section, FILE *out)
     } figures[] = {{"a1", tl_gallery_table_figures},  {"a2", tl_gallery_grazing_figures},
                    {"a3", tl_gallery_folded_figures}, {"a9", tl_gallery_normalise_figures},
                    {"a10", tl_gallery_power_figures}, {"b6", tl_gallery_fresnel_figures},
-                   {"d8", tl_gallery_memory_figures}, {"d16", tl_gallery_crop_figures}};
+                   {"d4", tl_gallery_lobe_figures},   {"d8", tl_gallery_memory_figures},
+                   {"d16", tl_gallery_crop_figures}};
     for (size_t i = 0; i < TL_COUNT(figures); i++)
         if (strcmp(figures[i].section, section) == 0)
             figures[i].write(out);

@@ -14,6 +14,7 @@ void tl_gallery_folded_figures(FILE *out);    /* A3: what folding all terms into
 void tl_gallery_normalise_figures(FILE *out); /* A9: five normalisations over the angle between vertices */
 void tl_gallery_power_figures(FILE *out);     /* A10: a highlight by each power, and their banding */
 void tl_gallery_fresnel_figures(FILE *out);   /* B6: the two indices of the paper's figure 7 */
+void tl_gallery_lobe_figures(FILE *out);      /* D3, D4: levels by exponent, and lobes' errors */
 void tl_gallery_memory_figures(FILE *out);    /* D8: bytes of PEMs and shadow maps by their size */
 void tl_gallery_crop_figures(FILE *out);      /* D16: bytes of cropped PEMs by number of regions and size */
 

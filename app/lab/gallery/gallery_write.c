@@ -1,5 +1,6 @@
 #include "app/lab/gallery/gallery.h"
 #include "app/lab/gallery/gallery_figures.h"
+#include "app/lab/gallery/gallery_times.h"
 #include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/words.h"
 #include "app/report/report.h"
@@ -116,6 +117,8 @@ static size_t print_section(const struct tl_gallery *gallery, size_t first, FILE
     print_sentences(gallery->entries + first, gallery->entries + end, out);
     for (size_t i = first; i < end; i++)
         print_entry(&gallery->entries[i], out);
+    if (strcmp(section->name, "d10") == 0)
+        tl_gallery_write_times(gallery->entries + first, gallery->entries + end, out);
     tl_gallery_write_figures(section->name, out);
     return end;
 }

@@ -205,7 +205,7 @@ static void move(const struct tl_experiment *experiment, int frame, struct tl_se
         settings->camera.yaw_deg += step;
     else if (experiment->motion == TL_MOTION_LAMP)
         settings->lamp.yaw_deg += step;
-    else
+    else if (experiment->motion == TL_MOTION_CLOTH)
         settings->cloth.settle_s = 0;
 }
 
@@ -220,7 +220,8 @@ static bool draw_moved(struct tl_shots *shots, const struct tl_experiment_pictur
     if (!tl_shots_settings(picture, object, TL_STRIP_SIDE, exact, &settings, error))
         return false;
     move(experiment, frame, &settings);
-    int number = experiment->motion == TL_MOTION_CLOTH ? (int)(experiment->motion_step * (float)frame) : 0;
+    bool plays = experiment->motion == TL_MOTION_CLOTH || experiment->motion == TL_MOTION_SKY;
+    int number = plays ? (int)(experiment->motion_step * (float)frame) : 0;
     return set_up(viewpoint, &settings, error) && tl_session_go_to(viewpoint->session, number, error) &&
            draw_settings(viewpoint, &settings, exact ? experiment->exact : TL_EXACT_DRAWN, out, error);
 }

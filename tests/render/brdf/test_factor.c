@@ -1,5 +1,5 @@
 /* Tables factored out of samples: a product that tables can hold, models of which the samples are made, gaps,
- * and samples that no tables can have. Row A15. */
+ * and samples that no tables can have. Row A13. */
 #include "render/brdf/tables/factor.h"
 
 #include "config/memory.h"

@@ -1,6 +1,6 @@
 /* Measured reflectance as lamps draw it: samples of a known model against its formula, on every way of
  * shading; samples without any symmetry against the value at one point, on both sides and with mirrored UVs;
- * against the ray-traced reference; and tables that the program factors itself. Row A15. */
+ * against the ray-traced reference; and tables that the program factors itself. Row A13. */
 #include "tests/render/scenes.h"
 
 #include "render/brdf/tables/measured.h"

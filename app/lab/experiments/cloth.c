@@ -1,0 +1,110 @@
+/* Cloth: fabrics, solvers, contact, layers, sewn garments. Each is compared with a slower solution of the
+ * same motion, so that errors are those of the cloth and the light is the same. Ids E1 to E3, E5, E6. */
+#include "app/lab/experiments/rows_internal.h"
+
+/* The converged cloth of its row: five times as many substeps, and their strains, which shrink with the
+ * square of the substep, are gone. */
+#define CONVERGED "cloth.substeps=150"
+
+static const struct tl_technique techniques[] = {
+    {.picture = "silk", .id = "E1", SET("scene.fabric=silk")},
+    {.picture = "plain cotton", .id = "E1", SET("scene.fabric=cotton_plain")},
+    {.picture = "denim", .id = "E1", SET("scene.fabric=denim")},
+
+    {.picture = "preview", .id = "E2", SET("cloth.solver=preview")},
+    {.picture = "settle", .id = "E2", SET("cloth.solver=settle")},
+
+    {.picture = "friction 0", .id = "E3", SET("fabric.friction=0")},
+    {.picture = "friction 1", .id = "E3", SET("fabric.friction=1")},
+    {.picture = "wind of 4 m/s", .id = "E3", SET("cloth.wind=[4, 0, 0]")},
+
+    {.picture = "cloth that passes through itself", .id = "E5", SET("cloth.self_contact=false")},
+    {.picture = "cloth that keeps apart", .id = "E5", SET("cloth.self_contact=true")},
+
+    {.picture = "edges of 4 cm", .id = "E6", SET("cloth.edge_m=0.04")},
+    {.picture = "edges of 2 cm", .id = "E6", SET("cloth.edge_m=0.02")},
+};
+
+static const struct tl_experiment experiments[] = {
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "e1",
+     .scene = "gallery",
+     .title = "E1  Fabrics by what was measured of them",
+     .text = "Stretch, shear and bending along weft and warp, weight and friction are each fabric's own, and "
+             "so are its weave and colour. The sheet falls over the ball and comes to rest; the solid is no "
+             "cloth and stays equal.",
+     .exact_text = "the same cloth by five times as many substeps",
+     .solid = "torus",
+     .base = {LAMPLIT, "cloth.edge_m=0.02"},
+     .reference = {.assignments = {CONVERGED}},
+     .by_flip = true,
+     .side = 256,
+     .ids = {"E1"},
+     TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "e2",
+     .scene = "gallery",
+     .title = "E2  Solvers of the cloth",
+     .text = "Three integrators over one energy. The sheet falls over the ball and comes to rest; the solid "
+             "is no "
+             "cloth and stays equal.",
+     .exact_text = "the solver `reference`, whose step follows the fabric's stiffness",
+     .motion = TL_MOTION_CLOTH,
+     .motion_step = 4,
+     .solid = "torus",
+     .base = {LAMPLIT, "cloth.edge_m=0.02", "material.glossiness=0.5"},
+     .reference = {.assignments = {"cloth.solver=reference"}},
+     .by_flip = true,
+     .side = 384,
+     .ids = {"E2"},
+     TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "e3",
+     .scene = "gallery",
+     .title = "E3  Contact, friction and wind",
+     .text = "The ball holds the sheet by friction, or lets it slide; air that moves past the cloth presses "
+             "on it. The solid is no cloth and stays equal.",
+     .exact_text = "the same cloth by five times as many substeps",
+     .solid = "torus",
+     .base = {LAMPLIT, "cloth.edge_m=0.02", "material.glossiness=0.5"},
+     .reference = {.assignments = {CONVERGED}},
+     .by_flip = true,
+     .side = 256,
+     .ids = {"E3"},
+     TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "e5",
+     .scene = "gallery",
+     .title = "E5  Cloth that keeps apart from itself",
+     .text = "A shirt over trousers, and a sheet: layers and folds lie on each other. Without contact of the "
+             "cloth with itself they pass through each other.",
+     .exact_text = "the same cloth, kept apart, by five times as many substeps",
+     .claims = {{"cloth that keeps apart", "cloth that passes through itself", "The design of this program"}},
+     .solid = "layers",
+     .solid_only = {"scene.avatar=figure", "camera.target=[0, 0.95, 0]", "camera.distance_m=1.9",
+                    "camera.pitch_deg=5"},
+     .base = {LAMPLIT, "cloth.edge_m=0.02", "material.glossiness=0.5"},
+     .reference = {.assignments = {CONVERGED, "cloth.self_contact=true"}},
+     .by_flip = true,
+     .side = 256,
+     .ids = {"E5"},
+     TECHNIQUES(techniques)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "e6",
+     .scene = "gallery",
+     .title = "E6  A sewn garment",
+     .text = "Flat pieces are cut into triangles, placed around the body, sewn, and come to rest. Edges of 4 "
+             "and of 2 cm differ from those of 1 cm by folds that are finer than they can show.",
+     .exact_text = "edges of 1 cm",
+     .claims = {{"edges of 2 cm", "edges of 4 cm", "The design of this program"}},
+     .solid = "shirt",
+     .solid_only = {"scene.avatar=figure", "camera.target=[0, 1.2, 0]", "camera.distance_m=1.9",
+                    "camera.pitch_deg=5"},
+     .base = {LAMPLIT, "material.glossiness=0.5"},
+     .reference = {.assignments = {"cloth.edge_m=0.01"}},
+     .by_flip = true,
+     .side = 256,
+     .ids = {"E6"},
+     TECHNIQUES(techniques)},
+};
+const struct tl_experiment_list tl_cloth_experiments = {experiments, TL_COUNT(experiments)};
