@@ -78,7 +78,7 @@ static const struct tl_experiment experiments[] = {
      .title = "E5  Cloth that keeps apart from itself",
      .text = "A shirt over trousers, and a sheet: layers and folds lie on each other. Without contact of the "
              "cloth with itself they pass through each other.",
-     .exact_text = "the same cloth, kept apart, by five times as many substeps",
+     .exact_text = "kept apart, by five times as many substeps",
      .claims = {{"cloth that keeps apart", "cloth that passes through itself", "The design of this program"}},
      .solid = "layers",
      .solid_only = {"scene.avatar=figure", "camera.target=[0, 0.95, 0]", "camera.distance_m=1.9",

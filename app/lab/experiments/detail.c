@@ -6,8 +6,8 @@
 #define BUMPY  WOVEN("8", "2")
 #define COARSE WOVEN("20", "5")
 #define MARCHED                                                                                              \
-    "the ray-traced reference, which marches through the heights in four steps a texel. It also casts the "  \
-    "lamp's shadows from fold to fold, which the sheet's errors then contain: compare rows on the torus"
+    "ray traced; through heights it marches in four steps a texel. It also casts the lamp's shadows from "   \
+    "fold to fold, which the sheet's errors then contain: compare rows on the torus"
 
 static const struct tl_technique techniques[] = {
     /* Methods that move the point of the look-up. */
@@ -218,9 +218,9 @@ static const struct tl_experiment experiments[] = {
      .text = "Horizon angles are stored for several directions a texel, on both sides of the cloth. "
              "Between two directions the slope of a horizon is linear, which is exact for a straight "
              "yarn.",
-     .exact_text =
-         "shadows marched through the heights in 256 steps, to which a march of 512 is equal within "
-         "a hundredth of these errors",
+     .exact_text = "shadows marched through the heights in 256 steps; a march of 512 is equal to it within a "
+                   "hundredth of "
+                   "these errors",
      .claims = {{"horizon map, 32 angles", "horizon map, 16 angles", "[001] 4.4"},
                 {"horizon map, 16 angles", "horizon map, 8 angles", "[001] 4.4"},
                 {"horizon map, 8 angles", "no shadow", "[001] 4.4"}},

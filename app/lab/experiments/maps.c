@@ -151,8 +151,9 @@ static const struct tl_experiment experiments[] = {
      .text = "Each picture shows one term alone: prefiltered for a diffuse or a glossy lobe, and looked "
              "up along the reflected ray, the refracted ray, or straight through.",
      .exact = TL_EXACT_INTEGRAL,
-     .exact_text = "the environment summed over all directions at every sample, or read where the mirrored "
-                   "or refracted ray points, without a map",
+     .exact_text =
+         "the environment without a map; summed over all directions at every sample, or read where the "
+         "mirrored or refracted ray points",
      .side = 384,
      .solid = "torus",
      .base = {"light.method=maps", "maps.layout=paraboloid", "maps.size=128"},
@@ -198,8 +199,9 @@ static const struct tl_experiment experiments[] = {
      .text = "Normal maps in tangent frames that are rebuilt every frame; the environment is looked up "
              "in world space at every pixel.",
      .exact = TL_EXACT_INTEGRAL,
-     .exact_text = "the environment summed over all directions, or read where the mirrored ray points, about "
-                   "the same bumped normals, without a map",
+     .exact_text =
+         "the environment without a map, about the same bumped normals; summed over all directions, "
+         "or read where the mirrored ray points",
      .side = 384,
      .solid = "torus",
      .base = {"light.method=maps", "maps.size=128"},

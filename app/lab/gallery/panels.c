@@ -7,14 +7,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#define PAPER   0xffffffu
-#define INK     0x202428u
-#define OPEN    0xd4d6d8u /* where neither picture shows anything */
-#define FRAME   0x18b4ffu /* around what is magnified */
-#define MARGIN  6
-#define BAND    (TL_CANVAS_LETTER + 2 * MARGIN) /* a line of text, or a scale below a row */
-#define HEADS   (BAND + LEADING)                /* of two lines */
-#define LEADING (TL_CANVAS_LETTER + MARGIN)
+#define PAPER      0xffffffu
+#define INK        0x202428u
+#define OPEN       0xd4d6d8u /* where neither picture shows anything */
+#define FRAME      0x18b4ffu /* around what is magnified */
+#define MARGIN     6
+#define BAND       (TL_CANVAS_LETTER + 2 * MARGIN) /* a line of text, or a scale below a row */
+#define HEADS      (BAND + LEADING)                /* of two lines */
+#define HEAD_LINES 2
+#define LEADING    (TL_CANVAS_LETTER + MARGIN)
 
 /* What is magnified: a square of 1/ZOOM_PART of the picture's side, ZOOM times. Exact and technique stand one
  * above the other, so that both together are as high as the picture. */
@@ -166,11 +167,25 @@ static void draw_head(tl_image *canvas, int x, int y, int width, const char *tex
     tl_text_draw(canvas, x + MARGIN, y + MARGIN, &style, text);
 }
 
+static struct tl_text_style column_head(int width, int lines)
+{
+    return (struct tl_text_style){.size = TL_CANVAS_LETTER,
+                                  .colour = INK,
+                                  .width = width - 2 * MARGIN,
+                                  .lines = lines,
+                                  .leading = LEADING};
+}
+
+bool tl_panels_head_fits(int side, const char *text)
+{
+    const struct tl_text_style style = column_head(side, HEAD_LINES + 1);
+    return tl_text_measure(&style, text).lines <= HEAD_LINES;
+}
+
 /* In two lines where one is too short. */
 static void draw_column_head(tl_image *canvas, int x, int width, const char *text)
 {
-    const struct tl_text_style style = {
-        .size = TL_CANVAS_LETTER, .colour = INK, .width = width - 2 * MARGIN, .lines = 2, .leading = LEADING};
+    const struct tl_text_style style = column_head(width, HEAD_LINES);
     int above = tl_text_measure(&style, text).lines < 2 ? LEADING : 0; /* heads end above their pictures */
     tl_text_draw(canvas, x + MARGIN, above + MARGIN, &style, text);
 }

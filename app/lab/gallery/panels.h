@@ -19,6 +19,9 @@ struct tl_panel_row {
     const struct tl_gallery_shot *exact, *tested; /* of one size */
 };
 
+/* Whether a head fits above a picture of `side` pixels; one that is longer ends in an ellipsis. */
+bool tl_panels_head_fits(int side, const char *text);
+
 /* The composed picture of `count` rows of pictures of `side` pixels. `exact` and `tested` are the heads of
  * the columns. `end` is the upper end of the difference's scale (tl_panels_end). */
 tl_image tl_panels_make(const struct tl_panel_row *rows, int count, int side, const char *exact,

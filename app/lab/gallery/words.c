@@ -17,6 +17,14 @@ char *tl_words_error(const struct tl_experiment *experiment, double error)
     return experiment->by_flip ? tl_format("FLIP %.3g", error) : tl_format("%.3g %%", 100 * error);
 }
 
+/* The page has all of the text. */
+char *tl_words_head(const struct tl_experiment *experiment)
+{
+    const char *text = experiment->exact_text;
+    return experiment->exact == TL_EXACT_NONE ? tl_copy_string("for comparison")
+                                              : tl_format("exact: %.*s", (int)strcspn(text, ";"), text);
+}
+
 static bool is_equal(double a, double b)
 {
     return fabs(a - b) < NO_ERROR || (a < b ? b < EQUAL_RATIO * a : a < EQUAL_RATIO * b);

@@ -8,6 +8,9 @@
 /* Errors in the unit of their experiment: "3.2 %", "FLIP 0.012". */
 char *tl_words_error(const struct tl_experiment *experiment, double error);
 
+/* The head above an experiment's exact pictures: "exact: ray traced". */
+char *tl_words_head(const struct tl_experiment *experiment);
+
 /* The entries [first, end) of one section, from the smallest error to the largest, on one object and under
  * one appearance: "On the torus, far lamp: pixel 0.1 %, vertex 3.2 %, matrix 5.1 %. pixel is nearest." NULL
  * where there are less than two to compare. */

@@ -5,6 +5,7 @@
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/gallery/integral.h"
 #include "app/lab/gallery/panels.h"
+#include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/store.h"
 #include "app/lab/gallery/words.h"
 #include "config/file.h"
@@ -151,6 +152,32 @@ static void scale_holds_the_differences(void **state)
     tl_gallery_shot_release(&other);
 }
 
+static int count_cut(const struct tl_experiment *section, char *head)
+{
+    const bool fits = tl_panels_head_fits(tl_shots_side(section), head);
+    if (!fits)
+        print_error("%s: \"%s\" is cut off\n", section->name, head);
+    free(head);
+    return !fits;
+}
+
+/* The heads above every picture are shown whole. */
+static void heads_fit(void **state)
+{
+    (void)state;
+    int cut = 0;
+    const struct tl_experiment *section;
+    assert_false(tl_panels_head_fits(256, "a head of so many words that it takes three lines above a picture "
+                                          "of 256 pixels, not two"));
+    for (size_t i = 0; (section = tl_experiment_at(TL_OUTPUT_PICTURES, i)); i++) {
+        struct tl_experiment_picture picture = {.experiment = section};
+        cut += count_cut(section, tl_words_head(section));
+        while (tl_picture_next(&picture, TL_OUTPUT_PICTURES))
+            cut += count_cut(section, tl_picture_name(&picture, TL_OUTPUT_PICTURES));
+    }
+    assert_int_equal(cut, 0);
+}
+
 /* ---- Sentences and the record ---- */
 
 /* The entries of a section, with errors given in order for both objects. */
@@ -229,6 +256,7 @@ int main(void)
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(linear_light),
         cmocka_unit_test(scale_holds_the_differences),
+        cmocka_unit_test(heads_fit),
         cmocka_unit_test(sentences_follow_figures),
         cmocka_unit_test(record_gives_figures_back),
     };
