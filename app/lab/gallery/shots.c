@@ -167,6 +167,12 @@ static bool draw_settings(struct tl_viewpoint *viewpoint, const struct tl_settin
     return set_up(viewpoint, &samples, error) && draw_integral(viewpoint, out, error);
 }
 
+/* A strip leaves its last frame; pictures are of the first one. */
+static bool rewind_session(struct tl_viewpoint *viewpoint, tl_error *error)
+{
+    return !viewpoint->session || tl_session_go_to(viewpoint->session, 0, error);
+}
+
 bool tl_shots_draw(struct tl_shots *shots, const struct tl_experiment_picture *picture,
                    enum tl_picture_object object, struct tl_gallery_shot *out, tl_error *error)
 {
@@ -174,8 +180,8 @@ bool tl_shots_draw(struct tl_shots *shots, const struct tl_experiment_picture *p
     struct tl_settings settings;
     *out = (struct tl_gallery_shot){0};
     return tl_shots_settings(picture, object, tl_shots_side(picture->experiment), false, &settings, error) &&
-           set_up(viewpoint, &settings, error) && measure_time(viewpoint, &out->time_ms, error) &&
-           draw_still(viewpoint, out, error);
+           rewind_session(viewpoint, error) && set_up(viewpoint, &settings, error) &&
+           measure_time(viewpoint, &out->time_ms, error) && draw_still(viewpoint, out, error);
 }
 
 const struct tl_gallery_shot *tl_shots_exact(struct tl_shots *shots,
@@ -193,7 +199,9 @@ const struct tl_gallery_shot *tl_shots_exact(struct tl_shots *shots,
     tl_gallery_shot_release(&viewpoint->exact);
     viewpoint->exact_settings = settings;
     viewpoint->exact_kind = kind;
-    return draw_settings(viewpoint, &settings, kind, &viewpoint->exact, error) ? &viewpoint->exact : NULL;
+    bool drawn = rewind_session(viewpoint, error) &&
+                 draw_settings(viewpoint, &settings, kind, &viewpoint->exact, error);
+    return drawn ? &viewpoint->exact : NULL;
 }
 
 /* ---- Strips ---- */
