@@ -19,10 +19,9 @@ static const struct tl_technique techniques[] = {
     {.picture = "wind of 4 m/s", .id = "E3", SET("cloth.wind=[4, 0, 0]")},
 
     {.picture = "cloth that passes through itself", .id = "E5", SET("cloth.self_contact=false")},
-    {.picture = "cloth that keeps apart", .id = "E5", SET("cloth.self_contact=true")},
 
-    {.picture = "edges of 4 cm", .id = "E6", SET("cloth.edge_m=0.04")},
-    {.picture = "edges of 2 cm", .id = "E6", SET("cloth.edge_m=0.02")},
+    {.picture = "edges of 5 cm", .id = "E6", SET("cloth.edge_m=0.05")},
+    {.picture = "edges of 3 cm", .id = "E6", SET("cloth.edge_m=0.03")},
 };
 
 static const struct tl_experiment experiments[] = {
@@ -76,15 +75,14 @@ static const struct tl_experiment experiments[] = {
      .name = "e5",
      .scene = "gallery",
      .title = "E5  Cloth that keeps apart from itself",
-     .text = "A shirt over trousers, and a sheet: layers and folds lie on each other. Without contact of the "
-             "cloth with itself they pass through each other.",
-     .exact_text = "kept apart, by five times as many substeps",
-     .claims = {{"cloth that keeps apart", "cloth that passes through itself", "The design of this program"}},
-     .solid = "layers",
-     .solid_only = {"scene.avatar=figure", "camera.target=[0, 0.95, 0]", "camera.distance_m=1.9",
-                    "camera.pitch_deg=5"},
+     .text = "Folds and layers lie on each other; without contact of the cloth with itself they pass through "
+             "each other. The solid is no cloth and stays equal.",
+     .exact = TL_EXACT_NONE,
+     .exact_text = "crossings of triangles are counted, not seen (test uncrossed: none in motion, by brute "
+                   "force over all pairs); the picture for comparison is of cloth that keeps apart",
+     .solid = "torus",
      .base = {LAMPLIT, "cloth.edge_m=0.02", "material.glossiness=0.5"},
-     .reference = {.assignments = {CONVERGED, "cloth.self_contact=true"}},
+     .reference = {.assignments = {"cloth.self_contact=true"}},
      .by_flip = true,
      .side = 256,
      .ids = {"E5"},
@@ -93,15 +91,17 @@ static const struct tl_experiment experiments[] = {
      .name = "e6",
      .scene = "gallery",
      .title = "E6  A sewn garment",
-     .text = "Flat pieces are cut into triangles, placed around the body, sewn, and come to rest. Edges of 4 "
-             "and of 2 cm differ from those of 1 cm by folds that are finer than they can show.",
-     .exact_text = "edges of 1 cm",
-     .claims = {{"edges of 2 cm", "edges of 4 cm", "The design of this program"}},
+     .text =
+         "Flat pieces are cut into triangles, placed around the body, sewn, and come to rest: a shirt, and "
+         "the sheet for comparison. Larger triangles cannot show the finest folds, and folds may lie "
+         "elsewhere.",
+     .exact_text = "edges of 2 cm",
+     .claims = {{"edges of 3 cm", "edges of 5 cm", "The design of this program"}},
      .solid = "shirt",
      .solid_only = {"scene.avatar=figure", "camera.target=[0, 1.2, 0]", "camera.distance_m=1.9",
                     "camera.pitch_deg=5"},
      .base = {LAMPLIT, "material.glossiness=0.5"},
-     .reference = {.assignments = {"cloth.edge_m=0.01"}},
+     .reference = {.assignments = {"cloth.edge_m=0.02"}},
      .by_flip = true,
      .side = 256,
      .ids = {"E6"},
