@@ -75,8 +75,10 @@ static void check_exact(const struct tl_experiment_picture *picture)
         assert_ok(tl_picture_settings(picture, (enum tl_picture_object)object, 64, true, &exact, &error),
                   error);
         differs = differs || !tl_settings_equal(&tested, &exact);
-        if (picture->experiment->exact == TL_EXACT_INTEGRAL)
+        if (picture->experiment->exact == TL_EXACT_INTEGRAL) { /* it has no hems' gloss */
             assert_int_equal(tested.light.method, TL_METHOD_MAPS);
+            assert_int_equal(tested.construction.show, TL_CONSTRUCTION_NEVER);
+        }
     }
     if (!differs)
         fail_msg("%s, %s: is measured against itself", picture->experiment->name,
