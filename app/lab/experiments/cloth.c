@@ -93,8 +93,8 @@ static const struct tl_experiment experiments[] = {
      .title = "E6  A sewn garment",
      .text =
          "Flat pieces are cut into triangles, placed around the body, sewn, and come to rest: a shirt, and "
-         "the sheet for comparison. Larger triangles cannot show the finest folds, and folds may lie "
-         "elsewhere.",
+         "the sheet for comparison. Larger triangles cannot show the finest folds, folds may lie elsewhere, "
+         "and between vertices the arm shows through a cuff.",
      .exact_text = "edges of 2 cm",
      .claims = {{"edges of 3 cm", "edges of 5 cm", "The design of this program"}},
      .solid = "shirt",
