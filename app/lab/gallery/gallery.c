@@ -21,7 +21,7 @@
 
 /* Raised when the same settings give other pictures or figures: those of earlier runs are then drawn again.
  */
-#define EDITION 1
+#define EDITION 2
 
 struct gallery_drawing {
     const char *folder;
@@ -70,18 +70,20 @@ static bool save_picture(const struct gallery_drawing *drawing, const char *name
     return saved;
 }
 
+double tl_gallery_error_less_noise(double rel_rmse, double noise)
+{
+    const double unresolved = noise / 4;
+    return sqrt(fmax(rel_rmse * rel_rmse - noise * noise, unresolved * unresolved));
+}
+
 static bool measure_error(const struct tl_experiment *experiment, const struct tl_gallery_shot *tested,
                           const struct tl_gallery_shot *exact, double *error_of, tl_error *error)
 {
     struct tl_comparison result;
     if (!tl_image_compare(&tested->light, &exact->light, experiment->by_flip ? -1 : 0, 0, &result, error))
         return false;
-    /* The noise of a ray-traced picture is independent of the technique's error, so that variances add. Where
-     * it is the larger part, the difference of the two would be noise: the error then keeps it. */
-    double square = result.rel_rmse * result.rel_rmse, noise = exact->noise * exact->noise;
-    if (2 * noise < square)
-        square -= noise;
-    *error_of = experiment->by_flip ? result.flip_mean : sqrt(square);
+    *error_of =
+        experiment->by_flip ? result.flip_mean : tl_gallery_error_less_noise(result.rel_rmse, exact->noise);
     return true;
 }
 

@@ -38,6 +38,11 @@ struct tl_gallery {
     bool complete; /* not interrupted */
 };
 
+/* The error of a technique whose measured error contains the noise of a ray-traced picture, both relative.
+ * The two are independent, so that variances add. Less than a quarter of the noise is not resolved, and
+ * counts as that. What errs more never gets the smaller figure. Pure. */
+double tl_gallery_error_less_noise(double rel_rmse, double noise);
+
 /* Whether there is such a section; NULL stands for all. Errors: TL_USAGE names a similar one. */
 bool tl_gallery_has(const char *name, tl_error *error);
 

@@ -152,6 +152,21 @@ static void scale_holds_the_differences(void **state)
     tl_gallery_shot_release(&other);
 }
 
+/* Errors under one noise keep their order, and are what they are without noise. */
+static void noise_keeps_the_order(void **state)
+{
+    (void)state;
+    const double noise = 0.036;
+    double before = 0;
+    for (double error = 0; error < 0.2; error += 1e-4) {
+        const double measured = hypot(error, noise), found = tl_gallery_error_less_noise(measured, noise);
+        assert_true(found >= before);
+        assert_near(found, fmax(error, noise / 4), 1e-9);
+        assert_near(tl_gallery_error_less_noise(error, 0), error, 1e-12);
+        before = found;
+    }
+}
+
 static int count_cut(const struct tl_experiment *section, char *head)
 {
     const bool fits = tl_panels_head_fits(tl_shots_side(section), head);
@@ -256,6 +271,7 @@ int main(void)
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(linear_light),
         cmocka_unit_test(scale_holds_the_differences),
+        cmocka_unit_test(noise_keeps_the_order),
         cmocka_unit_test(heads_fit),
         cmocka_unit_test(sentences_follow_figures),
         cmocka_unit_test(record_gives_figures_back),
