@@ -167,7 +167,9 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "B2  The scene in its own map",
      .text = "The environment map is captured from the middle of the scene, so that the reflections "
-             "include the ground, as it is seen from there. In the strip the camera turns.",
+             "include the ground, as it is seen from there. A map knows no shadows, and no mirror in a "
+             "mirror: the "
+             "exact picture has both. In the strip the camera turns.",
      .exact_text = "every reflected ray traced, and what it hits lit",
      .motion = TL_MOTION_CAMERA,
      .motion_step = 15,
