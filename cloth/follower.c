@@ -36,7 +36,8 @@ struct tl_follower {
     double *lost;        /* [cage's vertex_count] share of the way from the cage that is left out */
     double *gone;        /* [topology's vertex_count] share of the way to its corner that a vertex has gone */
     bool *raised;        /* [cage's vertex_count] it was, in this round */
-    bool *changed;       /* [cage's triangle_count] one of its corners' was */
+    bool *changed;       /* [cage's triangle_count] one of its bones' was */
+    bool *bent;          /* the same: some of its bones' ways are shortened */
     size_t *first_bones; /* [cage's triangle_count + 1] of each patch, in `bones` */
     uint32_t *bones;     /* that move its triangles */
 };
@@ -150,6 +151,7 @@ tl_follower *tl_follower_create(const struct tl_cage *cage, const struct tl_topo
     follower->lost = TL_NEW_ARRAY(double, cage->vertex_count);
     follower->gone = TL_NEW_ARRAY(double, topology->vertex_count);
     follower->raised = TL_NEW_ARRAY(bool, cage->vertex_count);
+    follower->bent = TL_NEW_ARRAY(bool, cage->triangle_count);
     follower->changed = TL_NEW_ARRAY(bool, cage->triangle_count);
     return follower;
 }
@@ -169,6 +171,7 @@ void tl_follower_destroy(tl_follower **handle)
     free(follower->corners);
     free(follower->raised);
     free(follower->changed);
+    free(follower->bent);
     free(follower->first_bones);
     free(follower->bones);
     free(follower);
@@ -312,12 +315,16 @@ static bool move_in(tl_follower *follower, const struct tl_near_pairs *pairs, do
     return any;
 }
 
-static void mark_changed(tl_follower *follower)
+/* Patches whose vertices are not on their own way may be bent in their plane, and cross although they face
+ * alike. */
+static void mark_patches(tl_follower *follower)
 {
     for (size_t patch = 0; patch < follower->cage->triangle_count; patch++) {
-        follower->changed[patch] = false;
-        for (size_t n = follower->first_bones[patch]; n < follower->first_bones[patch + 1]; n++)
+        follower->changed[patch] = follower->bent[patch] = false;
+        for (size_t n = follower->first_bones[patch]; n < follower->first_bones[patch + 1]; n++) {
             follower->changed[patch] |= follower->raised[follower->bones[n]];
+            follower->bent[patch] |= follower->lost[follower->bones[n]] > 0;
+        }
     }
 }
 
@@ -331,12 +338,15 @@ static void uncross(tl_follower *follower, const struct tl_follower_cage *cage, 
                     struct tl_particles *particles)
 {
     struct tl_near_pairs pairs = {0};
+    const struct tl_patch_marks marks = {follower->changed, follower->bent};
     int round = 0;
-    tl_patches_crossings(&follower->patches, follower->topology, particles->x, NULL, &pairs);
+    mark_patches(follower);
+    tl_patches_crossings(&follower->patches, follower->topology, particles->x,
+                         &(struct tl_patch_marks){.bent = follower->bent}, &pairs);
     while (round < ROUNDS && pairs.count > 0 && move_in(follower, &pairs, round < HALVING_ROUNDS ? 0.5 : 0)) {
-        mark_changed(follower);
+        mark_patches(follower);
         place(follower, cage, way_ends, particles);
-        tl_patches_crossings(&follower->patches, follower->topology, particles->x, follower->changed, &pairs);
+        tl_patches_crossings(&follower->patches, follower->topology, particles->x, &marks, &pairs);
         round++;
     }
     if (round == ROUNDS && pairs.count > 0) {

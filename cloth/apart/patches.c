@@ -138,30 +138,32 @@ static int by_height(const void *one, const void *other)
 
 /* Tests a patch against itself and those that begin within its height, from below. */
 static void sweep(const struct tl_patches *patches, const struct tl_topology *topology, const vec3d *x,
-                  const bool *changed, size_t at, struct tl_near_pairs *out)
+                  const struct tl_patch_marks *marks, size_t at, struct tl_near_pairs *out)
 {
     const struct tl_patch_bounds *a = &patches->bounds[at];
     for (size_t i = at; i < patches->count && patches->bounds[i].box.low[1] <= a->box.high[1]; i++) {
         const struct tl_patch_bounds *b = &patches->bounds[i];
-        if ((changed && !changed[a->patch] && !changed[b->patch]) || !overlap(&a->box, &b->box) ||
-            (are_neighbours(patches, a->patch, b->patch) && face_alike(a, b)))
+        const bool moved = !marks->changed || marks->changed[a->patch] || marks->changed[b->patch];
+        const bool bent = marks->bent && (marks->bent[a->patch] || marks->bent[b->patch]);
+        if (!moved || !overlap(&a->box, &b->box) ||
+            (!bent && are_neighbours(patches, a->patch, b->patch) && face_alike(a, b)))
             continue;
         test(patches, topology, x, a, b, out);
     }
 }
 
 void tl_patches_crossings(struct tl_patches *patches, const struct tl_topology *topology, const vec3d *x,
-                          const bool *changed, struct tl_near_pairs *out)
+                          const struct tl_patch_marks *marks, struct tl_near_pairs *out)
 {
     struct tl_near_pairs *found = TL_NEW_ARRAY(struct tl_near_pairs, patches->count);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < patches->count; i++)
-        if (!changed || changed[patches->bounds[i].patch])
+        if (!marks->changed || marks->changed[patches->bounds[i].patch])
             bound(patches, topology, x, &patches->bounds[i]);
     qsort(patches->bounds, patches->count, sizeof *patches->bounds, by_height);
 #pragma omp parallel for schedule(dynamic, 64)
     for (size_t i = 0; i < patches->count; i++)
-        sweep(patches, topology, x, changed, i, &found[i]);
+        sweep(patches, topology, x, marks, i, &found[i]);
     out->count = 0;
     for (size_t i = 0; i < patches->count; i++) {
         tl_near_pairs_append(out, &found[i]);

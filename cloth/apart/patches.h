@@ -2,9 +2,9 @@
  *
  * A patch whose triangles face within a half space does not cross itself, nor a neighbour if both do together
  * (Volino & Magnenat-Thalmann 1994, "Efficient self-collision detection on smoothly discretized surface
- * animations using geometrical shape regularity"; their condition on the outline is left out). So only sharp
- * folds are tested, and patches that are not neighbours and whose boxes overlap: smooth cloth needs one pass
- * over its triangles.
+ * animations using geometrical shape regularity"; their condition on the outline is left out, but patches can
+ * be named for which it may fail). So only sharp folds are tested, those patches, and patches that are not
+ * neighbours and whose boxes overlap: smooth cloth needs one pass over its triangles.
  *
  * Metres. Lifetime: a plain struct that owns its arrays. Threads: parallel inside, with the same results at
  * any number of threads. */
@@ -29,9 +29,15 @@ struct tl_patches tl_patches_make(const struct tl_topology *topology, const uint
                                   const uint32_t (*corners)[3]);
 void tl_patches_release(struct tl_patches *patches);
 
-/* Replaces `out` by the pairs of triangles that cross at `x`, in which a patch takes part that is `changed`
- * [count], which must be all that has moved since the last call; NULL: all are. */
+/* [count] each, borrowed; NULL: see there. */
+struct tl_patch_marks {
+    const bool *changed; /* all that has moved since the last call; NULL: all */
+    const bool *bent;    /* tested against themselves and all others, however they face; NULL: none */
+};
+
+/* Replaces `out` by the pairs of triangles that cross at `x`, in which a patch takes part that has changed.
+ */
 void tl_patches_crossings(struct tl_patches *patches, const struct tl_topology *topology, const vec3d *x,
-                          const bool *changed, struct tl_near_pairs *out);
+                          const struct tl_patch_marks *marks, struct tl_near_pairs *out);
 
 #endif

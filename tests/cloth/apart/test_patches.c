@@ -68,7 +68,8 @@ static void check(struct sheet *sheet, const char *name, const bool *changed, si
 {
     struct tl_near_pairs pairs = {0};
     const size_t expected = oracle_crossings(&sheet->topology, sheet->x);
-    tl_patches_crossings(&sheet->patches, &sheet->topology, sheet->x, changed, &pairs);
+    tl_patches_crossings(&sheet->patches, &sheet->topology, sheet->x, &(struct tl_patch_marks){changed, NULL},
+                         &pairs);
     print_message("%s: %zu crossing pairs\n", name, expected);
     assert_true(expected >= at_least);
     assert_int_equal(pairs.count, expected);
@@ -162,7 +163,8 @@ static void threads_make_no_difference(void **state)
     place(&sheet, crumpled);
     for (int i = 0; i < 2; i++) {
         omp_set_num_threads(1 + 2 * i);
-        tl_patches_crossings(&sheet.patches, &sheet.topology, sheet.x, NULL, &pairs[i]);
+        tl_patches_crossings(&sheet.patches, &sheet.topology, sheet.x, &(struct tl_patch_marks){0},
+                             &pairs[i]);
     }
     omp_set_num_threads(threads);
     assert_int_equal(pairs[0].count, pairs[1].count);
