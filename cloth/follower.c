@@ -229,10 +229,17 @@ static double lost_at(const tl_follower *follower, size_t i)
     return sum;
 }
 
+/* GCC 12 drops the conversion to single precision and back where it vectorises two of them. */
+static double as_float(double x)
+{
+    volatile float single = (float)x;
+    return (double)single;
+}
+
 /* As they are drawn: crossings are found of that. */
 static vec3d rounded(vec3d x)
 {
-    return vec3d_from(vec3d_to_float(x));
+    return (vec3d){as_float(x.x), as_float(x.y), as_float(x.z)};
 }
 
 /* In its corner it is where the cage is to the bit, without a lift. */
