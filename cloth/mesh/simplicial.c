@@ -39,7 +39,7 @@ static size_t bad_around(const struct tl_topology *topology, const struct tl_fan
     return count;
 }
 
-struct search {
+struct bone_search {
     const struct tl_skin_source *source;
     const struct tl_coarse_mesh *coarse;
     struct tl_fans stars; /* corners of the fine triangles around each vertex */
@@ -48,7 +48,7 @@ struct search {
 
 /* Maps a vertex to a bone that it or one around it has, with the fewest bad triangles around it; of equally
  * good ones to another than before, so that the next sweep starts elsewhere. */
-static void improve(struct search *search, uint32_t vertex)
+static void improve(struct bone_search *search, uint32_t vertex)
 {
     const struct tl_topology *topology = search->source->topology;
     const uint32_t before = search->map[vertex];
@@ -85,10 +85,10 @@ size_t tl_simplicial_map(const struct tl_skin_source *source, const struct tl_co
                          uint32_t *out)
 {
     const struct tl_topology *topology = source->topology;
-    struct search search = {source, coarse,
-                            tl_fans_build((const uint32_t *)topology->triangles, 3 * topology->triangle_count,
-                                          topology->vertex_count),
-                            out};
+    struct bone_search search = {source, coarse,
+                                 tl_fans_build((const uint32_t *)topology->triangles,
+                                               3 * topology->triangle_count, topology->vertex_count),
+                                 out};
     map_to_largest(source, out);
     size_t bad = count_bad(topology, coarse, out);
     for (uint32_t sweep = 0; sweep < SWEEPS && bad > 0; sweep++) {
