@@ -71,10 +71,13 @@ static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
     struct tl_particles *particles = &cloth->particles;
     const size_t count = particles->count;
     pass_pull_on(cloth);
+    if (collider)
+        tl_pins_bind(cloth->pins, cloth->pin_count, collider, cloth->fabric.thickness_m);
     if (!tl_cloth_advance(tl_coarser_cloth(cloth->cage), collider, advance, error))
         return false;
     cloth->good_x = tl_resize(cloth->good_x, count, sizeof *cloth->good_x);
     memcpy(cloth->good_x, particles->x, count * sizeof *cloth->good_x);
+    tl_pins_place(cloth->pins, cloth->pin_count, collider, 1, particles);
     tl_coarser_follow(cloth->cage, collider, cloth, particles);
     for (size_t i = 0; i < count; i++)
         particles->v[i] = vec3d_scale(vec3d_sub(particles->x[i], cloth->good_x[i]), cloth->params.frame_rate);

@@ -229,30 +229,17 @@ static double lost_at(const tl_follower *follower, size_t i)
     return sum;
 }
 
-/* GCC 12 drops the conversion to single precision and back where it vectorises two of them. */
-static double as_float(double x)
-{
-    volatile float single = (float)x;
-    return (double)single;
-}
-
-/* As they are drawn: crossings are found of that. */
-static vec3d rounded(vec3d x)
-{
-    return (vec3d){as_float(x.x), as_float(x.y), as_float(x.z)};
-}
-
 /* In its corner it is where the cage is to the bit, without a lift. */
 static vec3d placed(const tl_follower *follower, const struct tl_follower_cage *cage, size_t i, vec3d way_end)
 {
     const double lost = lost_at(follower, i), gone = follower->gone[i];
     const vec3d corner = cage->places[follower->corners[i]];
     if (gone == 1)
-        return rounded(corner);
+        return vec3d_as_drawn(corner);
     if (lost == 0 && gone == 0)
         return way_end;
     const vec3d at = vec3d_mix(way_end, flat_at(follower, i, cage->places), lost);
-    return rounded(lift(cage, follower->skin.bones[i][0], vec3d_mix(at, corner, gone)));
+    return vec3d_as_drawn(lift(cage, follower->skin.bones[i][0], vec3d_mix(at, corner, gone)));
 }
 
 /* Places the particles between `way_ends` and the cage; its triangles may cut into the body. */
@@ -379,8 +366,8 @@ void tl_follower_move(tl_follower *follower, const struct tl_follower_cage *cage
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < particles->count; i++)
         if (is_moved(follower, particles, i))
-            way_ends[i] = rounded(lift(cage, follower->skin.bones[i][0],
-                                       tl_skin_point(&follower->skin, i, motions, follower->from[i])));
+            way_ends[i] = vec3d_as_drawn(lift(cage, follower->skin.bones[i][0],
+                                              tl_skin_point(&follower->skin, i, motions, follower->from[i])));
     place(follower, cage, way_ends, particles);
     if (cage->self_contact)
         uncross(follower, cage, way_ends, particles);

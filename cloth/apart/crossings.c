@@ -96,7 +96,7 @@ static void find_as_drawn(struct tl_near_tree *known, const struct tl_topology *
 {
     vec3d *drawn = TL_NEW_ARRAY(vec3d, topology->vertex_count);
     for (size_t i = 0; i < topology->vertex_count; i++)
-        drawn[i] = vec3d_from(vec3d_to_float(x[i]));
+        drawn[i] = vec3d_as_drawn(x[i]);
     struct tl_near_tree own = {0};
     if (!known)
         own = tl_near_tree_create(topology, drawn);

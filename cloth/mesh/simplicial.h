@@ -4,8 +4,8 @@
  * covers parts of the coarse mesh and nothing else, so it crosses itself only where the coarse mesh does.
  *
  * A vertex becomes the corner that has its largest share. Where the fine triangles are not small against the
- * coarse ones, some are not mapped to one triangle by that; their vertices are then mapped to other bones near
- * them in sweeps, which end when all are, or after 100.
+ * coarse ones, some are not mapped to one triangle by that; their vertices are then mapped to other bones
+ * near them in sweeps, which end when all are, or after 100.
  *
  * Threads: pure. */
 #ifndef TOILE_CLOTH_MESH_SIMPLICIAL_H

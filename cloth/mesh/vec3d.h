@@ -28,6 +28,13 @@ static inline vec3s vec3d_to_float(vec3d v)
 {
     return (vec3s){{(float)v.x, (float)v.y, (float)v.z}};
 }
+/* Rounds to single precision, as vertices are drawn. Volatile, because GCC 12 leaves out the conversion to
+ * float and back where it vectorises two of them. */
+static inline vec3d vec3d_as_drawn(vec3d v)
+{
+    volatile float x = (float)v.x, y = (float)v.y, z = (float)v.z;
+    return (vec3d){(double)x, (double)y, (double)z};
+}
 static inline vec3d vec3d_add(vec3d a, vec3d b)
 {
     return (vec3d){a.x + b.x, a.y + b.y, a.z + b.z};

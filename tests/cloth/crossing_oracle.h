@@ -65,7 +65,7 @@ static inline size_t oracle_crossings(const struct tl_topology *topology, const 
 {
     vec3d *x = TL_NEW_ARRAY(vec3d, topology->vertex_count);
     for (size_t i = 0; i < topology->vertex_count; i++)
-        x[i] = vec3d_from(vec3d_to_float(positions[i]));
+        x[i] = vec3d_as_drawn(positions[i]);
     size_t count = 0;
     for (size_t a = 0; a < topology->triangle_count; a++)
         for (size_t b = a + 1; b < topology->triangle_count; b++)

@@ -330,6 +330,37 @@ static void wind_does_not_cross_it(void **state)
     sheet_free(&garment);
 }
 
+/* A belt: vertices that are pinned near a body go with it, those that the cage has left out, too. */
+static void pins_go_with_the_body(void **state)
+{
+    (void)state;
+    tl_garment garment;
+    struct tl_cloth_params params = heavy();
+    tl_error error = {0};
+    params.gravity = 0;
+    tl_mesh body = body_box((vec3s){{0, 1.2f, -0.11f}}, (vec3s){{0.4f, 0.4f, 0.1f}}, 0);
+    vec3s *positions = TL_NEW_ARRAY(vec3s, body.vertex_count);
+    tl_collider *collider = tl_collider_create(&body, false, &error);
+    assert_ok(collider != NULL, error);
+    tl_cloth *cloth = make_cloth(&garment, &params, true);
+    const vec3d start = cloth->particles.x[CORNERS / 2 + 1];
+    for (int frame = 1; frame <= 5; frame++) {
+        for (size_t i = 0; i < body.vertex_count; i++)
+            positions[i] = glms_vec3_add(body.positions[i], (vec3s){{0, 0.01f * (float)frame, 0}});
+        tl_collider_move(collider, positions);
+        step(cloth, collider, 1);
+    }
+    assert_true(tl_cloth_cage(cloth, NULL) > 0);
+    assert_near(cloth->particles.x[CORNERS / 2 + 1].y - start.y, 0.05, 1e-6);
+    assert_near(cloth->particles.x[CORNERS / 2 + 1].x - start.x, 0, 1e-6);
+    assert_true(tl_cloth_measure(cloth, collider).max_strain < 0.3);
+    free(positions);
+    tl_mesh_release(&body);
+    tl_cloth_destroy(&cloth);
+    tl_collider_destroy(&collider);
+    sheet_free(&garment);
+}
+
 /* A ball, and a box whose edges lie between the cage's vertices. */
 static void bodies_move_it(void **state)
 {
@@ -412,6 +443,7 @@ int main(void)
         cmocka_unit_test(it_is_pulled),
         cmocka_unit_test(fine_folds_stay),
         cmocka_unit_test(bodies_move_it),
+        cmocka_unit_test(pins_go_with_the_body),
         cmocka_unit_test(wind_does_not_cross_it),
         cmocka_unit_test(a_reset_repeats),
         cmocka_unit_test(others_move_themselves),

@@ -60,8 +60,7 @@ static void release(struct sheet *sheet)
 static void place(struct sheet *sheet, vec3d (*at)(double u, double v))
 {
     for (uint32_t i = 0; i < COUNT; i++)
-        sheet->x[i] =
-            vec3d_from(vec3d_to_float(at((double)(i % COLUMNS) / CELLS, (double)(i / COLUMNS) / CELLS)));
+        sheet->x[i] = vec3d_as_drawn(at((double)(i % COLUMNS) / CELLS, (double)(i / COLUMNS) / CELLS));
 }
 
 static void check(struct sheet *sheet, const char *name, const bool *changed, size_t at_least)
