@@ -13,6 +13,8 @@ bool tl_setup_apply(const struct tl_setup *setup, const struct tl_settings *scen
     if (setup->preset && !tl_settings_apply_preset(out, setup->preset, error))
         return false;
     out->image = scene->image; /* a preset is compared by its light, at one resolution */
+    if (scene->light.bounce == TL_BOUNCE_OFF)
+        out->light.bounce = TL_BOUNCE_OFF; /* the reference leaves it out, too */
     return tl_settings_assign(out, setup->assignments, TL_COUNT(setup->assignments), error);
 }
 
