@@ -78,10 +78,21 @@ static vec3s *play(tl_session *session, size_t *count)
     return seen;
 }
 
+/* Keeps what is built in, and another drape, so that drapes alone are counted from then on. */
+static void keep_built_in(const struct tl_settings *settings)
+{
+    struct tl_settings other = *settings;
+    other.cloth.gravity = 9;
+    tl_cache_use(folder, LIMIT_BYTES);
+    tl_session *session = open(&other);
+    tl_session_destroy(&session);
+}
+
 static void assert_same_play(const char *const *assignments, size_t assignment_count)
 {
     struct tl_settings settings = settings_of(assignments, assignment_count);
     vec3s *seen[3];
+    keep_built_in(&settings);
     size_t counts[3], kept_before = kept_count();
     struct tl_cloth_report reports[3];
     for (int i = 0; i < 3; i++) { /* without the cache, into it, out of it */
@@ -161,19 +172,20 @@ static void other_options_make_other_drapes(void **state)
     static const char *const assignments[] = {"cloth.edge_m=0.08", "cloth.settle_s=0.05", "cloth.substeps=4",
                                               "scene.garment=sheet", "scene.avatar=ball"};
     struct tl_settings settings = settings_of(assignments, TL_COUNT(assignments));
-    tl_cache_use(folder, LIMIT_BYTES);
+    keep_built_in(&settings);
+    const size_t kept_before = kept_count();
     static const struct {
         const char *assignment;
         bool is_other;
     } cases[] = {
-        {"cloth.substeps=5", true},    {"fabric.friction=0.31", true},     {"cloth.gravity=9", true},
+        {"cloth.substeps=5", true},    {"fabric.friction=0.31", true},     {"cloth.gravity=8", true},
         {"image.ground=false", true},  {"cloth.edge_m=0.07", true},        {"light.regions=48", false},
         {"scene.preset=draft", false}, {"camera.yaw_deg=3", false},        {"image.width=32", false},
         {"material.coat=0.5", false},  {"scene.environment=white", false},
     };
     tl_session *session = open(&settings);
     tl_session_destroy(&session);
-    assert_int_equal(kept_count(), 1);
+    assert_int_equal(kept_count(), kept_before + 1);
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         struct tl_settings changed = settings;
         tl_error error = {0};
