@@ -399,12 +399,15 @@ void tl_review_note_edit(struct tl_review *review)
     tl_journal_note(review->journal, &review->good, is_edit);
 }
 
-void tl_review_undo(struct tl_review *review, bool redo)
+void tl_review_note_wanted(struct tl_review *review)
 {
-    /* `wanted` may hold an edit that has not been noted: its gesture has just ended, or it is still loading.
-     */
     if (!tl_review_moves_itself(review) && tl_history_note(review->history, &review->wanted))
         tl_journal_note(review->journal, &review->wanted, true);
+}
+
+void tl_review_undo(struct tl_review *review, bool redo)
+{
+    tl_review_note_wanted(review);
     const struct tl_settings *edit =
         redo ? tl_history_redo(review->history) : tl_history_undo(review->history);
     if (!edit) {

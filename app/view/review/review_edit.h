@@ -39,6 +39,9 @@ void tl_review_next_environment(struct tl_review *review);
 
 /* Notes the present settings for undo once a gesture has ended; called every frame. */
 void tl_review_note_edit(struct tl_review *review);
+/* Notes an edit that has not been noted because its gesture has just ended, or because it is still loading:
+ * before something else takes its place. */
+void tl_review_note_wanted(struct tl_review *review);
 void tl_review_undo(struct tl_review *review, bool redo);
 
 #endif

@@ -1,6 +1,7 @@
 #include "app/view/review/review_wipe.h"
 
 #include "app/scene/appearance.h"
+#include "app/view/review/review_edit.h"
 #include "app/view/review/review_reading.h"
 #include "config/log.h"
 #include "config/memory.h"
@@ -84,6 +85,7 @@ void tl_review_swap(struct tl_review *review)
         tl_review_report(review, "nothing is compared: W starts a comparison");
         return;
     }
+    tl_review_note_wanted(review);
     struct tl_settings b = review->wanted;
     review->wanted = tl_review_settings_a(review, &b);
     review->wanted.fabric = review->wipe.settings.fabric;
