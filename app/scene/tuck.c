@@ -1,6 +1,7 @@
 #include "app/scene/tuck.h"
 
 #include "cloth/contact/collider.h"
+#include "cloth/mesh/topology.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -49,6 +50,46 @@ static bool is_made_for(const float *depths, size_t count)
     return (double)through <= THROUGH_SHARE * (double)close;
 }
 
+/* Depths of neighbours differ by at most so much of their distance: beside a collar that stands off, a vertex
+ * that it covers would else be drawn through the neck, and the skin torn. */
+#define STEEPEST 1.0f
+
+static bool lower(float *depth, float most)
+{
+    bool lowers = *depth > most;
+    *depth = lowers ? most : *depth;
+    return lowers;
+}
+
+static bool lower_edge(const tl_mesh *body, float *depths, uint32_t a, uint32_t b)
+{
+    const float rise = STEEPEST * glms_vec3_distance(body->positions[a], body->positions[b]);
+    bool any = lower(&depths[a], depths[b] + rise);
+    return lower(&depths[b], depths[a] + rise) || any;
+}
+
+static void limit_steepness(const tl_mesh *body, float *depths)
+{
+    uint32_t *weld = TL_NEW_ARRAY(uint32_t, body->vertex_count);
+    size_t places = tl_weld_positions(body->positions, body->vertex_count, weld);
+    float *least = TL_NEW_ARRAY(float, places);
+    bool any = true;
+    while (any) {
+        any = false;
+        for (size_t i = 0; i < body->index_count; i += 3)
+            for (size_t k = 0; k < 3; k++)
+                any = lower_edge(body, depths, body->indices[i + k], body->indices[i + (k + 1) % 3]) || any;
+        for (size_t i = 0; i < places; i++)
+            least[i] = INFINITY;
+        for (size_t i = 0; i < body->vertex_count; i++)
+            lower(&least[weld[i]], depths[i]);
+        for (size_t i = 0; i < body->vertex_count; i++)
+            any = lower(&depths[i], least[weld[i]]) || any;
+    }
+    free(weld);
+    free(least);
+}
+
 float *tl_tuck_find(const tl_mesh *garment, const tl_mesh *body, tl_error *error)
 {
     tl_collider *cloth = tl_collider_create(garment, false, error);
@@ -61,6 +102,7 @@ float *tl_tuck_find(const tl_mesh *garment, const tl_mesh *body, tl_error *error
     tl_collider_destroy(&cloth);
     if (!is_made_for(depths, body->vertex_count))
         memset(depths, 0, body->vertex_count * sizeof *depths);
+    limit_steepness(body, depths);
     return depths;
 }
 
