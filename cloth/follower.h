@@ -10,8 +10,9 @@
  * 4. Triangles that span a sharp side of the cage do not lie on it and may cross even then, mostly near a
  *    corner at which several sides are folded. Their vertices go to corners of the cage, so that they become
  *    triangles, sides or corners of it (mesh/simplicial.h). What crosses at the rim of those follows them;
- *    when all has, the mesh is the cage, which does not cross itself. In a gusty wind of 4 m/s or under the
- *    hand up to 200 of 121,000 vertices are in corners, in the worst frame.
+ *    when all has, the mesh is the cage, which does not cross itself, but for what simplicial.h could not
+ * map. In a gusty wind of 4 m/s or under the hand up to 160 of 121,000 vertices are in corners, in the worst
+ * frame.
  *
  * Metres. Errors: none. Threads: one call at a time; parallel inside, with the same results at any number of
  * threads. */

@@ -60,8 +60,7 @@ static const struct tl_option cloth_rows[] = {
                    "settles coarser versions of a fine cloth first, from which it comes to rest sooner"),
     TL_OPTION_INT(struct tl_cloth_params, caged_above, AFFECTS, 0, 1000000000, "",
                   "cloth of more vertices moves by a cage of 3,000, which it follows: in a hundredth of the "
-                  "time, without "
-                  "new folds finer than the cage; it settles as it is; 0: all of it moves"),
+                  "time, without new folds finer than the cage; it settles as it is; 0: all of it moves"),
     TL_OPTION_FLOAT(struct tl_cloth_params, edge_m, TL_AFFECTS_SCENE | AFFECTS | TL_AFFECTS_WORK, 0.001f, 1,
                     "m", "target edge length of built-in garments; larger: coarser, faster"),
     TL_OPTION_ENUM(struct tl_cloth_params, rest, TL_AFFECTS_SCENE | AFFECTS, tl_rest_names,

@@ -5,8 +5,8 @@ add_library(toile_light STATIC
   brdf/brdf.c
   brdf/coat.c
   brdf/fuzz.c
-  brdf/ggx_lobes.c
-  brdf/ggx_lobes_table.c
+  brdf/ggx/ggx_lobes.c
+  brdf/ggx/ggx_lobes_table.c
   brdf/sample.c
   brdf/lobe_fit.c
   brdf/fresnel.c

@@ -1,6 +1,6 @@
 #include "render/brdf/lobe_fit.h"
 
-#include "render/brdf/ggx_lobes.h"
+#include "render/brdf/ggx/ggx_lobes.h"
 #include "render/brdf/slope_fan.h"
 #include "render/brdf/ward_lanes.h"
 

@@ -14,7 +14,7 @@ foreach(name
     brdf/factor
     plan/first_second
     brdf/fuzz
-    brdf/ggx_lobes
+    brdf/ggx/ggx_lobes
     brdf/lobe_fit
     metrics/flip
     surfaces/ground
@@ -46,4 +46,4 @@ foreach(name
     )
   toile_test(${name} unit toile_light)
 endforeach()
-target_sources(test_ggx_lobes PRIVATE ./brdf/ggx_fitter.c)
+target_sources(test_ggx_lobes PRIVATE ./brdf/ggx/ggx_fitter.c)

@@ -47,8 +47,7 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "E2  Solvers of the cloth",
      .text = "Three integrators over one energy. The sheet falls over the ball and comes to rest; the solid "
-             "is no "
-             "cloth and stays equal.",
+             "is no cloth and stays equal.",
      .exact_text = "the solver `reference`, whose step follows the fabric's stiffness",
      .motion = TL_MOTION_CLOTH,
      .motion_step = 4,

@@ -219,8 +219,7 @@ static const struct tl_experiment experiments[] = {
              "Between two directions the slope of a horizon is linear, which is exact for a straight "
              "yarn.",
      .exact_text = "shadows marched through the heights in 256 steps; a march of 512 is equal to it within a "
-                   "hundredth of "
-                   "these errors",
+                   "hundredth of these errors",
      .claims = {{"horizon map, 32 angles", "horizon map, 16 angles", "[001] 4.4"},
                 {"horizon map, 16 angles", "horizon map, 8 angles", "[001] 4.4"},
                 {"horizon map, 8 angles", "no shadow", "[001] 4.4"}},

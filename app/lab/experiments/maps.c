@@ -3,8 +3,6 @@
 #include "app/lab/experiments/rows_internal.h"
 
 #define BUMPY WOVEN("8", "2")
-/* Integrals take one glossiness for all of a surface; hems have another. */
-#define UNSEWN "construction.show=never"
 
 static const struct tl_technique techniques[] = {
     {.picture = "cube, 128 a face", .id = "B1", SET("maps.layout=cube", "maps.size=128")},
@@ -168,8 +166,7 @@ static const struct tl_experiment experiments[] = {
      .title = "B2  The scene in its own map",
      .text = "The environment map is captured from the middle of the scene, so that the reflections "
              "include the ground, as it is seen from there. A map knows no shadows, and no mirror in a "
-             "mirror: the "
-             "exact picture has both. In the strip the camera turns.",
+             "mirror: the exact picture has both. In the strip the camera turns.",
      .exact_text = "every reflected ray traced, and what it hits lit",
      .motion = TL_MOTION_CAMERA,
      .motion_step = 15,

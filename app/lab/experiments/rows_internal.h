@@ -15,6 +15,10 @@ extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experimen
     tl_light_experiments, tl_glossy_experiments, tl_cloth_experiments, tl_material_experiments,
     tl_budget_experiments;
 
+/* Hems change gloss from pixel to pixel, which tables leave out, as A1 shows, and integrals, which take one
+ * glossiness for all of a surface. */
+#define UNSEWN "construction.show=never"
+
 /* A technique's settings: assignments over the experiment's, or over a preset's. */
 #define SET(...)          .setup = {.assignments = {__VA_ARGS__}}
 #define PRESET(name, ...) .setup = {.preset = name, .assignments = {__VA_ARGS__}}

@@ -7,9 +7,7 @@
 #define ONE_A_PASS  "shading.max_textures_per_pass=1"
 #define BUMPY       WOVEN("8", "2")
 #define ACROSS_WARP "material.width_weft=0.4", "material.width_warp=0.1"
-/* Tables leave out what hems change of gloss from pixel to pixel, as A1 shows: elsewhere cloth has none. */
-#define UNSEWN   "construction.show=never"
-#define SPECULAR "material.specular=[0.15, 0.15, 0.15]"
+#define SPECULAR    "material.specular=[0.15, 0.15, 0.15]"
 
 static const struct tl_technique techniques[] = {
     /* How often light is evaluated. */

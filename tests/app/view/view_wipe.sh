@@ -54,6 +54,11 @@ same 1 2 "A hangs as before, in the same view"
 same 3 4 "A comes back with B to the start"
 same 1 5 "the comparison ends with B"
 [ "$(differ 1 3)" -gt 300 ] || fail "A is not exchanged: relative RMSE 0.$(differ 1 3)"
+# An edit, and an exchange before its gesture has ended: both can be undone.
+press w "compares: A"
+xdotool key --delay 20 v x
+logged "view: A and B exchanged" 3
+press ctrl+z "undone: image.view"
 xdotool key q
 closed
 ! grep -q warning log || fail "a warning"

@@ -1,5 +1,5 @@
-/* Made by tests/render/brdf/test_ggx_lobes.c. */
-#include "render/brdf/ggx_lobes_internal.h"
+/* Made by tests/render/brdf/ggx/test_ggx_lobes.c. */
+#include "render/brdf/ggx/ggx_lobes_internal.h"
 
 const short tl_ggx_table[TL_GGX_ROUGHNESSES * TL_GGX_ELEVATIONS * TL_GGX_LOBES_ALL * TL_GGX_FIGURES] = {
     907,   -2420, 11933, 32,   25,    -4844, 6468, 23,   2664, 452,   2477, 50,   989,  -3150, 4870, 31,

@@ -1,7 +1,7 @@
 /* Fits lobes to GGX by brute force, from formulas of its own: what makes and tests the table of
- * render/brdf/ggx_lobes.h. Double precision; one fit at a time. */
-#ifndef TOILE_TESTS_RENDER_BRDF_GGX_FITTER_H
-#define TOILE_TESTS_RENDER_BRDF_GGX_FITTER_H
+ * render/brdf/ggx/ggx_lobes.h. Double precision; one fit at a time. */
+#ifndef TOILE_TESTS_RENDER_BRDF_GGX_GGX_FITTER_H
+#define TOILE_TESTS_RENDER_BRDF_GGX_GGX_FITTER_H
 
 #define FITTER_LOBES_MAX 7
 #define FITTER_FIGURES   3 /* of a lobe */

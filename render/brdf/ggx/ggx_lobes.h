@@ -5,10 +5,10 @@
  * Rows are of roughness, the root of the width, and of the viewer's elevation, closer to one another near the
  * horizon. Narrower facets than the first row's have its lobes in proportion to their width.
  *
- * tests/render/brdf/test_ggx_lobes.c made the table, repeats its fits, and says how to make it again. Pure;
- * threads: any. */
-#ifndef TOILE_RENDER_BRDF_GGX_LOBES_H
-#define TOILE_RENDER_BRDF_GGX_LOBES_H
+ * tests/render/brdf/ggx/test_ggx_lobes.c made the table, repeats its fits, and says how to make it again.
+ * Pure; threads: any. */
+#ifndef TOILE_RENDER_BRDF_GGX_GGX_LOBES_H
+#define TOILE_RENDER_BRDF_GGX_GGX_LOBES_H
 
 #define TL_GGX_LOBES_MAX 7
 

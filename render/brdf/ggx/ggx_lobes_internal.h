@@ -1,5 +1,5 @@
-#ifndef TOILE_RENDER_BRDF_GGX_LOBES_INTERNAL_H
-#define TOILE_RENDER_BRDF_GGX_LOBES_INTERNAL_H
+#ifndef TOILE_RENDER_BRDF_GGX_GGX_LOBES_INTERNAL_H
+#define TOILE_RENDER_BRDF_GGX_GGX_LOBES_INTERNAL_H
 
 /* The table: thousandths of the angle over the width, of the base-2 logarithm of the variance over the
  * squared width, and of the cosine; ten-thousandths of the weight. */

@@ -1,6 +1,6 @@
-#include "render/brdf/ggx_lobes.h"
+#include "render/brdf/ggx/ggx_lobes.h"
 
-#include "render/brdf/ggx_lobes_internal.h"
+#include "render/brdf/ggx/ggx_lobes_internal.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "tests/render/brdf/ggx_fitter.h"
+#include "tests/render/brdf/ggx/ggx_fitter.h"
 
 #include "config/memory.h"
 
