@@ -54,11 +54,11 @@ same 1 2 "A hangs as before, in the same view"
 same 3 4 "A comes back with B to the start"
 same 1 5 "the comparison ends with B"
 [ "$(differ 1 3)" -gt 300 ] || fail "A is not exchanged: relative RMSE 0.$(differ 1 3)"
-# An edit, and an exchange before its gesture has ended: both can be undone.
+# An exchange before the gesture of an edit has ended: the edit can be undone, and so can the exchange.
 press w "compares: A"
-xdotool key --delay 20 v x
-logged "view: A and B exchanged" 3
-press ctrl+z "undone: image.view"
+press ctrl+2 "view: fabric: cotton_plain"
+press x "A and B exchanged"
+press ctrl+z "undone: scene.fabric cotton_plain -> satin"
 xdotool key q
 closed
 ! grep -q warning log || fail "a warning"
