@@ -1,6 +1,9 @@
 # The parts of render that know neither GL nor the clock.
 add_library(toile_light STATIC
   bounce/bounce.c
+  bounce/bounce_materials.c
+  bounce/bounce_rays.c
+  bounce/bounce_sky.c
   brdf/angles.c
   brdf/brdf.c
   brdf/coat.c

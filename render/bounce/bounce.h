@@ -1,15 +1,16 @@
 /* Light that surfaces send on to each other, kept at vertices.
  *
- * Rays from a vertex, spread by the cosine, are followed to what they hit. The vertex keeps what arrives by
- * them: its mean, E_b / pi, which is what the diffuse lobe takes; and for glossy lobes its gradient about the
- * vertex, by channel: the second band of spherical harmonics. What is hit sends on what its own vertices
- * received when they were traced last: light of the environment, suns and lamps, what it emits, and, if all
- * bounces are wanted, bounced light, so that bounces add up from update to update. Its reflectance is that of
- * a matt surface with the material's mean colour, gloss included.
+ * Rays from a vertex, over its hemisphere, are followed to what they hit. The vertex keeps what arrives by
+ * them: its mean, E_b / pi, which is what the diffuse lobe takes; and for glossy lobes where it comes from
+ * (bounced.h). What is hit sends on what its own vertices received when they were traced last: light of the
+ * environment, suns and lamps, what it emits, and, if all bounces are wanted, bounced light, so that bounces
+ * add up from update to update. It reflects as a matt surface of the material's mean colour, gloss included;
+ * but where gloss is more than the colour, as of metal, by lobes, towards where the ray comes from.
  *
  *     environment at a hit = E(n, 1) sum of L over rays that meet nothing / sum of L over all rays
  *
- * with a coarse L: exact where nothing is hidden (the ratio of render/light/compose.h, of one region a ray).
+ * with a coarse L, and so by a lobe: exact where nothing is hidden (the ratio of render/light/compose.h, of
+ * one region a ray). A third of those rays go to the sky's bright parts.
  *
  * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
  * is traced in each update, a smaller one of those that are hit only: what sixteen rays meet is a mean, and
@@ -24,6 +25,7 @@
 #ifndef TOILE_RENDER_BOUNCE_BOUNCE_H
 #define TOILE_RENDER_BOUNCE_BOUNCE_H
 
+#include "render/bounce/bounced.h"
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
 #include "render/gbuffer/samples.h"
@@ -31,32 +33,33 @@
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
 
-/* Bounced light at a vertex seen from one side. */
-struct tl_bounced {
-    vec3s arrives;  /* E_b / pi */
-    vec3s along[3]; /* gradient about the vertex, by channel */
+/* The environment as rays see it (bounce_internal.h). */
+struct tl_bounce_sky {
+    uint64_t revision;
+    tl_cube cube; /* coarse */
+    double *sums; /* [texels + 1] of luminance, texel by texel */
 };
+
+struct tl_bounce_material; /* bounce_internal.h */
 
 struct tl_bounce {
     size_t surface_count, vertex_count;
-    size_t *first_vertex; /* [surface_count + 1] */
+    size_t *first_vertex, *first_part;    /* [surface_count + 1] */
+    struct tl_bounce_material *materials; /* of the parts of all surfaces */
+    uint32_t *parts;                      /* [vertex_count]: the part that a vertex belongs to */
     uint64_t shapes_revision;
     uint32_t update;          /* counts updates, from 1 */
-    vec3s *emissions;         /* [2 vertex_count]: front, back: radiance */
-    vec3s *albedos;           /* [2 vertex_count]: front, back */
-    vec3s *transmissions;     /* [vertex_count]: from either side to the other */
-    float *openness;          /* [vertex_count] */
-    struct tl_bounced *found; /* ...: mean of the vertex's own rays */
+    struct tl_bounced *found; /* [2 vertex_count]: front, back: mean of the vertex's own rays */
     struct tl_bounced *shown; /* ...: mean with its neighbours', in motion of what is seen */
-    vec3s *direct;            /* ...: E / pi of the environment, suns and lamps */
-    vec3s *sent;              /* ...: radiance, as of the last update */
+    vec3s *sky_lit;           /* ...: E / pi of the environment */
+    vec3s *point_lit;         /* ...: E / pi of suns and lamps */
+    vec3s *sent;              /* ...: radiance to all sides, as of the last update */
     uint16_t *rounds;         /* ...: in `found`; 0: nothing is known */
     uint32_t *wanted;         /* ...: update in which it was last seen or hit; 0: never */
     uint32_t *seen;           /* ...: update in which the camera last saw it; 0: never */
     float *weights;           /* ...: of the neighbours, while `shown` is made */
-    uint64_t sky_revision;    /* of what `sky` was made from */
-    tl_cube sky;              /* coarse */
-    bool is_done;             /* all wanted vertices have had their rounds */
+    struct tl_bounce_sky sky;
+    bool is_done; /* all wanted vertices have had their rounds */
 };
 
 struct tl_bounce_request {
@@ -66,7 +69,7 @@ struct tl_bounce_request {
     const struct tl_ground *ground;          /* NULL: none */
     const tl_cube *cube;                     /* without the suns */
     uint64_t cube_revision;
-    const struct tl_lobes *lobes; /* of the cube; with exponent 1 */
+    const struct tl_lobes *lobes; /* of the cube; with exponent 1, and those of the materials' lobes */
     const struct tl_suns *suns;
     const struct tl_lamp *lamps; /* [lamp_count] */
     size_t lamp_count;
@@ -85,21 +88,9 @@ void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *
 void tl_bounce_release(struct tl_bounce *bounce);
 size_t tl_bounce_bytes(const struct tl_bounce *bounce);
 
-/* What arrives at a sample of the last update, between the vertices of its triangle. */
+/* What bounces to a sample of the last update, between the vertices of its triangle.
+ */
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                                 const tl_sample *sample);
-/* Bounced light through the cosine lobe of exponent s about a unit direction: light that is even over the
- * hemisphere of n is 1/2 + 3/4 n.w in the first two bands [Ramamoorthi and Hanrahan 2001], and a lobe keeps
- * (s + 1) / (s + 2) of the second. */
-static inline vec3s tl_bounced_in_lobe(const struct tl_bounced *bounced, vec3s direction, float exponent)
-{
-    const float kept = (exponent + 1) / (exponent + 2);
-    vec3s light;
-    for (int c = 0; c < 3; c++) {
-        float value = 0.5f * bounced->arrives.raw[c] + kept * glms_vec3_dot(bounced->along[c], direction);
-        light.raw[c] = value > 0 ? value : 0;
-    }
-    return light;
-}
 
 #endif

@@ -58,6 +58,13 @@ TL_INLINE vec3s into_environment(const struct block *block, vec3s d)
     return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
 }
 
+/* ... and back. */
+TL_INLINE vec3s out_of_environment(const struct block *block, vec3s d)
+{
+    float c = block->turn_cosine, s = block->turn_sine;
+    return (vec3s){{c * d.x + s * d.z, d.y, c * d.z - s * d.x}};
+}
+
 TL_INLINE void add_weights(float sums[TL_LANES], const float power[TL_LANES], const float weights[TL_LANES])
 {
     for (int lane = 0; lane < TL_LANES; lane++)
@@ -413,26 +420,34 @@ static vec3s share_of(vec3s part, vec3s all)
     return share;
 }
 
+/* Bounced light through a lobe; normal and direction in the environment's frame. */
+TL_INLINE vec3s bounced_through(const struct block *block, const struct tl_bounced *bounced, vec3s normal,
+                                vec3s direction, float exponent)
+{
+    if (!block->request->bounce)
+        return (vec3s){{0, 0, 0}};
+    const struct tl_bounced_lobe lobe =
+        tl_bounced_lobe_of(out_of_environment(block, normal), out_of_environment(block, direction), exponent);
+    return tl_bounced_through(bounced, &lobe);
+}
+
 /* Adds what other surfaces send through the two lobes. Near mirrors have rays of their own for that. */
-static void add_bounced(const struct tl_bounced *bounced, const struct frame *frame, bool is_mirror,
-                        vec3s light[2])
+TL_INLINE void add_bounced(const struct block *block, const struct tl_bounced *bounced,
+                           const struct frame *frame, bool is_mirror, vec3s light[2])
 {
     light[DIFFUSE] = glms_vec3_add(light[DIFFUSE], bounced->arrives);
     if (!is_mirror)
-        light[GLOSSY] =
-            glms_vec3_add(light[GLOSSY], tl_bounced_in_lobe(bounced, frame->gloss, frame->exponent));
+        light[GLOSSY] = glms_vec3_add(
+            light[GLOSSY], bounced_through(block, bounced, frame->smooth, frame->gloss, frame->exponent));
 }
 
-/* What arrives at a sample, in the environment's frame. */
+/* What other surfaces send to a sample. */
 static struct tl_bounced bounced_at(const struct block *block, const tl_sample *sample)
 {
     const struct tl_compose_request *request = block->request;
     if (!request->bounce)
         return (struct tl_bounced){0};
-    struct tl_bounced bounced = tl_bounced_at(request->bounce, request->ranges, sample);
-    for (int c = 0; c < 3; c++)
-        bounced.along[c] = into_environment(block, bounced.along[c]);
-    return bounced;
+    return tl_bounced_at(request->bounce, request->ranges, sample);
 }
 
 static vec3s exact_in_lobe(const struct block *block, const struct tl_fitted_lobe *lobe)
@@ -452,7 +467,7 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
         light = glms_vec3_add(light, tl_see_lobes(block->request, index, lobes->items, lobes->count, smooth));
     for (int k = 0; k < lobes->count; k++) {
         const struct tl_fitted_lobe *lobe = &lobes->items[k];
-        vec3s arriving = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
+        vec3s arriving = bounced_through(block, bounced, smooth, lobe->direction, lobe->exponent);
         if (!shadowed)
             arriving = glms_vec3_add(arriving, exact_in_lobe(block, lobe));
         light = glms_vec3_muladd(lobe->weight, arriving, light);
@@ -588,7 +603,7 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     if (by_occlusion)
         replace_by_occlusion(&sums, method, &received);
     const struct tl_bounced bounced = bounced_at(block, sample);
-    add_bounced(&bounced, &frame, mirror && mirror->ray_count > 0, received.shadowed);
+    add_bounced(block, &bounced, &frame, mirror && mirror->ray_count > 0, received.shadowed);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;
     vec3s colour = colour_of(sample, request->params->lobe, arriving);
     if (lobes.count > 0)
@@ -650,7 +665,7 @@ TL_INLINE vec3s ratio_of_lobes(const struct block *block, size_t index, const st
     vec3s seen = tl_see_lobes(block->request, index, lobes->items, lobes->count, smooth), all = {{0, 0, 0}};
     for (int k = 0; k < lobes->count; k++) {
         const struct tl_fitted_lobe *lobe = &lobes->items[k];
-        vec3s sent = tl_bounced_in_lobe(bounced, lobe->direction, lobe->exponent);
+        vec3s sent = bounced_through(block, bounced, smooth, lobe->direction, lobe->exponent);
         seen = glms_vec3_muladd(lobe->weight, sent, seen);
         all = glms_vec3_muladd(lobe->weight, exact_in_lobe(block, lobe), all);
     }
@@ -672,7 +687,7 @@ TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t inde
     receive_shadowed(block, &frame, &sums, kind, seen);
     receive_unshadowed(block, &frame, all);
     const struct tl_bounced bounced = bounced_at(block, &sample);
-    add_bounced(&bounced, &frame, false, seen);
+    add_bounced(block, &bounced, &frame, false, seen);
     struct tl_light_ratio ratio = {.diffuse = share_of(seen[DIFFUSE], all[DIFFUSE])};
     ratio.glossy = rich && lobes.facets > 0 ? ratio_of_lobes(block, index, &lobes, frame.smooth, &bounced)
                    : kind.glossy            ? share_of(seen[GLOSSY], all[GLOSSY])

@@ -5,6 +5,7 @@ foreach(name
     plan/budget
     pem/chain
     metrics/compare
+    bounce/bounced
     light/compose
     light/kept_light
     env/convert

@@ -42,6 +42,10 @@ static const struct {
     {"fuzz", "--fabric velvet"},
     {"sheer", "--fabric voile --frames 2 --size 192x108"}, /* the reference takes its time */
     {"fold", "--fabric cotton_plain --garment skirt --set camera.pitch_deg=-20"},
+    /* A cup of metal, seen from below. */
+    {"metal",
+     "--garment skirt --fabric none --set material.use_file=false --set material.diffuse=[0,0,0] --set "
+     "material.specular=[0.9,0.9,0.9] --set material.glossiness=0.8 --set camera.pitch_deg=-30"},
     {"near", "--set camera.distance_m=1 --set camera.target=[0,1.2,0]"},
 };
 

@@ -1,0 +1,386 @@
+#include "render/bounce/bounce_internal.h"
+
+#include "render/brdf/lobe_fit.h"
+#include "render/env/exponent.h"
+#include "render/trace/spread.h"
+
+#include <math.h>
+
+/* Lobes that stand for the gloss of what a ray hits. */
+#define HIT_LOBES 3
+
+/* ---- Directions ---- */
+
+/* The pdf of directions about a normal, half of them by the cosine and half even: gloss towards the horizon
+ * needs rays there. */
+static float spread_pdf(float cosine)
+{
+    return (cosine + 0.5f) / (2 * (float)M_PI);
+}
+
+/* A direction by that pdf, fixed to the surface by its tangent. */
+static vec3s spread_direction(vec3s normal, vec3s tangent, vec2s at)
+{
+    vec3s along = glms_vec3_sub(tangent, glms_vec3_scale(normal, glms_vec3_dot(normal, tangent)));
+    if (!(glms_vec3_norm2(along) > 1e-6f))
+        along = glms_vec3_cross(normal, fabsf(normal.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}});
+    along = glms_vec3_normalize(along);
+    vec3s across = glms_vec3_cross(normal, along);
+    float cosine = fmaxf(sqrtf(0.25f + 2 * (1 - at.x)) - 0.5f, 1e-2f);
+    float radius = sqrtf(1 - cosine * cosine), angle = 2 * (float)M_PI * at.y;
+    vec3s direction = glms_vec3_scale(normal, cosine);
+    direction = glms_vec3_add(direction, glms_vec3_scale(along, radius * cosf(angle)));
+    direction = glms_vec3_add(direction, glms_vec3_scale(across, radius * sinf(angle)));
+    return glms_vec3_normalize(direction);
+}
+
+/* World direction -> direction in the environment. */
+static vec3s into_environment(const struct tl_bounce_request *request, vec3s direction)
+{
+    return tl_turn_direction(direction, -request->environment_yaw);
+}
+
+/* ---- What rays find ---- */
+
+struct bounce_ray {
+    vec3s origin, direction;
+    float cosine; /* of the angle to the normal */
+};
+
+/* Sums over the rays of a vertex. */
+struct gathered {
+    int count; /* rays over the hemisphere whose end is known */
+    struct tl_bounced light;
+    vec3s open, all; /* of the sky, by the cosine */
+};
+
+/* Adds light of a direction that was chosen by spread_pdf. */
+TL_INLINE void count_hit(struct tl_bounced *sum, const struct bounce_ray *ray, vec3s light)
+{
+    float basis[TL_BOUNCED_TERMS];
+    const float angle = 1 / spread_pdf(ray->cosine);
+    tl_bounced_basis(ray->direction, basis);
+    sum->arrives = glms_vec3_muladds(light, ray->cosine * angle / (float)M_PI, sum->arrives);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < TL_BOUNCED_TERMS; i++)
+            sum->terms[c][i] += basis[i] * angle * light.raw[c];
+}
+
+/* Adds the sky of a direction, of which a share is seen. Both kinds of rays sample it: each counts by the sum
+ * of both densities [Veach and Guibas 1995, the balance heuristic]. */
+static void count_sky(const struct tl_bounce *bounce, const struct tl_bounce_request *request,
+                      vec3s direction, float cosine, float share, struct gathered *sums)
+{
+    float basis[TL_BOUNCED_TERMS], pdf;
+    vec3s sky = tl_bounce_sky_colour(&bounce->sky, into_environment(request, direction), &pdf);
+    sky = glms_vec3_divs(sky, TL_BOUNCE_RAYS * spread_pdf(cosine) + TL_BOUNCE_SKY_RAYS * pdf);
+    sums->all = glms_vec3_muladds(sky, cosine, sums->all);
+    sums->open = glms_vec3_muladds(sky, cosine * share, sums->open);
+    const float luminance = 0.2126f * sky.x + 0.7152f * sky.y + 0.0722f * sky.z;
+    tl_bounced_basis(direction, basis);
+    for (int i = 0; i < TL_BOUNCED_TERMS; i++) {
+        sums->light.terms[TL_BOUNCED_ALL_SKY][i] += basis[i] * luminance;
+        sums->light.terms[TL_BOUNCED_OPEN_SKY][i] += basis[i] * luminance * share;
+    }
+}
+
+/* The share of a ray's light that open sheets let through; 0 behind anything else. */
+static float shown_to(const struct tl_bounce_request *request, vec3s origin, vec3s direction, float to_m)
+{
+    const struct tl_ray_packet packet = {.count = 1,
+                                         .origin_x = {origin.x},
+                                         .origin_y = {origin.y},
+                                         .origin_z = {origin.z},
+                                         .direction_x = {direction.x},
+                                         .direction_y = {direction.y},
+                                         .direction_z = {direction.z},
+                                         .to_m = to_m};
+    float shown[16];
+    tl_trace_transmittance_packet(request->trace, &packet, shown);
+    return shown[0];
+}
+
+static float open_towards(const struct tl_bounce_request *request, vec3s origin, vec3s direction)
+{
+    return shown_to(request, origin, direction, INFINITY) *
+           tl_ground_visibility(request->ground, origin, direction);
+}
+
+/* ---- What is hit ---- */
+
+/* A point of a triangle that a ray hits. */
+struct hit_place {
+    size_t surface;
+    uint32_t triangle;
+    const uint32_t *corners;
+    float weights[3];
+    bool back;
+};
+
+static size_t corner_of(const struct tl_bounce *bounce, const struct hit_place *place, int k)
+{
+    return 2 * (bounce->first_vertex[place->surface] + place->corners[k]) + place->back;
+}
+
+/* What the corners of a triangle send to all sides, between them. False where that is not known yet. */
+static bool sent_from(const struct tl_bounce *bounce, const struct hit_place *place, vec3s *sent)
+{
+    float known = 0;
+    *sent = (vec3s){{0, 0, 0}};
+    for (int k = 0; k < 3; k++) {
+        const size_t at = corner_of(bounce, place, k);
+        if (bounce->rounds[at] == 0)
+            continue;
+        known += place->weights[k];
+        *sent = glms_vec3_muladds(bounce->sent[at], place->weights[k], *sent);
+    }
+    if (!(known > 0.1f))
+        return false;
+    *sent = glms_vec3_divs(*sent, known);
+    return true;
+}
+
+/* What the corners receive, between them, as far as it is known. */
+static struct tl_bounced received_at(const struct tl_bounce *bounce, const struct hit_place *place)
+{
+    float known = 0;
+    struct tl_bounced sum = {0}, mean = {0};
+    for (int k = 0; k < 3; k++) {
+        const size_t at = corner_of(bounce, place, k);
+        if (bounce->rounds[at] > 0) {
+            known += place->weights[k];
+            tl_bounced_add(&sum, &bounce->shown[at], place->weights[k]);
+        }
+    }
+    tl_bounced_add(&mean, &sum, known > 0 ? 1 / known : 0);
+    return mean;
+}
+
+static vec3s smooth_normal(const tl_surface *surface, const struct hit_place *place)
+{
+    vec3s normal = {{0, 0, 0}};
+    for (int k = 0; k < 3; k++)
+        normal = glms_vec3_muladds(surface->normals[place->corners[k]], place->weights[k], normal);
+    return glms_vec3_normalize(place->back ? glms_vec3_negate(normal) : normal);
+}
+
+/* The lobes of a place's gloss towards a unit viewer above its normal; returns their number. */
+static int lobes_of(const tl_surface *surface, const tl_material *material,
+                    const struct tl_bounce_material *mean, const struct hit_place *place, vec3s normal,
+                    vec3s viewer, struct tl_fitted_lobe lobes[TL_LOBE_FIT_SUM_MAX])
+{
+    const vec3s f0 = mean->specular[place->back];
+    if (material->gloss.model == TL_REFLECT_PHONG) {
+        const float facing = glms_vec3_dot(normal, viewer), rest = powf(1 - facing, 5);
+        lobes[0] =
+            (struct tl_fitted_lobe){.direction = glms_vec3_sub(glms_vec3_scale(normal, 2 * facing), viewer),
+                                    .exponent = tl_lobe_exponent(material->glossiness)};
+        for (int c = 0; c < 3; c++)
+            lobes[0].weight.raw[c] = f0.raw[c] > 0 ? f0.raw[c] + (1 - f0.raw[c]) * rest : 0;
+        return 1;
+    }
+    const float side = place->back ? -1.0f : 1.0f, smooth[3] = {0, 0, 0};
+    const vec4s stored = surface->tangents ? surface->tangents[place->corners[0]] : (vec4s){{0, 0, 0, 1}};
+    const struct tl_brdf_sum gloss = tl_brdf_sum_of(material, f0, mean->diffuse[place->back],
+                                                    material->glossiness, stored.w * side, smooth);
+    const struct tl_brdf_frame frame = tl_brdf_frame_make(normal, (vec3s){{stored.x, stored.y, stored.z}},
+                                                          stored.w, side * material->gloss.rotation);
+    return tl_lobe_fit_sum(&gloss, &frame, viewer, HIT_LOBES, lobes);
+}
+
+/* What a place sends by its gloss to where a ray comes from: of the sky, and of what bounces to it. */
+static vec3s gloss_from(const struct tl_bounce *bounce, const struct tl_bounce_request *request,
+                        const struct hit_place *place, vec3s viewer)
+{
+    const tl_surface *surface = request->ranges->surfaces[place->surface];
+    const size_t part = (size_t)(tl_triangle_part(surface, place->triangle) - surface->parts);
+    const struct tl_bounce_material *mean = &bounce->materials[bounce->first_part[place->surface] + part];
+    if (!mean->has_lobes)
+        return (vec3s){{0, 0, 0}};
+    const float grazing = 0.02f; /* the smooth normal may turn away where the triangle does not */
+    const vec3s normal = smooth_normal(surface, place);
+    const float lacking = grazing - glms_vec3_dot(normal, viewer);
+    if (lacking > 0)
+        viewer = glms_vec3_normalize(glms_vec3_muladds(normal, lacking, viewer));
+    struct tl_fitted_lobe lobes[TL_LOBE_FIT_SUM_MAX];
+    const int count = lobes_of(surface, &surface->materials[surface->parts[part].material], mean, place,
+                               normal, viewer, lobes);
+    const struct tl_bounced received = received_at(bounce, place);
+    vec3s light = {{0, 0, 0}};
+    for (int k = 0; k < count; k++) {
+        const struct tl_bounced_lobe lobe = tl_bounced_lobe_of(normal, lobes[k].direction, lobes[k].exponent);
+        const vec3s sky = tl_lobes_fetch(request->lobes, into_environment(request, lobes[k].direction),
+                                         tl_exponent_blend(lobes[k].exponent));
+        vec3s arrives = glms_vec3_scale(sky, tl_bounced_open_share(&received, &lobe));
+        if (request->all)
+            arrives = glms_vec3_add(arrives, tl_bounced_through(&received, &lobe));
+        light = glms_vec3_muladd(lobes[k].weight, arrives, light);
+    }
+    return light;
+}
+
+/* What a ray meets first, as far as it was not shown already. */
+struct met {
+    vec3s sent;
+    float cover;    /* the share of the ray that ends there */
+    float beyond_m; /* where the rest goes on */
+    bool is_known;  /* false: the light that it sends is not known yet */
+};
+
+static struct met meet(struct tl_bounce *bounce, const struct tl_bounce_request *request,
+                       const struct bounce_ray *ray, float from_m)
+{
+    const vec3s origin = ray->origin, direction = ray->direction;
+    struct tl_trace_hit hit = tl_trace_nearest(request->trace, origin, direction, from_m,
+                                               tl_ground_distance(request->ground, origin, direction));
+    struct met met = {.is_known = true, .beyond_m = INFINITY};
+    struct hit_place place = {0};
+    vec3s point;
+    if (hit.surface != TL_TRACE_NONE) {
+        place = (struct hit_place){.surface = hit.surface,
+                                   .triangle = hit.triangle,
+                                   .corners = request->ranges->surfaces[hit.surface]->indices +
+                                              3 * (size_t)hit.triangle,
+                                   .weights = {1 - hit.u - hit.v, hit.u, hit.v},
+                                   .back = hit.back};
+        tl_bounce_want(bounce, request->ranges, place.surface, place.corners, place.back);
+        met.is_known = sent_from(bounce, &place, &met.sent);
+        if (met.is_known)
+            met.sent =
+                glms_vec3_add(met.sent, gloss_from(bounce, request, &place, glms_vec3_negate(direction)));
+        const size_t vertex = bounce->first_vertex[hit.surface] + place.corners[0];
+        met.cover = 1 - bounce->materials[bounce->parts[vertex]].openness;
+        met.beyond_m = hit.distance_m + tl_trace_offset(request->trace);
+    } else if (tl_ground_meet(request->ground, origin, direction, &point, &place.triangle, place.weights)) {
+        place.surface = request->ranges->surface_count - 1;
+        place.corners = request->ground->indices + 3 * (size_t)place.triangle;
+        tl_bounce_want(bounce, request->ranges, place.surface, place.corners, false);
+        met.is_known = sent_from(bounce, &place, &met.sent);
+        met.cover = tl_ground_cover(request->ground, point.x, point.z);
+    }
+    return met;
+}
+
+/* Follows one ray to its end, through open sheets: to a surface, the ground or the sky. The last sheet counts
+ * as closed. */
+static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request *request,
+                       const struct bounce_ray *ray, struct gathered *sums)
+{
+    vec3s sent = {{0, 0, 0}};
+    float share = 1, from_m = 0;
+    for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS && share > 0; layer++) {
+        struct met met = meet(bounce, request, ray, from_m);
+        if (!met.is_known) {
+            count_sky(bounce, request, ray->direction, ray->cosine, 0, sums);
+            return;
+        }
+        if (layer == TL_TRANSPARENCY_LAYERS && met.cover > 0)
+            met.cover = 1;
+        sent = glms_vec3_muladds(met.sent, share * met.cover, sent);
+        share *= 1 - met.cover;
+        from_m = met.beyond_m;
+        if (!(from_m < INFINITY))
+            break;
+    }
+    sums->count++;
+    count_hit(&sums->light, ray, sent);
+    count_sky(bounce, request, ray->direction, ray->cosine, share, sums);
+}
+
+/* ---- What arrives ---- */
+
+/* The bright parts of the sky, which rays over the hemisphere seldom meet. */
+TL_INLINE void see_sky(const struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
+                       vec3s normal, uint32_t vertex, uint32_t round, struct gathered *sums)
+{
+    for (uint32_t k = 0; k < TL_BOUNCE_SKY_RAYS; k++) {
+        vec3s direction;
+        vec2s at = tl_spread(~vertex, round * TL_BOUNCE_SKY_RAYS + k);
+        at.x = ((float)k + at.x) / TL_BOUNCE_SKY_RAYS;
+        if (!tl_bounce_sky_sample(&bounce->sky, at, &direction))
+            return;
+        direction = tl_turn_direction(direction, request->environment_yaw);
+        const float cosine = glms_vec3_dot(normal, direction);
+        if (cosine > 0)
+            count_sky(bounce, request, direction, cosine, open_towards(request, origin, direction), sums);
+    }
+}
+
+static vec3s sunlight(const struct tl_bounce_request *request, vec3s origin, vec3s normal)
+{
+    vec3s light = {{0, 0, 0}};
+    for (int i = 0; i < request->suns->count; i++) {
+        const struct tl_sun *sun = &request->suns->items[i];
+        vec3s direction = tl_turn_direction(sun->direction, request->environment_yaw);
+        float cosine = glms_vec3_dot(normal, direction);
+        if (!(cosine > 0))
+            continue;
+        float open = open_towards(request, origin, direction);
+        light = glms_vec3_add(light, glms_vec3_scale(sun->power, open * cosine / (float)M_PI));
+    }
+    return light;
+}
+
+static vec3s lamplight(const struct tl_bounce_request *request, vec3s origin, vec3s normal)
+{
+    vec3s light = {{0, 0, 0}};
+    for (size_t i = 0; i < request->lamp_count; i++) {
+        const struct tl_lamplight lamp = tl_lamp_at(&request->lamps[i], origin, normal);
+        float cosine = glms_vec3_dot(normal, lamp.direction);
+        if (!(cosine > 0))
+            continue;
+        float open = shown_to(request, origin, lamp.direction, lamp.distance_m) *
+                     tl_ground_visibility_to(request->ground, origin, lamp.direction, lamp.distance_m);
+        light = glms_vec3_add(light, glms_vec3_scale(lamp.irradiance, open * cosine / (float)M_PI));
+    }
+    return light;
+}
+
+/* E / pi of the environment, of which so much is seen. */
+static vec3s skylight(const struct tl_bounce_request *request, vec3s normal, const struct gathered *sums)
+{
+    vec3s light = tl_lobes_fetch(request->lobes, into_environment(request, normal),
+                                 (struct tl_exponent_blend){.index = 0});
+    for (int c = 0; c < 3; c++)
+        light.raw[c] *= sums->all.raw[c] > 0 ? sums->open.raw[c] / sums->all.raw[c] : 1;
+    return light;
+}
+
+/* The mean over rounds, of which `round` are in it. */
+static vec3s mean_with(vec3s mean, vec3s light, uint32_t round)
+{
+    return glms_vec3_lerp(light, mean, (float)round / (float)(round + 1));
+}
+
+TL_CLONES void tl_bounce_trace(struct tl_bounce *bounce, const struct tl_bounce_request *request,
+                               size_t surface, uint32_t vertex, bool back)
+{
+    const tl_surface *from = request->ranges->surfaces[surface];
+    const size_t at = 2 * (bounce->first_vertex[surface] + vertex) + back;
+    const vec3s zero = {{0, 0, 0}};
+    const vec3s normal = glms_vec3_scale(from->normals[vertex], back ? -1.0f : 1.0f);
+    const vec3s tangent =
+        from->tangents
+            ? (vec3s){{from->tangents[vertex].x, from->tangents[vertex].y, from->tangents[vertex].z}}
+            : zero;
+    const vec3s origin =
+        glms_vec3_add(from->positions[vertex], glms_vec3_scale(normal, tl_trace_offset(request->trace)));
+    const uint32_t round = request->moved ? 0 : bounce->rounds[at];
+    struct gathered sums = {0};
+    for (uint32_t k = 0; k < TL_BOUNCE_RAYS; k++) {
+        struct bounce_ray ray = {.origin = origin,
+                                 .direction = spread_direction(
+                                     normal, tangent, tl_spread((uint32_t)at, round * TL_BOUNCE_RAYS + k))};
+        ray.cosine = glms_vec3_dot(normal, ray.direction);
+        follow_ray(bounce, request, &ray, &sums);
+    }
+    see_sky(bounce, request, origin, normal, (uint32_t)at, round, &sums);
+    const vec3s point_lit =
+        glms_vec3_add(sunlight(request, origin, normal), lamplight(request, origin, normal));
+    bounce->sky_lit[at] = mean_with(bounce->sky_lit[at], skylight(request, normal, &sums), round);
+    bounce->point_lit[at] = mean_with(bounce->point_lit[at], point_lit, round);
+    struct tl_bounced now = {0};
+    tl_bounced_add(&now, &bounce->found[at], (float)round / (float)(round + 1));
+    tl_bounced_add(&now, &sums.light, 1 / (fmaxf((float)sums.count, 1) * (float)(round + 1)));
+    bounce->found[at] = now;
+}
