@@ -23,23 +23,24 @@ static vec3s texel_of(const struct tl_bounce_sky *sky, int texel)
 /* Means of the environment's texels, by their solid angles. A cube that is smaller is repeated. */
 static tl_cube reduce(const tl_cube *cube)
 {
-    const int step = cube->size > SIZE ? cube->size / SIZE : 1;
+    const int size = cube->size, step = size > SIZE ? size / SIZE : 1;
+    float *angles = TL_NEW_ARRAY(float, (size_t)size * (size_t)size);
     tl_cube reduced = tl_cube_create(SIZE);
+    tl_cube_solid_angles(size, angles);
     for (int i = 0; i < COUNT; i++) {
-        const int face = i / (SIZE * SIZE), x = i % SIZE * cube->size / SIZE,
-                  y = i / SIZE % SIZE * cube->size / SIZE;
+        const int face = i / (SIZE * SIZE), x = i % SIZE * size / SIZE, y = i / SIZE % SIZE * size / SIZE;
         double sums[3] = {0}, whole = 0;
         for (int j = 0; j < step * step; j++) {
-            const int column = x + j % step, row = y + j / step;
-            const double angle = (double)tl_cube_solid_angle(cube->size, column, row);
+            const int at = (y + j / step) * size + x + j % step;
+            const double angle = (double)angles[at];
             whole += angle;
             for (int c = 0; c < 3; c++)
-                sums[c] +=
-                    angle * (double)cube->texels[3 * ((face * cube->size + row) * cube->size + column) + c];
+                sums[c] += angle * (double)cube->texels[3 * (face * size * size + at) + c];
         }
         for (int c = 0; c < 3; c++)
             reduced.texels[3 * i + c] = (float)(sums[c] / whole);
     }
+    free(angles);
     return reduced;
 }
 
@@ -47,12 +48,14 @@ void tl_bounce_sky_follow(struct tl_bounce_sky *sky, const tl_cube *cube, uint64
 {
     if (sky->cube.texels && sky->revision == revision)
         return;
+    float angles[SIZE * SIZE];
+    tl_cube_solid_angles(SIZE, angles);
     tl_bounce_sky_release(sky);
     *sky = (struct tl_bounce_sky){
         .revision = revision, .cube = reduce(cube), .sums = TL_NEW_ARRAY(double, COUNT + 1)};
     for (int i = 0; i < COUNT; i++)
-        sky->sums[i + 1] = sky->sums[i] + luminance(texel_of(sky, i)) *
-                                              (double)tl_cube_solid_angle(SIZE, i % SIZE, i / SIZE % SIZE);
+        sky->sums[i + 1] =
+            sky->sums[i] + luminance(texel_of(sky, i)) * (double)angles[i % (SIZE * SIZE)];
 }
 
 vec3s tl_bounce_sky_colour(const struct tl_bounce_sky *sky, vec3s direction, float *pdf)
