@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In motion one in SHARES of the vertices that the camera sees is traced in
- * each, and one in HIT_SHARES of those that only rays have hit. At rest every vertex has ROUNDS updates. */
+/* In motion one in SHARES of the vertices that the camera sees is traced in each update, and one in
+ * HIT_SHARES of those that only rays have hit. At rest every vertex has ROUNDS updates. */
 #define SHARES     8
 #define HIT_SHARES 32
 #define ROUNDS     2
@@ -334,7 +334,7 @@ size_t tl_bounce_bytes(const struct tl_bounce *bounce)
     return 2 * bounce->vertex_count *
                (3 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint32_t) / 2 + sizeof(uint16_t) +
                 2 * sizeof(uint32_t) + sizeof(float)) +
-           (bounce->first_vertex ? (bounce->surface_count + 1) * sizeof(size_t) : 0);
+           (bounce->first_vertex ? 2 * (bounce->surface_count + 1) * sizeof(size_t) : 0);
 }
 
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,

@@ -88,7 +88,7 @@ void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *
 void tl_bounce_release(struct tl_bounce *bounce);
 size_t tl_bounce_bytes(const struct tl_bounce *bounce);
 
-/* What bounces to a sample of the last update, between the vertices of its triangle.
+/* What bounces to a sample of the last update, between the vertices of its triangle; terms of the sky are 0.
  */
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                                 const tl_sample *sample);

@@ -24,7 +24,7 @@ static vec3s texel_of(const struct tl_bounce_sky *sky, int texel)
 static tl_cube reduce(const tl_cube *cube)
 {
     const int size = cube->size, step = size > SIZE ? size / SIZE : 1;
-    float *angles = TL_NEW_ARRAY(float, (size_t)size * (size_t)size);
+    float *angles = TL_NEW_ARRAY(float, (size_t)size *(size_t)size);
     tl_cube reduced = tl_cube_create(SIZE);
     tl_cube_solid_angles(size, angles);
     for (int i = 0; i < COUNT; i++) {
@@ -54,8 +54,7 @@ void tl_bounce_sky_follow(struct tl_bounce_sky *sky, const tl_cube *cube, uint64
     *sky = (struct tl_bounce_sky){
         .revision = revision, .cube = reduce(cube), .sums = TL_NEW_ARRAY(double, COUNT + 1)};
     for (int i = 0; i < COUNT; i++)
-        sky->sums[i + 1] =
-            sky->sums[i] + luminance(texel_of(sky, i)) * (double)angles[i % (SIZE * SIZE)];
+        sky->sums[i + 1] = sky->sums[i] + luminance(texel_of(sky, i)) * (double)angles[i % (SIZE * SIZE)];
 }
 
 vec3s tl_bounce_sky_colour(const struct tl_bounce_sky *sky, vec3s direction, float *pdf)
