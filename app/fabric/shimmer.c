@@ -1,6 +1,7 @@
 #include "app/fabric/shimmer.h"
 
 #include "assets/builtin/cusick.h"
+#include "config/colour/luminance.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -11,11 +12,6 @@
 #define STEPS     5
 #define PITCH_DEG 55
 #define FOV_DEG   1.79 /* so that a pixel is as wide as of 1080 rows under 30 degrees */
-
-static double luminance(const float *rgb)
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
 
 /* The k-th camera: moved over the cloth by parts of a pixel whose ratio is irrational, so that no step
  * repeats one before. */
@@ -39,7 +35,8 @@ static bool add_frame(struct tl_headless *headless, int finer, double factor, do
         for (int x = 0; x < image.width; x++)
             sums[y / finer * SIDE + x / finer] +=
                 factor *
-                luminance(tl_image_floats(&image) + 4 * ((size_t)y * (size_t)image.width + (size_t)x)) /
+                (double)tl_luminance(tl_image_floats(&image) +
+                                     4 * ((size_t)y * (size_t)image.width + (size_t)x)) /
                 (finer * finer);
     tl_image_release(&image);
     return true;

@@ -1,5 +1,6 @@
 #include "render/bounce/bounce_internal.h"
 
+#include "config/colour/luminance.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/env/exponent.h"
 #include "render/trace/spread.h"
@@ -76,7 +77,7 @@ static void count_sky(const struct tl_bounce *bounce, const struct tl_bounce_req
     sky = glms_vec3_divs(sky, TL_BOUNCE_RAYS * spread_pdf(cosine) + TL_BOUNCE_SKY_RAYS * pdf);
     sums->all = glms_vec3_muladds(sky, cosine, sums->all);
     sums->open = glms_vec3_muladds(sky, cosine * share, sums->open);
-    const float luminance = 0.2126f * sky.x + 0.7152f * sky.y + 0.0722f * sky.z;
+    const float luminance = tl_luminance(sky.raw);
     tl_bounced_basis(direction, basis);
     for (int i = 0; i < TL_BOUNCED_TERMS; i++) {
         sums->light.terms[TL_BOUNCED_ALL_SKY][i] += basis[i] * luminance;

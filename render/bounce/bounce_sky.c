@@ -1,5 +1,6 @@
 #include "render/bounce/bounce_internal.h"
 
+#include "config/colour/luminance.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -8,11 +9,6 @@
 /* Texels along a face: 2.8 degrees each. */
 #define SIZE  32
 #define COUNT (6 * SIZE * SIZE)
-
-static double luminance(vec3s colour)
-{
-    return 0.2126 * (double)colour.x + 0.7152 * (double)colour.y + 0.0722 * (double)colour.z;
-}
 
 static vec3s texel_of(const struct tl_bounce_sky *sky, int texel)
 {
@@ -54,13 +50,14 @@ void tl_bounce_sky_follow(struct tl_bounce_sky *sky, const tl_cube *cube, uint64
     *sky = (struct tl_bounce_sky){
         .revision = revision, .cube = reduce(cube), .sums = TL_NEW_ARRAY(double, COUNT + 1)};
     for (int i = 0; i < COUNT; i++)
-        sky->sums[i + 1] = sky->sums[i] + luminance(texel_of(sky, i)) * (double)angles[i % (SIZE * SIZE)];
+        sky->sums[i + 1] =
+            sky->sums[i] + (double)tl_luminance(sky->cube.texels + 3 * i) * (double)angles[i % (SIZE * SIZE)];
 }
 
 vec3s tl_bounce_sky_colour(const struct tl_bounce_sky *sky, vec3s direction, float *pdf)
 {
     const vec3s colour = texel_of(sky, tl_cube_texel(SIZE, direction));
-    *pdf = sky->sums[COUNT] > 0 ? (float)(luminance(colour) / sky->sums[COUNT]) : 0;
+    *pdf = sky->sums[COUNT] > 0 ? (float)((double)tl_luminance(colour.raw) / sky->sums[COUNT]) : 0;
     return colour;
 }
 

@@ -128,11 +128,17 @@ TL_INLINE vec3s tl_bounced_through(const struct tl_bounced *bounced, const struc
     return light;
 }
 
-/* The share of the sky's light through a lobe that is seen. */
+/* The share of the sky's light through a lobe that is seen. Where the terms ring to nothing, the mean over
+ * the hemisphere; of a black sky all. */
 TL_INLINE float tl_bounced_open_share(const struct tl_bounced *bounced, const struct tl_bounced_lobe *lobe)
 {
-    const float open = tl_bounced_sum(bounced->terms[TL_BOUNCED_OPEN_SKY], lobe),
-                all = tl_bounced_sum(bounced->terms[TL_BOUNCED_ALL_SKY], lobe);
+    const float *open_sky = bounced->terms[TL_BOUNCED_OPEN_SKY],
+                *all_sky = bounced->terms[TL_BOUNCED_ALL_SKY];
+    float open = tl_bounced_sum(open_sky, lobe), all = tl_bounced_sum(all_sky, lobe);
+    if (!(all > 0)) {
+        open = open_sky[0];
+        all = all_sky[0];
+    }
     return lobe->above * (open < all ? open / all : 1);
 }
 

@@ -1,5 +1,6 @@
 #include "render/env/emitters.h"
 
+#include "config/colour/luminance.h"
 #include "config/memory.h"
 
 #include <assert.h>
@@ -30,11 +31,6 @@ static uint32_t compact_bits(uint32_t code)
 }
 
 static const vec3s no_direction = {{NAN, NAN, NAN}};
-
-static float luminance(vec3s colour)
-{
-    return 0.2126f * colour.x + 0.7152f * colour.y + 0.0722f * colour.z;
-}
 
 /* The inverse: inserts a zero bit between all bits, for those of another number. */
 static uint32_t spread_bits(uint32_t number)
@@ -73,7 +69,7 @@ static tl_emitter emitter_of(const tl_cube *cube, const float *solid_angles, uin
     for (size_t c = 0; c < 3; c++)
         emitter.power.raw[c] =
             solid_angles[y * size + x] * tl_emitter_radiance(cube->texels[3 * (size_t)texel + c]);
-    emitter.weight = luminance(emitter.power);
+    emitter.weight = tl_luminance(emitter.power.raw);
     emitter.variance =
         solid_angles[y * size + x] / 12; /* a square of area A has the variance A / 12 along each axis */
     return emitter;

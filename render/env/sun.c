@@ -1,5 +1,6 @@
 #include "render/env/sun.h"
 
+#include "config/colour/luminance.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -46,11 +47,6 @@ struct sun_points {
     struct sun_point *items;
     size_t count, capacity;
 };
-
-static float luminance_of(const float *colour)
-{
-    return 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2];
-}
 
 static double solid_angle(const struct search *search, int texel)
 {
@@ -213,7 +209,7 @@ static struct sun_points collect_points(const struct search *search, vec3s peak,
             tl_image_floats(&environment->image) + 3 * (size_t)y * (size_t)environment->image.width;
         for (int x = 0; x < environment->image.width; x++) {
             double density;
-            float excess = luminance_of(row + 3 * (size_t)x) - around;
+            float excess = tl_luminance(row + 3 * (size_t)x) - around;
             if (excess > 0 &&
                 glms_vec3_distance(environment_direction(environment, x + 0.5, y + 0.5, &density), peak) <
                     reach)
@@ -319,7 +315,7 @@ static void remove_patch(struct search *search, vec3s around)
         float *colour = search->cube->texels + 3 * (size_t)search->patch[k];
         for (int c = 0; c < 3; c++)
             colour[c] = fminf(colour[c], around.raw[c]);
-        search->luminance[search->patch[k]] = luminance_of(colour);
+        search->luminance[search->patch[k]] = tl_luminance(colour);
     }
 }
 
@@ -331,12 +327,11 @@ static bool extract_sun(struct search *search, int peak, float depth, struct tl_
     double power[3];
     vec3s around = surroundings(search);
     sum_power(search, around, power);
-    double luminance = 0.2126 * power[0] + 0.7152 * power[1] + 0.0722 * power[2];
-    if (luminance < SHARE_MIN * search->total)
+    struct tl_sun sun = {.power = {{(float)power[0], (float)power[1], (float)power[2]}}};
+    if ((double)tl_luminance(sun.power.raw) < SHARE_MIN * search->total)
         return false;
     struct sun_points points =
-        collect_points(search, tl_cube_texel_direction(search->cube->size, peak), luminance_of(around.raw));
-    struct tl_sun sun = {.power = {{(float)power[0], (float)power[1], (float)power[2]}}};
+        collect_points(search, tl_cube_texel_direction(search->cube->size, peak), tl_luminance(around.raw));
     if (points.count > 0) {
         sun.direction = centroid(points.items, points.count);
         sun.radius = (float)radius_of(&points, sun.direction);
@@ -362,7 +357,7 @@ static struct search search_begin(tl_cube *cube, const tl_environment *environme
                             .patch = TL_NEW_ARRAY(int, count)};
     tl_cube_solid_angles(cube->size, search.solid_angles);
     for (size_t i = 0; i < count; i++) {
-        search.luminance[i] = luminance_of(cube->texels + 3 * i);
+        search.luminance[i] = tl_luminance(cube->texels + 3 * i);
         search.total += (double)search.luminance[i] * solid_angle(&search, (int)i);
     }
     return search;

@@ -2,6 +2,7 @@
 
 #include "render/metrics/flip.h"
 
+#include "config/colour/luminance.h"
 #include "config/colour/srgb.h"
 #include "config/memory.h"
 
@@ -105,7 +106,7 @@ static bool find_exposures(const struct plain *reference, struct tl_comparison *
     for (size_t i = 0; i < reference->count; i++) {
         const float *rgb = reference->rgb + 3 * i;
         if (reference->covered[i])
-            luminances[count++] = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+            luminances[count++] = tl_luminance(rgb);
     }
     bool found = tl_flip_exposures(luminances, count, &out->exposure_start, &out->exposure_stop);
     free(luminances);

@@ -1,3 +1,4 @@
+#include "config/colour/luminance.h"
 #include "config/memory.h"
 #include "render/pem/regions_internal.h"
 
@@ -25,10 +26,9 @@ static struct cube_face face_create(const tl_cube *cube, int index)
                              .solid_angle = TL_NEW_ARRAY(double, texel_count)};
     const float *texel = cube->texels + 3 * (size_t)index * texel_count;
     for (size_t i = 0; i < texel_count; i++, texel += 3) {
-        double luminance = 0.2126 * (double)texel[0] + 0.7152 * (double)texel[1] + 0.0722 * (double)texel[2];
         face.solid_angle[i] =
             (double)tl_cube_solid_angle(cube->size, (int)i % cube->size, (int)i / cube->size);
-        face.importance[i] = luminance * face.solid_angle[i];
+        face.importance[i] = (double)tl_luminance(texel) * face.solid_angle[i];
     }
     return face;
 }

@@ -1,5 +1,6 @@
 #include "render/pem/regions_internal.h"
 
+#include "config/colour/luminance.h"
 #include "config/memory.h"
 
 #include <math.h>
@@ -32,9 +33,7 @@ void tl_regions_begin(const tl_cube *cube, struct tl_regions *out)
     tl_cube_solid_angles(cube->size, out->solid_angles);
     for (size_t i = 0; i < texel_count(out); i++) {
         const float *colour = cube->texels + 3 * i;
-        double luminance =
-            0.2126 * (double)colour[0] + 0.7152 * (double)colour[1] + 0.0722 * (double)colour[2];
-        out->importance[i] = (float)(luminance * (double)solid_angle_of(out, (uint32_t)i));
+        out->importance[i] = tl_luminance(colour) * solid_angle_of(out, (uint32_t)i);
     }
 }
 

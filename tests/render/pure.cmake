@@ -6,6 +6,7 @@ foreach(name
     pem/chain
     metrics/compare
     bounce/bounced
+    bounce/bounce_sky
     light/compose
     light/kept_light
     env/convert

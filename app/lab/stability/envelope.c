@@ -125,8 +125,10 @@ static struct subject make_subject(const struct tl_envelope_case *tested)
     fabric->bend_weft = fabric->bend_warp = fabric->damping = 0;
     subject.params.solver = tested->solver;
     subject.params.strain_limit = 0; /* because limiting changes no energy */
-    /* The solvers alone: contact moves single vertices, which the stiffest threads turn into energy. */
+    /* The solvers alone: contact moves single vertices, which the stiffest threads turn into energy, and
+     * cloth that a cage moves has the cage's rest and energy. */
     subject.params.self_contact = false;
+    subject.params.caged_above = tested->caged_above;
     subject.params.dt = tested->dt;
     subject.params.frame_rate = fmin(1 / tested->dt, 1000);
     return subject;

@@ -50,6 +50,7 @@ struct tl_envelope_case {
     const struct tl_envelope_size *size;
     int solver;
     double stiffness, dt, mass_ratio, height_m;
+    int caged_above; /* 0: the solver alone */
 };
 struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested);
 

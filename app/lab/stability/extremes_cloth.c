@@ -444,11 +444,10 @@ static enum tl_outcome time_denormals(int solver, struct tl_cell_error *error, t
     return ratio <= SLOWER ? tl_outcome_of(error->share, 0, TL_STATED_SHARE) : TL_OUTCOME_SILENT;
 }
 
-static enum tl_outcome hang_tube(int solver, double height_m, struct tl_cell_error *error, tl_error *found)
+static enum tl_outcome hang_tube(const struct tl_envelope_case *tested, struct tl_cell_error *error,
+                                 tl_error *found)
 {
-    static const struct tl_envelope_size size = {"100", 5, 19, true, true};
-    const struct tl_envelope_case tested = {&size, solver, 1e3, 1.0 / 60, 1, height_m};
-    struct tl_envelope_cell cell = tl_envelope_run(&tested);
+    struct tl_envelope_cell cell = tl_envelope_run(tested);
     *found = cell.message;
     *error = cell.error;
     if (!found->message[0])
@@ -456,14 +455,40 @@ static enum tl_outcome hang_tube(int solver, double height_m, struct tl_cell_err
     return cell.outcome;
 }
 
+static enum tl_outcome hang_sized(int solver, double height_m, struct tl_cell_error *error, tl_error *found)
+{
+    static const struct tl_envelope_size size = {"100", 5, 19, true, true};
+    return hang_tube(&(struct tl_envelope_case){.size = &size,
+                                                .solver = solver,
+                                                .stiffness = 1e3,
+                                                .dt = 1.0 / 60,
+                                                .mass_ratio = 1,
+                                                .height_m = height_m},
+                     error, found);
+}
+
 static enum tl_outcome hang_millimetre(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    return hang_tube(solver, 1e-3, error, found);
+    return hang_sized(solver, 1e-3, error, found);
 }
 
 static enum tl_outcome hang_hundred_metres(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    return hang_tube(solver, 100, error, found);
+    return hang_sized(solver, 100, error, found);
+}
+
+/* The reference solver has no cage. */
+static enum tl_outcome hang_by_cage(int solver, struct tl_cell_error *error, tl_error *found)
+{
+    static const struct tl_envelope_size size = {"4k", 40, 99, false, true};
+    return hang_tube(&(struct tl_envelope_case){.size = &size,
+                                                .solver = solver,
+                                                .stiffness = 1e3,
+                                                .dt = 1.0 / 60,
+                                                .mass_ratio = 1,
+                                                .height_m = 1,
+                                                .caged_above = 3500},
+                     error, found);
 }
 
 /* clang-format off: a table reads best as one. */
@@ -511,6 +536,7 @@ static const struct extreme extremes[] = {
     {"denormal velocities", FINITE, NULL, NULL, time_denormals},
     {"a garment of 1 mm", FINITE, NULL, NULL, hang_millimetre},
     {"a garment of 100 m", FINITE, NULL, NULL, hang_hundred_metres},
+    {"moved by a cage", FINITE, NULL, NULL, hang_by_cage},
 };
 /* clang-format on */
 const size_t tl_cloth_extreme_count = TL_COUNT(extremes);

@@ -94,8 +94,12 @@ static void known_cells(void **state)
         {TL_CLOTH_REFERENCE, TL_OUTCOME_REFUSED, 1e9, 1e-1, 1e6, 1},
     };
     for (size_t i = 0; i < TL_COUNT(cells); i++) {
-        const struct tl_envelope_case tested = {&size,       cells[i].solver, cells[i].stiffness,
-                                                cells[i].dt, cells[i].ratio,  cells[i].height_m};
+        const struct tl_envelope_case tested = {.size = &size,
+                                                .solver = cells[i].solver,
+                                                .stiffness = cells[i].stiffness,
+                                                .dt = cells[i].dt,
+                                                .mass_ratio = cells[i].ratio,
+                                                .height_m = cells[i].height_m};
         struct tl_envelope_cell cell = tl_envelope_run(&tested);
         if (cell.outcome != cells[i].outcome)
             print_error("cell %zu: %s\n", i, cell.message.message);
@@ -126,7 +130,12 @@ static void needles_stay_in_place(void **state)
 {
     (void)state;
     static const struct tl_envelope_size size = {"1000", 10, 99, true, false};
-    const struct tl_envelope_case tested = {&size, TL_CLOTH_PREVIEW, 1e4, 1e-5, 1e3, 1};
+    const struct tl_envelope_case tested = {.size = &size,
+                                            .solver = TL_CLOTH_PREVIEW,
+                                            .stiffness = 1e4,
+                                            .dt = 1e-5,
+                                            .mass_ratio = 1e3,
+                                            .height_m = 1};
     struct tl_envelope_cell cell = tl_envelope_run(&tested);
     printf("needles: %s, strays by %.3g of what is exact %s\n", tl_outcome_names[cell.outcome], cell.strayed,
            cell.message.message);

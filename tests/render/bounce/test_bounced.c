@@ -136,9 +136,27 @@ static void test_dark(void **state)
     assert_true(tl_bounced_through(&dark, &lobe).x == 0);
 }
 
+/* A sky of one bright spot on the left, which is hidden or seen, and a lobe to the right, where its terms
+ * ring below 0. */
+static void test_spot(void **state)
+{
+    (void)state;
+    const vec3s normal = {{0, 0, 1}}, left = {{-0.96f, 0, 0.28f}};
+    const struct tl_bounced_lobe lobe = tl_bounced_lobe_of(normal, (vec3s){{0.28f, 0, 0.96f}}, 20);
+    for (int seen = 0; seen < 2; seen++) {
+        struct tl_bounced spot = {0};
+        tl_bounced_basis(left, spot.terms[TL_BOUNCED_ALL_SKY]);
+        if (seen)
+            tl_bounced_basis(left, spot.terms[TL_BOUNCED_OPEN_SKY]);
+        assert_true(tl_bounced_sum(spot.terms[TL_BOUNCED_ALL_SKY], &lobe) == 0);
+        assert_near((double)tl_bounced_open_share(&spot, &lobe), seen * (double)lobe.above, 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_orthonormal), cmocka_unit_test(test_even),
-                                       cmocka_unit_test(test_from_below), cmocka_unit_test(test_dark)};
+                                       cmocka_unit_test(test_from_below), cmocka_unit_test(test_dark),
+                                       cmocka_unit_test(test_spot)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
