@@ -236,8 +236,8 @@ static void choose_in_motion(tl_quality_governor *governor, const struct tl_budg
     struct tl_quality_choice *choice = &governor->choice;
     struct tl_quality before = choice->levels;
     enum tl_governed how = tl_governor_choose(&governor->state, budget, governor->budget_ms);
-    choice->change_ms = budget->change(budget->context, governor->state.levels);
-    choice->predicted_ms = budget->cost(budget->context, governor->state.levels) + choice->change_ms;
+    choice->lasting_ms = budget->cost(budget->context, governor->state.levels);
+    choice->predicted_ms = choice->lasting_ms + budget->change(budget->context, governor->state.levels);
     choice->min_ms = min_of(budget, governor->budget_ms, choice->predicted_ms);
     memcpy(choice->levels.of, governor->state.levels, sizeof choice->levels.of);
     if (how == TL_GOVERNED_KEPT)
@@ -254,9 +254,9 @@ static void choose_whole(tl_quality_governor *governor, const struct tl_budget *
     uint8_t best[TL_BUDGET_CONTROLS_MAX] = {0};
     bool is_hurried = governor->budget_ms > 0 && governor->rested < REST_FRAMES;
     best[TL_CONTROL_RATIO] = is_hurried && budget->level_counts[TL_CONTROL_RATIO] > 1;
-    governor->choice.change_ms = budget->change(budget->context, best);
+    governor->choice.lasting_ms = budget->cost(budget->context, best);
     governor->choice.predicted_ms = governor->choice.min_ms =
-        budget->cost(budget->context, best) + governor->choice.change_ms;
+        governor->choice.lasting_ms + budget->change(budget->context, best);
     governor->choice.levels = levels_of(best);
 }
 
@@ -283,7 +283,7 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
     governor->choice.error = tl_quality_error(&governor->choice.levels, &full);
     governor->load = tl_renderer_load(renderer);
     if (governor->cloth.runs == 0)
-        governor->choice.predicted_ms = (double)NAN;
+        governor->choice.predicted_ms = governor->choice.lasting_ms = (double)NAN;
     return governor->choice;
 }
 

@@ -19,7 +19,7 @@
 struct tl_quality_choice {
     struct tl_quality levels;
     double predicted_ms; /* cloth and drawing; NaN before the first frame */
-    double change_ms;    /* the part of it that the change to these levels costs once */
+    double lasting_ms;   /* ... without what the change to these levels costs once; NaN before, too */
     double min_ms; /* of the cheapest levels that may be chosen, where predicted_ms exceeds the budget; else
                       predicted_ms */
     double error;  /* estimated; what the levels add to that of the settings (quality.h) */

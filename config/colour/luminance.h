@@ -2,9 +2,7 @@
 #ifndef TOILE_CONFIG_COLOUR_LUMINANCE_H
 #define TOILE_CONFIG_COLOUR_LUMINANCE_H
 
-#include "config/simd.h"
-
-TL_INLINE float tl_luminance(const float rgb[3])
+static inline float tl_luminance(const float rgb[3])
 {
     return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
 }

@@ -225,7 +225,7 @@ static bool check_frame(struct check_run *run, int number, tl_error *error)
                                  .frame = &frame,
                                  .settings = &settings,
                                  .is_sampled = number % run->params->every == 0,
-                                 .predicted_ms = run->choice.predicted_ms - run->choice.change_ms,
+                                 .predicted_ms = run->choice.lasting_ms,
                                  .budget_ms = run->params->budget_ms,
                                  .min_ms = run->choice.min_ms,
                                  .is_reduced = run->choice.error > 0};

@@ -261,6 +261,8 @@ static void rest_gives_everything_back(void **state)
     for (int i = 0; i < 6; i++) {
         frame.camera.eye.x += 0.01f;
         choice = draw_frame(device, governor, &frame, 50);
+        assert_true(i == 0 ? isnan(choice.lasting_ms) : choice.lasting_ms <= choice.min_ms); /* to the bit */
+        assert_true(i == 0 || choice.lasting_ms <= choice.predicted_ms);
     }
     assert_true(is_reduced(&choice.levels));
     assert_true(isfinite(choice.predicted_ms));
