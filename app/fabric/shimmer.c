@@ -35,8 +35,8 @@ static bool add_frame(struct tl_headless *headless, int finer, double factor, do
         for (int x = 0; x < image.width; x++)
             sums[y / finer * SIDE + x / finer] +=
                 factor *
-                (double)tl_luminance(tl_image_floats(&image) +
-                                     4 * ((size_t)y * (size_t)image.width + (size_t)x)) /
+                tl_luminance_exact(tl_image_floats(&image) +
+                                   4 * ((size_t)y * (size_t)image.width + (size_t)x)) /
                 (finer * finer);
     tl_image_release(&image);
     return true;

@@ -7,4 +7,10 @@ static inline float tl_luminance(const float rgb[3])
     return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
 }
 
+/* In double precision, for sums over a whole environment: regions are cut where halves of them tie. */
+static inline double tl_luminance_exact(const float rgb[3])
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+}
+
 #endif

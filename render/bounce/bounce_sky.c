@@ -51,13 +51,13 @@ void tl_bounce_sky_follow(struct tl_bounce_sky *sky, const tl_cube *cube, uint64
         .revision = revision, .cube = reduce(cube), .sums = TL_NEW_ARRAY(double, COUNT + 1)};
     for (int i = 0; i < COUNT; i++)
         sky->sums[i + 1] =
-            sky->sums[i] + (double)tl_luminance(sky->cube.texels + 3 * i) * (double)angles[i % (SIZE * SIZE)];
+            sky->sums[i] + tl_luminance_exact(sky->cube.texels + 3 * i) * (double)angles[i % (SIZE * SIZE)];
 }
 
 vec3s tl_bounce_sky_colour(const struct tl_bounce_sky *sky, vec3s direction, float *pdf)
 {
     const vec3s colour = texel_of(sky, tl_cube_texel(SIZE, direction));
-    *pdf = sky->sums[COUNT] > 0 ? (float)((double)tl_luminance(colour.raw) / sky->sums[COUNT]) : 0;
+    *pdf = sky->sums[COUNT] > 0 ? (float)(tl_luminance_exact(colour.raw) / sky->sums[COUNT]) : 0;
     return colour;
 }
 

@@ -28,7 +28,7 @@ static struct cube_face face_create(const tl_cube *cube, int index)
     for (size_t i = 0; i < texel_count; i++, texel += 3) {
         face.solid_angle[i] =
             (double)tl_cube_solid_angle(cube->size, (int)i % cube->size, (int)i / cube->size);
-        face.importance[i] = (double)tl_luminance(texel) * face.solid_angle[i];
+        face.importance[i] = tl_luminance_exact(texel) * face.solid_angle[i];
     }
     return face;
 }

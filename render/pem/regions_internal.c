@@ -33,7 +33,7 @@ void tl_regions_begin(const tl_cube *cube, struct tl_regions *out)
     tl_cube_solid_angles(cube->size, out->solid_angles);
     for (size_t i = 0; i < texel_count(out); i++) {
         const float *colour = cube->texels + 3 * i;
-        out->importance[i] = tl_luminance(colour) * solid_angle_of(out, (uint32_t)i);
+        out->importance[i] = (float)(tl_luminance_exact(colour) * (double)solid_angle_of(out, (uint32_t)i));
     }
 }
 
