@@ -11,14 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE     13
-#define FRAMES   30
-#define BALL_M   0.3     /* radius */
-#define BALL_TOP (-0.01) /* the level sheet lies at 0 */
-#define DEEP_M   1e-3
-#define REST_MS  0.01 /* m/s */
-#define SLOWER   10.0
-#define HEADROOM 0.01 /* of the weight falling by a metre */
+#define CAGED_ABOVE 3500 /* vertices: between those of the two tubes that hang */
+#define SIDE        13
+#define FRAMES      30
+#define BALL_M      0.3     /* radius */
+#define BALL_TOP    (-0.01) /* the level sheet lies at 0 */
+#define DEEP_M      1e-3
+#define REST_MS     0.01 /* m/s */
+#define SLOWER      10.0
+#define HEADROOM    0.01 /* of the weight falling by a metre */
 
 struct trial {
     tl_garment garment;
@@ -444,10 +445,18 @@ static enum tl_outcome time_denormals(int solver, struct tl_cell_error *error, t
     return ratio <= SLOWER ? tl_outcome_of(error->share, 0, TL_STATED_SHARE) : TL_OUTCOME_SILENT;
 }
 
-static enum tl_outcome hang_tube(const struct tl_envelope_case *tested, struct tl_cell_error *error,
-                                 tl_error *found)
+/* Tubes as the envelope's, under their own weight. */
+static enum tl_outcome hang_tube(const struct tl_envelope_size *size, int solver, double height_m,
+                                 struct tl_cell_error *error, tl_error *found)
 {
-    struct tl_envelope_cell cell = tl_envelope_run(tested);
+    const struct tl_envelope_case tested = {.size = size,
+                                            .solver = solver,
+                                            .stiffness = 1e3,
+                                            .dt = 1.0 / 60,
+                                            .mass_ratio = 1,
+                                            .height_m = height_m,
+                                            .caged_above = CAGED_ABOVE};
+    struct tl_envelope_cell cell = tl_envelope_run(&tested);
     *found = cell.message;
     *error = cell.error;
     if (!found->message[0])
@@ -455,40 +464,23 @@ static enum tl_outcome hang_tube(const struct tl_envelope_case *tested, struct t
     return cell.outcome;
 }
 
-static enum tl_outcome hang_sized(int solver, double height_m, struct tl_cell_error *error, tl_error *found)
-{
-    static const struct tl_envelope_size size = {"100", 5, 19, true, true};
-    return hang_tube(&(struct tl_envelope_case){.size = &size,
-                                                .solver = solver,
-                                                .stiffness = 1e3,
-                                                .dt = 1.0 / 60,
-                                                .mass_ratio = 1,
-                                                .height_m = height_m},
-                     error, found);
-}
+static const struct tl_envelope_size small_tube = {"100", 5, 19, true, true},
+                                     caged_tube = {"4k", 40, 99, false, true};
 
 static enum tl_outcome hang_millimetre(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    return hang_sized(solver, 1e-3, error, found);
+    return hang_tube(&small_tube, solver, 1e-3, error, found);
 }
 
 static enum tl_outcome hang_hundred_metres(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    return hang_sized(solver, 100, error, found);
+    return hang_tube(&small_tube, solver, 100, error, found);
 }
 
 /* The reference solver has no cage. */
 static enum tl_outcome hang_by_cage(int solver, struct tl_cell_error *error, tl_error *found)
 {
-    static const struct tl_envelope_size size = {"4k", 40, 99, false, true};
-    return hang_tube(&(struct tl_envelope_case){.size = &size,
-                                                .solver = solver,
-                                                .stiffness = 1e3,
-                                                .dt = 1.0 / 60,
-                                                .mass_ratio = 1,
-                                                .height_m = 1,
-                                                .caged_above = 3500},
-                     error, found);
+    return hang_tube(&caged_tube, solver, 1, error, found);
 }
 
 /* clang-format off: a table reads best as one. */
