@@ -7,7 +7,7 @@ static inline float tl_luminance(const float rgb[3])
     return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
 }
 
-/* In double precision, for sums over a whole environment: regions are cut where halves of them tie. */
+/* In double precision, for sums over an environment: a change of the last place cuts other regions. */
 static inline double tl_luminance_exact(const float rgb[3])
 {
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];

@@ -465,7 +465,7 @@ static enum tl_outcome hang_tube(const struct tl_envelope_size *size, int solver
 }
 
 static const struct tl_envelope_size small_tube = {"100", 5, 19, true, true},
-                                     caged_tube = {"4k", 40, 99, false, true};
+                                     caged_tube = {"10k", 50, 199, false, true};
 
 static enum tl_outcome hang_millimetre(int solver, struct tl_cell_error *error, tl_error *found)
 {
@@ -477,7 +477,7 @@ static enum tl_outcome hang_hundred_metres(int solver, struct tl_cell_error *err
     return hang_tube(&small_tube, solver, 100, error, found);
 }
 
-/* The reference solver has no cage. */
+/* The reference solver has no cage. Of 4,000 vertices none is made. */
 static enum tl_outcome hang_by_cage(int solver, struct tl_cell_error *error, tl_error *found)
 {
     return hang_tube(&caged_tube, solver, 1, error, found);
@@ -528,7 +528,7 @@ static const struct extreme extremes[] = {
     {"denormal velocities", FINITE, NULL, NULL, time_denormals},
     {"a garment of 1 mm", FINITE, NULL, NULL, hang_millimetre},
     {"a garment of 100 m", FINITE, NULL, NULL, hang_hundred_metres},
-    {"moved by a cage", FINITE, NULL, NULL, hang_by_cage},
+    {"moved by a cage (not reference)", FINITE, NULL, NULL, hang_by_cage},
 };
 /* clang-format on */
 const size_t tl_cloth_extreme_count = TL_COUNT(extremes);

@@ -136,8 +136,8 @@ static void test_dark(void **state)
     assert_true(tl_bounced_through(&dark, &lobe).x == 0);
 }
 
-/* A sky of one bright spot on the left, which is hidden or seen, and a lobe to the right, where its terms
- * ring below 0. */
+/* A sky of one bright spot on the left, which is hidden or seen, and a lobe across it, where its terms ring
+ * below 0. */
 static void test_spot(void **state)
 {
     (void)state;
