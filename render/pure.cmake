@@ -4,6 +4,7 @@ add_library(toile_light STATIC
   bounce/bounce_materials.c
   bounce/bounce_rays.c
   bounce/bounce_sky.c
+  bounce/bounce_smooth.c
   brdf/angles.c
   brdf/brdf.c
   brdf/coat.c

@@ -464,7 +464,9 @@ static void set_inputs(const tl_renderer *renderer, struct tl_resources *resourc
     resources->ratio_at = light->ratio_at;
     resources->facts = tl_frame_facts(frame, settings);
     const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
-    resources->moment = (struct tl_moment){frame->still, renderer->moving & moves_shadows};
+    resources->moment = (struct tl_moment){.still = frame->still,
+                                           .moves_shadows = renderer->moving & moves_shadows,
+                                           .moves_lamps = renderer->moving & TL_BIT(TL_INPUT_LAMPS)};
     resources->points_are_done = renderer->rest.is_done;
 }
 
@@ -491,7 +493,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     release_unused(resources, &used.detail);
     const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
     bool fine = run_plan(renderer, &input, &renderer->plan, error);
-    renderer->rest.is_done = resources->points_are_done;
+    const bool waits = resources->facts & TL_BIT(TL_SCENE_BOUNCE) && !resources->bounce.is_done;
+    renderer->rest.is_done = resources->points_are_done && !waits;
     return fine;
 }
 

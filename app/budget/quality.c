@@ -13,15 +13,22 @@ static const float scales[] = {1,      0.841f, 0.707f, 0.595f, 0.5f,   0.42f, 0.
 
 static const int level_counts[TL_CONTROL_COUNT] = {2, 3, 4, 3, TL_COUNT(scales)};
 
-#define REGIONS_MIN 24
-#define REFRESH_MIN 2
-#define RELIEF_MIN  8
-#define SAMPLES_MIN 0.25f /* along the side of a pixel: with fewer a garment is not recognisable */
+#define REGIONS_MIN       24
+#define REFRESH_MIN       2
+#define RELIEF_MIN        8
+#define BOUNCE_SHARES_MAX 32    /* a second and more until all that is seen was renewed */
+#define SAMPLES_MIN       0.25f /* along the side of a pixel: with fewer a garment is not recognisable */
 
 static int halved(int value, int times, int minimum)
 {
     int half = value >> times;
     return half > minimum ? half : minimum < value ? minimum : value;
+}
+
+static int doubled(int value, int times, int maximum)
+{
+    int more = value << times;
+    return more < maximum ? more : maximum > value ? maximum : value;
 }
 
 static int all_refreshed(const struct tl_light_params *light)
@@ -39,8 +46,11 @@ struct tl_render_settings tl_quality_at(const struct tl_quality *levels,
     float *scale = &applied.image.scale;
     if (levels->of[TL_CONTROL_RATIO] > 0)
         light->ratio_at = TL_RATIO_AT_VERTICES;
-    if (levels->of[TL_CONTROL_REFRESH] > 0)
+    if (levels->of[TL_CONTROL_REFRESH] > 0) {
         light->refresh = halved(all_refreshed(light), levels->of[TL_CONTROL_REFRESH], REFRESH_MIN);
+        light->bounce_shares =
+            doubled(light->bounce_shares, levels->of[TL_CONTROL_REFRESH], BOUNCE_SHARES_MAX);
+    }
     light->regions = halved(light->regions, levels->of[TL_CONTROL_REGIONS], REGIONS_MIN);
     *steps = halved(*steps, levels->of[TL_CONTROL_RELIEF], RELIEF_MIN);
     assert(levels->of[TL_CONTROL_SCALE] < TL_COUNT(scales));
@@ -96,7 +106,8 @@ static bool is_used(enum tl_control control, const struct tl_render_settings *fu
 static bool is_same(const struct tl_render_settings *a, const struct tl_render_settings *b)
 {
     return a->light.regions == b->light.regions && a->light.refresh == b->light.refresh &&
-           a->light.ratio_at == b->light.ratio_at && a->detail.steps == b->detail.steps &&
+           a->light.bounce_shares == b->light.bounce_shares && a->light.ratio_at == b->light.ratio_at &&
+           a->detail.steps == b->detail.steps &&
            a->image.scale == b->image.scale; // NOLINT: whether it was changed at all
 }
 

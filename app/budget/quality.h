@@ -14,7 +14,7 @@
 /* In the order in which the loss is least noticed. */
 enum tl_control {
     TL_CONTROL_RATIO,   /* light.ratio_at: the ratio of visible to exact light at samples, or at vertices */
-    TL_CONTROL_REFRESH, /* light.refresh: visibility renewed a frame, of rays or of shadow maps */
+    TL_CONTROL_REFRESH, /* light.refresh, light.bounce_shares: visibility and bounced light renewed a frame */
     TL_CONTROL_REGIONS, /* light.regions: how much of the tree of regions is used */
     TL_CONTROL_RELIEF,  /* detail.steps, where relief is marched */
     TL_CONTROL_SCALE,   /* image.scale: samples of the image, last of all */

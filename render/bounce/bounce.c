@@ -3,13 +3,12 @@
 #include "config/memory.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-/* In motion one in SHARES of the vertices that the camera sees is traced in each update, and one in
- * HIT_SHARES of those that only rays have hit. At rest every vertex has ROUNDS updates. */
-#define SHARES     8
-#define HIT_SHARES 32
-#define ROUNDS     2
+/* Of vertices that only rays have hit so many times fewer are traced in motion than of those that are seen.
+ */
+#define HIT_SHARES 4
+/* At rest one in so many vertices is traced in each update. */
+#define REST_SHARES 8
 /* Updates of a new scene before its first: until what rays hit is known itself. */
 #define FIRST_UPDATES 4
 /* A vertex that was neither seen nor hit for so many updates is traced no more. */
@@ -28,10 +27,10 @@ static void free_vertices(struct tl_bounce *bounce)
     free(bounce->sky_lit);
     free(bounce->point_lit);
     free(bounce->sent);
-    free(bounce->rounds);
+    free(bounce->states);
     free(bounce->wanted);
     free(bounce->seen);
-    free(bounce->weights);
+    tl_bounce_rings_release(&bounce->rings);
 }
 
 static void note_parts(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
@@ -70,10 +69,10 @@ static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_reque
     bounce->sky_lit = TL_NEW_ARRAY(vec3s, count);
     bounce->point_lit = TL_NEW_ARRAY(vec3s, count);
     bounce->sent = TL_NEW_ARRAY(vec3s, count);
-    bounce->rounds = TL_NEW_ARRAY(uint16_t, count);
+    bounce->states = TL_NEW_ARRAY(uint8_t, count);
     bounce->wanted = TL_NEW_ARRAY(uint32_t, count);
     bounce->seen = TL_NEW_ARRAY(uint32_t, count);
-    bounce->weights = TL_NEW_ARRAY(float, count);
+    bounce->rings = tl_bounce_rings_make(bounce, ranges);
     bounce->update = 0;
     note_parts(bounce, ranges);
 }
@@ -139,11 +138,12 @@ static bool is_due(const struct tl_bounce *bounce, const struct tl_bounce_reques
 {
     if (bounce->wanted[at] == 0 || bounce->update - bounce->wanted[at] > FORGET)
         return false;
-    if (bounce->rounds[at] == 0)
+    if (bounce->states[at] == TL_BOUNCE_UNKNOWN)
         return true;
     bool is_hit_only = bounce->seen[at] == 0 || bounce->update - bounce->seen[at] > FORGET;
-    uint32_t shares = request->moved && is_hit_only ? HIT_SHARES : SHARES;
-    return (request->moved || bounce->rounds[at] < ROUNDS) &&
+    uint32_t shares =
+        request->moved ? (uint32_t)request->shares * (is_hit_only ? HIT_SHARES : 1) : REST_SHARES;
+    return (request->moved || bounce->states[at] < TL_BOUNCE_LAST) &&
            (request->at_once || (at / 2 + bounce->update) % shares == 0);
 }
 
@@ -155,108 +155,15 @@ static size_t list_due(struct tl_bounce *bounce, const struct tl_bounce_request 
     for (size_t s = 0; s < bounce->surface_count; s++)
         for (size_t v = 0; v < bounce->first_vertex[s + 1] - bounce->first_vertex[s]; v++)
             for (int back = 0; back < 2; back++, at++) {
-                if (request->moved && bounce->rounds[at] > 1)
-                    bounce->rounds[at] = 1;
-                bool lacks = bounce->wanted[at] > 0 && bounce->rounds[at] < ROUNDS &&
+                if (request->moved && bounce->states[at] > TL_BOUNCE_OLD)
+                    bounce->states[at] = TL_BOUNCE_OLD;
+                bool lacks = bounce->wanted[at] > 0 && bounce->states[at] < TL_BOUNCE_LAST &&
                              bounce->update - bounce->wanted[at] <= FORGET;
                 bounce->is_done = bounce->is_done && !lacks;
                 if (is_due(bounce, request, at))
                     due[count++] = (struct probe){(uint32_t)s, (uint32_t)v, back};
             }
     return count;
-}
-
-/* Adds a corner's light to that of another. */
-static void lend(struct tl_bounce *bounce, size_t to, size_t from)
-{
-    if (bounce->rounds[from] == 0)
-        return;
-    tl_bounced_add(&bounce->shown[to], &bounce->found[from], 1);
-    bounce->weights[to] += 1;
-}
-
-/* Lends three vertices to each other; in motion only to what the camera sees. */
-static void lend_three(struct tl_bounce *bounce, const uint32_t vertices[3], size_t first, bool seen_only)
-{
-    for (int k = 0; k < 3; k++) {
-        const size_t a = first + 2 * (size_t)vertices[k], b = first + 2 * (size_t)vertices[(k + 1) % 3];
-        if (a == b || (seen_only && bounce->seen[a] != bounce->update && bounce->seen[b] != bounce->update))
-            continue;
-        lend(bounce, a, b);
-        lend(bounce, b, a);
-    }
-}
-
-/* Neighbours are the corners of a triangle, or the vertices that one takes its light from. */
-static void lend_all(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, size_t side,
-                     bool seen_only)
-{
-    for (size_t at = side; at < 2 * bounce->vertex_count; at += 2)
-        lend(bounce, at, at);
-    for (size_t s = 0; s < bounce->surface_count; s++) {
-        const tl_surface *surface = ranges->surfaces[s];
-        const struct tl_light_mesh *mesh = surface->light_mesh;
-        const size_t first = 2 * bounce->first_vertex[s] + side;
-        for (size_t v = 0; mesh && v < surface->vertex_count; v++)
-            if (mesh->from[v][0] != v)
-                lend_three(bounce, mesh->from[v], first, seen_only);
-        for (size_t i = 0; !mesh && i < surface->index_count; i += 3)
-            lend_three(bounce, surface->indices + i, first, seen_only);
-    }
-}
-
-/* Means of each vertex and its neighbours: bounced light varies slowly, the noise of sixteen rays does not.
- */
-static void smooth(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges, bool seen_only)
-{
-    const size_t count = 2 * bounce->vertex_count;
-    memset(bounce->shown, 0, count * sizeof *bounce->shown);
-    memset(bounce->weights, 0, count * sizeof *bounce->weights);
-#pragma omp parallel for
-    for (size_t side = 0; side < 2; side++)
-        lend_all(bounce, ranges, side, seen_only);
-#pragma omp parallel for
-    for (size_t at = 0; at < count; at++) {
-        struct tl_bounced mean = {0};
-        if (bounce->weights[at] > 0)
-            tl_bounced_add(&mean, &bounce->shown[at], 1 / bounce->weights[at]);
-        bounce->shown[at] = mean;
-    }
-}
-
-/* A vertex without light of its own has the mean of those from which it takes it, as far as theirs is known.
- */
-static void take_mean(struct tl_bounce *bounce, const struct tl_light_mesh *mesh, size_t vertex, size_t first)
-{
-    const size_t at = first + 2 * vertex;
-    float known = 0;
-    bounce->rounds[at] = 0;
-    bounce->shown[at] = (struct tl_bounced){0};
-    bounce->sent[at] = (vec3s){{0, 0, 0}};
-    for (int k = 0; k < 3; k++) {
-        const size_t from = first + 2 * (size_t)mesh->from[vertex][k];
-        known += bounce->rounds[from] > 0 ? mesh->shares[vertex][k] : 0;
-    }
-    for (int k = 0; k < 3 && known > 0; k++) {
-        const size_t from = first + 2 * (size_t)mesh->from[vertex][k];
-        const float share = bounce->rounds[from] > 0 ? mesh->shares[vertex][k] / known : 0;
-        bounce->rounds[at] =
-            bounce->rounds[at] > bounce->rounds[from] ? bounce->rounds[at] : bounce->rounds[from];
-        tl_bounced_add(&bounce->shown[at], &bounce->shown[from], share);
-        bounce->sent[at] = glms_vec3_muladds(bounce->sent[from], share, bounce->sent[at]);
-    }
-}
-
-static void fill_light_meshes(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
-{
-    for (size_t s = 0; s < bounce->surface_count; s++) {
-        const struct tl_light_mesh *mesh = ranges->surfaces[s]->light_mesh;
-        const size_t count = mesh ? ranges->surfaces[s]->vertex_count : 0;
-#pragma omp parallel for schedule(static)
-        for (size_t v = 0; v < count; v++)
-            for (size_t side = 0; side < 2 && mesh->from[v][0] != v; side++)
-                take_mean(bounce, mesh, v, 2 * bounce->first_vertex[s] + side);
-    }
 }
 
 /* What a side sends to all sides: of the sky and of what bounces to it as its albedo says, of suns and lamps
@@ -280,6 +187,14 @@ static vec3s transmitted(const struct tl_bounce *bounce, const struct tl_bounce_
     return glms_vec3_mul(material->transmission, light);
 }
 
+static enum tl_bounce_state state_after(const struct tl_bounce_request *request, enum tl_bounce_state state)
+{
+    const enum tl_bounce_state least = request->at_once ? TL_BOUNCE_FIRST : TL_BOUNCE_OLD;
+    if (request->moved)
+        return least;
+    return state >= least ? state + 1 : request->at_once ? TL_BOUNCE_FIRST : TL_BOUNCE_MIXED;
+}
+
 /* The light that vertices send on from now on. */
 static void send(struct tl_bounce *bounce, const struct tl_bounce_request *request, const struct probe *due,
                  size_t count)
@@ -288,7 +203,7 @@ static void send(struct tl_bounce *bounce, const struct tl_bounce_request *reque
         const size_t vertex = bounce->first_vertex[due[i].surface] + due[i].vertex;
         const size_t at = 2 * vertex + due[i].back, other = 2 * vertex + !due[i].back;
         const struct tl_bounce_material *material = &bounce->materials[bounce->parts[vertex]];
-        bounce->rounds[at] = (uint16_t)(request->moved ? 1 : bounce->rounds[at] + 1);
+        bounce->states[at] = (uint8_t)state_after(request, bounce->states[at]);
         bounce->sent[at] = glms_vec3_add(reflected(bounce, request, material, at),
                                          transmitted(bounce, request, material, other));
     }
@@ -304,10 +219,8 @@ static void update(struct tl_bounce *bounce, const struct tl_bounce_request *req
     for (size_t i = 0; i < count; i++)
         tl_bounce_trace(bounce, request, due[i].surface, due[i].vertex, due[i].back);
     send(bounce, request, due, count);
-    if (count > 0) {
-        smooth(bounce, request->ranges, request->moved);
-        fill_light_meshes(bounce, request->ranges);
-    }
+    if (count > 0)
+        tl_bounce_smooth(bounce, request->ranges, request->moved);
     free(due);
 }
 
@@ -332,8 +245,9 @@ void tl_bounce_release(struct tl_bounce *bounce)
 size_t tl_bounce_bytes(const struct tl_bounce *bounce)
 {
     return 2 * bounce->vertex_count *
-               (3 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint32_t) / 2 + sizeof(uint16_t) +
-                2 * sizeof(uint32_t) + sizeof(float)) +
+               (3 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint32_t) / 2 + sizeof(uint8_t) +
+                2 * sizeof(uint32_t)) +
+           tl_bounce_rings_bytes(bounce) +
            (bounce->first_vertex ? 2 * (bounce->surface_count + 1) * sizeof(size_t) : 0);
 }
 

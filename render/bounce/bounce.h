@@ -14,8 +14,8 @@
  *
  * Only vertices are traced that the camera sees or that a ray has hit: wanted ones. In motion a share of them
  * is traced in each update, a smaller one of those that are hit only: what sixteen rays meet is a mean, and
- * may lag. Directions are fixed to the surface, so that nothing flickers; at rest further directions are
- * averaged in until all have had their rounds. Rays pass open cloth as they do in the reference, and a
+ * may lag. Directions are fixed to the surface, so that nothing flickers; at rest what was found in motion is
+ * replaced, and further directions are averaged in. Rays pass open cloth as they do in the reference, and a
  * surface that transmits sends on what its other side received. A vertex that parts of different materials
  * share has the material of the last of them.
  *
@@ -40,7 +40,19 @@ struct tl_bounce_sky {
     double *sums; /* [texels + 1] of luminance, texel by texel */
 };
 
+/* The neighbours of each vertex: corners of its triangles, or vertices that one takes its light from with it.
+ */
+struct tl_bounce_rings {
+    size_t *first;    /* [vertex_count + 1] */
+    uint32_t *counts; /* [vertex_count] */
+    uint32_t *neighbours;
+};
+
 struct tl_bounce_material; /* bounce_internal.h */
+
+/* How a vertex's light was found: in motion, or at rest by what vertices sent in motion, both to be replaced;
+ * in a first round of rays at rest, or in all. */
+enum tl_bounce_state { TL_BOUNCE_UNKNOWN, TL_BOUNCE_OLD, TL_BOUNCE_MIXED, TL_BOUNCE_FIRST, TL_BOUNCE_LAST };
 
 struct tl_bounce {
     size_t surface_count, vertex_count;
@@ -50,16 +62,16 @@ struct tl_bounce {
     uint64_t shapes_revision;
     uint32_t update;          /* counts updates, from 1 */
     struct tl_bounced *found; /* [2 vertex_count]: front, back: mean of the vertex's own rays */
-    struct tl_bounced *shown; /* ...: mean with its neighbours', in motion of what is seen */
+    struct tl_bounced *shown; /* ...: mean with its neighbours'; in motion only where it is looked at */
     vec3s *sky_lit;           /* ...: E / pi of the environment */
     vec3s *point_lit;         /* ...: E / pi of suns and lamps */
     vec3s *sent;              /* ...: radiance to all sides, as of the last update */
-    uint16_t *rounds;         /* ...: in `found`; 0: nothing is known */
+    uint8_t *states;          /* ...: enum tl_bounce_state */
     uint32_t *wanted;         /* ...: update in which it was last seen or hit; 0: never */
     uint32_t *seen;           /* ...: update in which the camera last saw it; 0: never */
-    float *weights;           /* ...: of the neighbours, while `shown` is made */
+    struct tl_bounce_rings rings;
     struct tl_bounce_sky sky;
-    bool is_done; /* all wanted vertices have had their rounds */
+    bool is_done; /* at rest, and all wanted vertices have had their rounds */
 };
 
 struct tl_bounce_request {
@@ -80,6 +92,7 @@ struct tl_bounce_request {
     bool all;                         /* hits send on what bounced to them, too */
     bool moved;                       /* something else than the camera changed since the last update */
     bool at_once;                     /* every wanted vertex is traced, however long that takes */
+    int shares; /* in motion one in so many of the vertices that are seen is traced in an update */
 };
 
 /* Traces what is due. The first update of new shapes takes several at once, until what rays hit is known

@@ -85,18 +85,23 @@ static void count_sky(const struct tl_bounce *bounce, const struct tl_bounce_req
     }
 }
 
+static void add_to_packet(struct tl_ray_packet *packet, vec3s origin, vec3s direction)
+{
+    const int i = packet->count++;
+    packet->origin_x[i] = origin.x;
+    packet->origin_y[i] = origin.y;
+    packet->origin_z[i] = origin.z;
+    packet->direction_x[i] = direction.x;
+    packet->direction_y[i] = direction.y;
+    packet->direction_z[i] = direction.z;
+}
+
 /* The share of a ray's light that open sheets let through; 0 behind anything else. */
 static float shown_to(const struct tl_bounce_request *request, vec3s origin, vec3s direction, float to_m)
 {
-    const struct tl_ray_packet packet = {.count = 1,
-                                         .origin_x = {origin.x},
-                                         .origin_y = {origin.y},
-                                         .origin_z = {origin.z},
-                                         .direction_x = {direction.x},
-                                         .direction_y = {direction.y},
-                                         .direction_z = {direction.z},
-                                         .to_m = to_m};
+    struct tl_ray_packet packet = {.to_m = to_m};
     float shown[16];
+    add_to_packet(&packet, origin, direction);
     tl_trace_transmittance_packet(request->trace, &packet, shown);
     return shown[0];
 }
@@ -130,7 +135,7 @@ static bool sent_from(const struct tl_bounce *bounce, const struct hit_place *pl
     *sent = (vec3s){{0, 0, 0}};
     for (int k = 0; k < 3; k++) {
         const size_t at = corner_of(bounce, place, k);
-        if (bounce->rounds[at] == 0)
+        if (bounce->states[at] == TL_BOUNCE_UNKNOWN)
             continue;
         known += place->weights[k];
         *sent = glms_vec3_muladds(bounce->sent[at], place->weights[k], *sent);
@@ -148,7 +153,7 @@ static struct tl_bounced received_at(const struct tl_bounce *bounce, const struc
     struct tl_bounced sum = {0}, mean = {0};
     for (int k = 0; k < 3; k++) {
         const size_t at = corner_of(bounce, place, k);
-        if (bounce->rounds[at] > 0) {
+        if (bounce->states[at] != TL_BOUNCE_UNKNOWN) {
             known += place->weights[k];
             tl_bounced_add(&sum, &bounce->shown[at], place->weights[k]);
         }
@@ -294,6 +299,9 @@ static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request 
 TL_INLINE void see_sky(const struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
                        vec3s normal, uint32_t vertex, uint32_t round, struct gathered *sums)
 {
+    struct tl_ray_packet packet = {.to_m = INFINITY};
+    vec3s directions[TL_BOUNCE_SKY_RAYS];
+    float shown[16];
     for (uint32_t k = 0; k < TL_BOUNCE_SKY_RAYS; k++) {
         vec3s direction;
         vec2s at = tl_spread(~vertex, round * TL_BOUNCE_SKY_RAYS + k);
@@ -301,10 +309,15 @@ TL_INLINE void see_sky(const struct tl_bounce *bounce, const struct tl_bounce_re
         if (!tl_bounce_sky_sample(&bounce->sky, at, &direction))
             return;
         direction = tl_turn_direction(direction, request->environment_yaw);
-        const float cosine = glms_vec3_dot(normal, direction);
-        if (cosine > 0)
-            count_sky(bounce, request, direction, cosine, open_towards(request, origin, direction), sums);
+        if (glms_vec3_dot(normal, direction) > 0)
+            add_to_packet(&packet, origin, directions[packet.count] = direction);
     }
+    if (packet.count == 0)
+        return;
+    tl_trace_transmittance_packet(request->trace, &packet, shown);
+    for (int i = 0; i < packet.count; i++)
+        count_sky(bounce, request, directions[i], glms_vec3_dot(normal, directions[i]),
+                  shown[i] * tl_ground_visibility(request->ground, origin, directions[i]), sums);
 }
 
 static vec3s sunlight(const struct tl_bounce_request *request, vec3s origin, vec3s normal)
@@ -366,7 +379,8 @@ TL_CLONES void tl_bounce_trace(struct tl_bounce *bounce, const struct tl_bounce_
             : zero;
     const vec3s origin =
         glms_vec3_add(from->positions[vertex], glms_vec3_scale(normal, tl_trace_offset(request->trace)));
-    const uint32_t round = request->moved ? 0 : bounce->rounds[at];
+    const bool adds = !request->moved && bounce->states[at] >= TL_BOUNCE_FIRST;
+    const uint32_t round = adds ? bounce->states[at] - TL_BOUNCE_FIRST + 1 : 0;
     struct gathered sums = {0};
     for (uint32_t k = 0; k < TL_BOUNCE_RAYS; k++) {
         struct bounce_ray ray = {.origin = origin,

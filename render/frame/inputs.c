@@ -220,6 +220,7 @@ struct tl_light_params tl_input_light(const struct tl_light_params *light)
                                     .composition = light->composition,
                                     .reflect_scene = light->reflect_scene,
                                     .bounce = light->bounce,
+                                    .bounce_shares = light->bounce_shares,
                                     .fan = light->fan,
                                     .depth_bias_m = light->depth_bias_m,
                                     .min_variance = light->min_variance,

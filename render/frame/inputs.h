@@ -95,6 +95,7 @@ struct tl_envmap_input {
 struct tl_moment {
     bool still;         /* as tl_frame.still */
     bool moves_shadows; /* surfaces or the environment's yaw differ from the last frame */
+    bool moves_lamps;   /* lamps do */
 };
 
 /* How many frames have been drawn since something changed: anything, and anything but the camera. */

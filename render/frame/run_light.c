@@ -92,8 +92,9 @@ bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
                                         .seen = job->ids->seen,
                                         .seen_count = job->ids->seen_count,
                                         .all = job->light_options->bounce == TL_BOUNCE_ALL,
-                                        .moved = *job->scene_round == 0,
-                                        .at_once = job->moment->still};
+                                        .moved = *job->scene_round == 0 || job->moment->moves_lamps,
+                                        .at_once = job->moment->still,
+                                        .shares = job->light_options->bounce_shares};
     tl_bounce_update(job->bounce, &request);
     request.moved = false;
     for (int i = 0; i < ROUNDS_MOST && request.at_once && !job->bounce->is_done && !tl_interrupted(); i++)

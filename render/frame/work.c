@@ -184,7 +184,8 @@ struct tl_work tl_points_work(const void *context)
 struct tl_work tl_bounce_work(const void *context)
 {
     const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{3e-5 * sizes->triangles, 5e-4 * sizes->points}};
+    const double shares = sizes->settings->light.bounce_shares;
+    return (struct tl_work){{3e-5 * sizes->triangles, 4e-3 * sizes->points / shares}};
 }
 
 struct tl_work tl_compose_work(const void *context)

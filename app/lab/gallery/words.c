@@ -153,8 +153,9 @@ char *tl_words_motion(const struct tl_gallery_entry *entry)
            exact = entry->figures.exact_change;
     char *what = experiment->motion == TL_MOTION_CAMERA ? tl_format("The camera turns by %g degrees", step)
                  : experiment->motion == TL_MOTION_LAMP ? tl_format("The lamp turns by %g degrees", step)
-                 : experiment->motion == TL_MOTION_SKY  ? tl_format("The environment plays %g frames", step)
-                                                        : tl_format("The sheet falls for %g frames", step);
+                 : experiment->motion == TL_MOTION_SKY
+                     ? tl_format("The environment plays %g frame%s", step, step > 1 ? "s" : "")
+                     : tl_format("The sheet falls for %g frames", step);
     char *text = tl_format("%s from picture to picture: pixels change by %.3g levels of 255 in the mean, %s "
                            "the %s picture's, which change by %.3g.",
                            what, change,

@@ -37,10 +37,13 @@ static void levels_change_their_own_setting(void **state)
     struct tl_settings full = full_settings(), s;
     full.light.regions = 192;
     full.light.refresh = 24;
+    full.light.bounce_shares = 8;
     full.detail.steps = 32;
     s = at(TL_CONTROL_REFRESH, 2, &full);
     assert_int_equal(s.light.refresh, 6);
+    assert_int_equal(s.light.bounce_shares, 32);
     s.light.refresh = full.light.refresh;
+    s.light.bounce_shares = full.light.bounce_shares;
     assert_true(tl_settings_equal(&full, &s));
 
     const int regions[] = {192, 96, 48, 24};
@@ -48,6 +51,7 @@ static void levels_change_their_own_setting(void **state)
         s = at(TL_CONTROL_REGIONS, level, &full);
         assert_int_equal(s.light.regions, regions[level]);
         assert_int_equal(s.light.refresh, 24);
+        assert_int_equal(s.light.bounce_shares, 8);
     }
     s.light.regions = full.light.regions;
     assert_true(tl_settings_equal(&full, &s));
@@ -76,12 +80,14 @@ static void levels_end_somewhere(void **state)
     struct tl_settings full = full_settings();
     full.light.regions = 12;
     full.light.refresh = 1;
+    full.light.bounce_shares = 64;
     full.detail.steps = 4;
     full.image.scale = 0.12f;
     for (int control = 0; control < TL_CONTROL_COUNT; control++) {
         struct tl_settings s = at((enum tl_control)control, 2, &full);
         assert_int_equal(s.light.regions, 12);
         assert_int_equal(s.light.refresh, 1);
+        assert_int_equal(s.light.bounce_shares, 64);
         assert_int_equal(s.detail.steps, 4);
         assert_true(s.image.scale >= 0.1f && s.image.scale <= 0.12f);
     }

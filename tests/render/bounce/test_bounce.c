@@ -172,6 +172,64 @@ static void test_lamp(void **state)
     check(*state, scene, "lamp", TL_BOUNCE_ALL, false, MATT);
 }
 
+static double mean_in(struct test_device *device, struct test_scene *scene, int bounce)
+{
+    scene->settings.light.bounce = bounce;
+    tl_image image = test_scene_draw(scene, device->renderer);
+    const double mean = mean_of(&image, 0);
+    tl_image_release(&image);
+    return mean;
+}
+
+/* Draws frames of a lamp that flickers by a thousandth, as nothing rests while something changes; returns the
+ * bounced light of the last. */
+static double flicker(struct test_device *device, struct test_scene *scene, int frames, double without)
+{
+    double mean = 0;
+    for (int frame = 0; frame < frames; frame++) {
+        const float change = frame % 2 ? 1 / 1.001f : 1.001f;
+        scene->lamps[0].irradiance = glms_vec3_scale(scene->lamps[0].irradiance, change);
+        mean = mean_in(device, scene, TL_BOUNCE_ALL);
+    }
+    return mean - without;
+}
+
+/* A lamp becomes twice as bright: bounced light follows after as many frames as it takes until all that is
+ * seen was renewed, and what that sees; where that is all in each, after five. Then it is as bright as
+ * before, and once the image rests so is what bounces, but for second bounces: a tenth of what lamps had more
+ * (three fourths when rounds at rest were averaged with what was found in motion). */
+static void test_lag(void **state)
+{
+    struct test_device *device = *state;
+    const int shares[] = {1, 8, 32};
+    for (size_t i = 0; i < TL_COUNT(shares); i++) {
+        struct test_scene *scene = fold_scene(test_black, make_matt);
+        vec3s *irradiance = &scene->lamps[0].irradiance;
+        scene->lamps[0] = test_lamp_at((vec3s){{0.2f, 0.9f, 0.1f}}, 2);
+        scene->frame.lamp_count = 1;
+        const double lamp = mean_in(device, scene, TL_BOUNCE_OFF);
+        const double bounced = mean_in(device, scene, TL_BOUNCE_ALL) - lamp;
+        scene->frame.still = false;
+        scene->settings.light.rounds = 1;
+        scene->settings.light.bounce_shares = shares[i];
+        *irradiance = glms_vec3_scale(*irradiance, 2);
+        const double soon = flicker(device, scene, 5, 2 * lamp) / bounced - 1;
+        const double late = flicker(device, scene, 8 * shares[i], 2 * lamp) / bounced - 1;
+        *irradiance = glms_vec3_scale(*irradiance, 0.5f);
+        double rest = mean_in(device, scene, TL_BOUNCE_ALL);
+        while (!tl_renderer_is_at_rest(device->renderer))
+            rest = mean_in(device, scene, TL_BOUNCE_ALL);
+        rest = (rest - lamp) / bounced - 1;
+        printf("one in %2d: %.2f of the change after five frames, %.2f late; at rest %+.3f of what was\n",
+               shares[i], soon, late, rest);
+        assert_true(shares[i] == 1 ? soon > 0.7 : soon < 5.0 / shares[i]);
+        assert_true(fabs(late - 1) < 0.1);
+        assert_true(fabs(rest) < 0.15);
+        test_scene_close(scene);
+        free(scene);
+    }
+}
+
 /* A lamp below the ground lights nothing, and nothing sends its light on. */
 static void test_buried_lamp(void **state)
 {
@@ -209,7 +267,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sky),   cmocka_unit_test(test_sheer),       cmocka_unit_test(test_shining_wall),
         cmocka_unit_test(test_lamp),  cmocka_unit_test(test_buried_lamp), cmocka_unit_test(test_ground),
-        cmocka_unit_test(test_split),
+        cmocka_unit_test(test_split), cmocka_unit_test(test_lag),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
