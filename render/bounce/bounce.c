@@ -219,7 +219,7 @@ static void update(struct tl_bounce *bounce, const struct tl_bounce_request *req
     for (size_t i = 0; i < count; i++)
         tl_bounce_trace(bounce, request, due[i].surface, due[i].vertex, due[i].back);
     send(bounce, request, due, count);
-    if (count > 0)
+    if (count > 0 || request->moved) /* in motion others are seen */
         tl_bounce_smooth(bounce, request->ranges, request->moved);
     free(due);
 }
