@@ -23,6 +23,7 @@ struct tl_bounce_material {
 /* Reads the materials of all parts, in the order of surfaces and parts; the result is the caller's. */
 struct tl_bounce_material *tl_bounce_materials_read(const struct tl_triangle_ranges *ranges);
 
+/* Lists the neighbours of all vertices; the result is the caller's: tl_bounce_rings_release. */
 struct tl_bounce_rings tl_bounce_rings_make(const struct tl_bounce *bounce,
                                             const struct tl_triangle_ranges *ranges);
 void tl_bounce_rings_release(struct tl_bounce_rings *rings);

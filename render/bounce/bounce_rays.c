@@ -309,8 +309,10 @@ TL_INLINE void see_sky(const struct tl_bounce *bounce, const struct tl_bounce_re
         if (!tl_bounce_sky_sample(&bounce->sky, at, &direction))
             return;
         direction = tl_turn_direction(direction, request->environment_yaw);
-        if (glms_vec3_dot(normal, direction) > 0)
-            add_to_packet(&packet, origin, directions[packet.count] = direction);
+        if (!(glms_vec3_dot(normal, direction) > 0))
+            continue;
+        directions[packet.count] = direction;
+        add_to_packet(&packet, origin, direction);
     }
     if (packet.count == 0)
         return;

@@ -87,7 +87,8 @@ size_t tl_bounce_rings_bytes(const struct tl_bounce *bounce)
 
 /* ---- Means ---- */
 
-/* At rest all are: the camera may turn to them. */
+/* Whether the camera, or a ray that metal mirrors, looks at a side. At rest all count: the camera may turn.
+ */
 static bool is_looked_at(const struct tl_bounce *bounce, size_t at, bool in_motion)
 {
     return !in_motion || bounce->seen[at] == bounce->update ||
