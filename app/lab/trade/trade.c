@@ -12,9 +12,6 @@
 #include <string.h>
 
 #define QUICK_ROUNDS 4
-/* What a technique keeps from frame to frame is renewed within so many (light.bounce_shares). A governor also
- * learns what its levels cost: it takes all frames before those that are measured. */
-#define REMEMBERED_FRAMES 32
 
 struct run {
     const struct tl_experiment *experiment;
@@ -22,8 +19,6 @@ struct run {
     struct tl_headless *headless;
     struct tl_trade *trade;
     int warm, measured; /* frames before the first measured one, and those measured; the last one rests */
-    struct tl_progress progress;
-    size_t finished, count; /* techniques, over all appearances */
     bool quick;
     tl_recording *recording;
     tl_environment sky;
@@ -135,20 +130,6 @@ static bool draw(struct run *run, struct entry *entry, int number, struct tl_tak
 #define FRAMES_MAX     16
 #define REST_DRAWS_MAX 1024
 
-static int first_frame(const struct run *run, const struct entry *entry)
-{
-    if (entry->governor)
-        return 0;
-    const int remembered = tl_variant_run_has_history(&entry->variant) ? REMEMBERED_FRAMES : 1;
-    return run->warm > remembered ? run->warm - remembered : 0;
-}
-
-/* `share` is that of the technique that is measured now. */
-static void show_progress(struct run *run, double share)
-{
-    tl_progress_update(&run->progress, (double)run->finished + share, (double)run->count);
-}
-
 static bool measure_motion(struct run *run, struct entry *entry, tl_error *error)
 {
     int warm = run->warm, count = run->measured;
@@ -156,16 +137,13 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
     struct tl_taken taken = {0};
     struct tl_measured_error first = {0}, last;
     struct tl_variant_run *variant = &entry->variant;
-    const int begin = first_frame(run, entry);
-    for (int number = begin; number < warm; number++) {
+    bool remembers = entry->governor || tl_variant_run_has_history(variant);
+    for (int number = remembers ? 0 : warm - 1; number < warm; number++)
         if (!draw(run, entry, number, &taken, error))
             return false;
-        show_progress(run, (double)(number + 1 - begin) / (warm + count - begin));
-    }
     for (int i = 0; i < count; i++) {
         if (!draw(run, entry, warm + i, &taken, error))
             return false;
-        show_progress(run, (double)(warm + i + 1 - begin) / (warm + count - begin));
         cpu_ms[i] = taken.cpu_ms;
         wall_ms[i] = taken.wall_ms;
         if (i == 0 && !compare(run, variant, warm, &first, error))
@@ -360,9 +338,9 @@ static bool measure_all(struct run *run, tl_error *error)
     const struct tl_experiment *experiment = run->experiment;
     char label[64];
     snprintf(label, sizeof label, "measuring the trade of %s", experiment->name);
+    struct tl_progress progress = tl_progress_begin(label);
+    size_t count = tl_experiment_count(experiment, TL_OUTPUT_PAGE), measured = 0;
     int appearances = run->quick ? 1 : experiment->appearance_count;
-    run->count = tl_experiment_count(experiment, TL_OUTPUT_PAGE) * (size_t)appearances;
-    run->progress = tl_progress_begin(label);
     bool done = true;
     for (int i = 0; done && i < appearances; i++) {
         done = begin_appearance(run, first_appearance(experiment, run->quick) + i, error);
@@ -370,11 +348,10 @@ static bool measure_all(struct run *run, tl_error *error)
         while (done && (technique = tl_experiment_next(experiment, TL_OUTPUT_PAGE, technique))) {
             if (run->quick ? technique->quick : i == 0 || !technique->once)
                 done = measure_technique(run, technique, error);
-            run->finished++;
-            show_progress(run, 0);
+            tl_progress_update(&progress, (double)++measured, (double)(count * (size_t)appearances));
         }
     }
-    tl_progress_end(&run->progress);
+    tl_progress_end(&progress);
     return done;
 }
 
