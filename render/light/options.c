@@ -58,7 +58,7 @@ static const struct tl_option light_rows[] = {
                    "rays: where the ratio of visible to exact light is computed: samples: at every sample; "
                    "vertices: at vertices, interpolated: several times faster, slightly softer"),
     TL_OPTION_BOOL(light_params, jitter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS | TL_AFFECTS_RAYS,
-                   "directions vary within their regions from frame to frame"),
+                   "maps: directions vary within their regions from frame to frame (rays: always)"),
     TL_OPTION_INT(light_params, rounds, TL_AFFECTS_APPEARANCE, 1, 4096, "frames",
                   "jittered frames averaged while nothing moves; larger: more exact still images"),
     TL_OPTION_INT(light_params, refresh, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, TL_REGIONS_MAX,
@@ -119,6 +119,7 @@ struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light)
 
 bool tl_light_averages(const struct tl_light_params *light)
 {
-    return light->jitter && light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED &&
+    return (light->jitter || light->visibility == TL_VISIBILITY_RAYS) &&
+           light->method != TL_METHOD_REFERENCE && light->method != TL_METHOD_UNSHADOWED &&
            light->method != TL_METHOD_MAPS;
 }

@@ -40,7 +40,7 @@ struct tl_light_params { /* table "light" */
     int visibility;      /* enum tl_visibility: the back-end */
     int composition;     /* enum tl_composition; rays: ratio only */
     int ratio_at;        /* enum tl_ratio_at, of rays */
-    bool jitter;         /* directions vary inside their regions from frame to frame */
+    bool jitter;         /* maps: directions vary inside their regions from frame to frame; rays: always */
     int rounds;          /* at rest, so many jittered frames are averaged */
     int refresh;         /* rays: regions traced again for each point and moving frame; 0: all */
     int rays;            /* rays: directions a region and refresh */

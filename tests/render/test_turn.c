@@ -52,14 +52,12 @@ static void use_none(struct test_scene *scene)
 static void use_samples(struct test_scene *scene)
 {
     test_scene_use_rays(scene, 24, 1);
-    scene->settings.light.jitter = false;
 }
 
 /* In motion a few regions are traced again, the most important ones. */
 static void use_few(struct test_scene *scene)
 {
     use_samples(scene);
-    scene->settings.light.jitter = true;
     scene->settings.light.refresh = 4;
 }
 

@@ -36,7 +36,7 @@ refuse "shards need a range" "add --frames" render $small --shard 0/2 -o a.exr
 refuse "shards count from 0" "I from 0 to N - 1" render $small --frames 0:3 --shard 2/2 -o a.exr
 refuse "no shards" "expected I/N" render $small --frames 0:3 --shard 1 -o a.exr
 
-sheet="--garments sphere,torus --avatar none --preset draft --size 48x48 --set light.jitter=false $cheap_light --fabrics satin,denim --views front,side"
+sheet="--garments sphere,torus --avatar none --preset draft --size 48x48 --set light.rounds=1 $cheap_light --fabrics satin,denim --views front,side"
 $TOILE sheet $sheet -o one.png --quiet
 for n in 1 2 7; do
     for i in $(seq 0 $((n - 1))); do $TOILE sheet $sheet --shard $i/$n -o sheet$n.png --quiet & done # at the same time

@@ -3,7 +3,7 @@
 # cannot be rendered is reported and left empty; wrong use exits 2.
 set -u
 . "$(dirname "$0")/cli.sh"
-fast="--garment sphere --avatar none --preset draft --size 64x64 --set light.jitter=false --set image.supersample=1 $cheap_light"
+fast="--garment sphere --avatar none --preset draft --size 64x64 --set light.rounds=1 --set image.supersample=1 $cheap_light"
 
 refuse "no output" 'OUT.png or -o FOLDER' sheet
 refuse "another kind of output" 'a\.exr.*\.png or a folder' sheet -o a.exr

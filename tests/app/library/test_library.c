@@ -28,7 +28,6 @@ static toile_scene *load(const char *yaw, toile_error *error)
                                    "light.regions=24",
                                    "light.pem_size=16",
                                    "light.rounds=1",
-                                   "light.jitter=false",
                                    yaw,
                                    NULL};
     return toile_load(NULL, options, error);

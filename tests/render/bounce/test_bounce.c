@@ -181,48 +181,94 @@ static double mean_in(struct test_device *device, struct test_scene *scene, int 
     return mean;
 }
 
-/* Draws frames of a lamp that flickers by a thousandth, as nothing rests while something changes; returns the
- * bounced light of the last. */
+static void make_metal(tl_material *material)
+{
+    material->diffuse = (vec3s){{0, 0, 0}};
+    material->specular = (vec3s){{0.8f, 0.8f, 0.8f}};
+    material->glossiness = 0.6f;
+}
+
+struct lag {
+    const char *name;
+    void (*make)(tl_material *material);
+    int shares;
+    bool by_sky, jitters, hides_wall;
+};
+
+/* The fold; or the sheet alone from above, near the wall, which is of the same material and only mirrored. */
+static struct test_scene *lag_scene(const struct lag *lag)
+{
+    struct test_scene *scene = fold_scene(lag->by_sky ? test_daylight : test_black, lag->make);
+    if (lag->hides_wall) {
+        lag->make(&scene->shapes[1].material);
+        scene->frame.camera.eye = (vec3s){{0, 1.6f, 0.2f}};
+        scene->frame.camera.target = (vec3s){{0, 0.2f, -0.2f}};
+        scene->frame.camera.fov_y = glm_rad(15);
+    }
+    scene->lamps[0] = test_lamp_at((vec3s){{0.2f, 0.9f, 0.1f}}, 2);
+    scene->frame.lamp_count = !lag->by_sky;
+    return scene;
+}
+
+/* The lamp or, where there is none, the sky becomes so many times as bright. */
+static void brighten(struct test_scene *scene, float times)
+{
+    if (scene->frame.lamp_count > 0) {
+        scene->lamps[0].irradiance = glms_vec3_scale(scene->lamps[0].irradiance, times);
+        return;
+    }
+    float *texels = tl_image_floats(&scene->environment.image);
+    const int count = 3 * scene->environment.image.width * scene->environment.image.height;
+    for (int i = 0; i < count; i++)
+        texels[i] *= times;
+    scene->frame.environment_revision += 1000;
+}
+
+/* Draws frames in which the light flickers by a thousandth, as nothing rests while something changes; returns
+ * the bounced light of the last. */
 static double flicker(struct test_device *device, struct test_scene *scene, int frames, double without)
 {
     double mean = 0;
     for (int frame = 0; frame < frames; frame++) {
-        const float change = frame % 2 ? 1 / 1.001f : 1.001f;
-        scene->lamps[0].irradiance = glms_vec3_scale(scene->lamps[0].irradiance, change);
+        brighten(scene, frame % 2 ? 1 / 1.001f : 1.001f);
         mean = mean_in(device, scene, TL_BOUNCE_ALL);
     }
     return mean - without;
 }
 
-/* A lamp becomes twice as bright: bounced light follows after as many frames as it takes until all that is
- * seen was renewed, and what that sees; where that is all in each, after five. Then it is as bright as
- * before, and once the image rests so is what bounces, but for second bounces: a tenth of what lamps had more
- * (three fourths when rounds at rest were averaged with what was found in motion). */
+/* A lamp or the sky becomes twice as bright: bounced light follows after as many frames as it takes until all
+ * that is seen was renewed, and what that sees; where that is all in each, after five. Then it is as bright
+ * as before, and once the image rests so is what bounces, but for second bounces: a tenth of what there was
+ * more (three fourths when rounds at rest were averaged with what was found in motion). */
 static void test_lag(void **state)
 {
     struct test_device *device = *state;
-    const int shares[] = {1, 8, 32};
-    for (size_t i = 0; i < TL_COUNT(shares); i++) {
-        struct test_scene *scene = fold_scene(test_black, make_matt);
-        vec3s *irradiance = &scene->lamps[0].irradiance;
-        scene->lamps[0] = test_lamp_at((vec3s){{0.2f, 0.9f, 0.1f}}, 2);
-        scene->frame.lamp_count = 1;
-        const double lamp = mean_in(device, scene, TL_BOUNCE_OFF);
-        const double bounced = mean_in(device, scene, TL_BOUNCE_ALL) - lamp;
+    const struct lag lags[] = {{"matt", make_matt, 1, .jitters = true},
+                               {"matt", make_matt, 8, .jitters = true},
+                               {"matt", make_matt, 32, .jitters = false},
+                               {"matt", make_matt, 8, .by_sky = true, .jitters = true},
+                               {"metal", make_metal, 8, true, true, .hides_wall = true}};
+    for (size_t i = 0; i < TL_COUNT(lags); i++) {
+        const struct lag *lag = &lags[i];
+        struct test_scene *scene = lag_scene(lag);
+        const double direct = mean_in(device, scene, TL_BOUNCE_OFF);
+        const double bounced = mean_in(device, scene, TL_BOUNCE_ALL) - direct;
         scene->frame.still = false;
         scene->settings.light.rounds = 1;
-        scene->settings.light.bounce_shares = shares[i];
-        *irradiance = glms_vec3_scale(*irradiance, 2);
-        const double soon = flicker(device, scene, 5, 2 * lamp) / bounced - 1;
-        const double late = flicker(device, scene, 8 * shares[i], 2 * lamp) / bounced - 1;
-        *irradiance = glms_vec3_scale(*irradiance, 0.5f);
+        scene->settings.light.jitter = lag->jitters;
+        scene->settings.light.bounce_shares = lag->shares;
+        brighten(scene, 2);
+        const double soon = flicker(device, scene, 5, 2 * direct) / bounced - 1;
+        const double late = flicker(device, scene, 8 * lag->shares, 2 * direct) / bounced - 1;
+        brighten(scene, 0.5f);
         double rest = mean_in(device, scene, TL_BOUNCE_ALL);
         while (!tl_renderer_is_at_rest(device->renderer))
             rest = mean_in(device, scene, TL_BOUNCE_ALL);
-        rest = (rest - lamp) / bounced - 1;
-        printf("one in %2d: %.2f of the change after five frames, %.2f late; at rest %+.3f of what was\n",
-               shares[i], soon, late, rest);
-        assert_true(shares[i] == 1 ? soon > 0.7 : soon < 5.0 / shares[i]);
+        rest = (rest - direct) / bounced - 1;
+        printf("%s by %s, one in %2d: %.2f of the change after five frames, %.2f late; at rest %+.3f of what "
+               "was\n",
+               lag->name, lag->by_sky ? "sky" : "lamp", lag->shares, soon, late, rest);
+        assert_true(lag->shares == 1 ? soon > 0.7 : soon < 5.0 / lag->shares);
         assert_true(fabs(late - 1) < 0.1);
         assert_true(fabs(rest) < 0.15);
         test_scene_close(scene);
