@@ -19,6 +19,8 @@ struct run {
     struct tl_headless *headless;
     struct tl_trade *trade;
     int warm, measured; /* frames before the first measured one, and those measured; the last one rests */
+    struct tl_progress progress;
+    size_t finished, count; /* techniques, over all appearances */
     bool quick;
     tl_recording *recording;
     tl_environment sky;
@@ -127,6 +129,12 @@ static bool draw(struct run *run, struct entry *entry, int number, struct tl_tak
     return true;
 }
 
+/* `share` is that of the technique that is measured now. */
+static void show_progress(struct run *run, double share)
+{
+    tl_progress_update(&run->progress, (double)run->finished + share, (double)run->count);
+}
+
 #define FRAMES_MAX     16
 #define REST_DRAWS_MAX 1024
 
@@ -138,12 +146,15 @@ static bool measure_motion(struct run *run, struct entry *entry, tl_error *error
     struct tl_measured_error first = {0}, last;
     struct tl_variant_run *variant = &entry->variant;
     bool remembers = entry->governor || tl_variant_run_has_history(variant);
-    for (int number = remembers ? 0 : warm - 1; number < warm; number++)
+    for (int number = remembers ? 0 : warm - 1; number < warm; number++) {
         if (!draw(run, entry, number, &taken, error))
             return false;
+        show_progress(run, (number + 1.0) / (warm + count));
+    }
     for (int i = 0; i < count; i++) {
         if (!draw(run, entry, warm + i, &taken, error))
             return false;
+        show_progress(run, (warm + i + 1.0) / (warm + count));
         cpu_ms[i] = taken.cpu_ms;
         wall_ms[i] = taken.wall_ms;
         if (i == 0 && !compare(run, variant, warm, &first, error))
@@ -175,6 +186,7 @@ static bool measure_rest(struct run *run, struct entry *entry, tl_error *error)
         struct tl_taken taken = {0};
         struct tl_measured_error measured;
         done = draw(run, entry, last_frame(run), &taken, error);
+        show_progress(run, 1); /* nobody knows how many it takes */
         cpu_ms[since] = taken.cpu_ms;
         wall_ms[since++] = taken.wall_ms;
         at_rest = tl_renderer_is_at_rest(entry->variant.renderer);
@@ -338,9 +350,9 @@ static bool measure_all(struct run *run, tl_error *error)
     const struct tl_experiment *experiment = run->experiment;
     char label[64];
     snprintf(label, sizeof label, "measuring the trade of %s", experiment->name);
-    struct tl_progress progress = tl_progress_begin(label);
-    size_t count = tl_experiment_count(experiment, TL_OUTPUT_PAGE), measured = 0;
     int appearances = run->quick ? 1 : experiment->appearance_count;
+    run->progress = tl_progress_begin(label);
+    run->count = tl_experiment_count(experiment, TL_OUTPUT_PAGE) * (size_t)appearances;
     bool done = true;
     for (int i = 0; done && i < appearances; i++) {
         done = begin_appearance(run, first_appearance(experiment, run->quick) + i, error);
@@ -348,10 +360,11 @@ static bool measure_all(struct run *run, tl_error *error)
         while (done && (technique = tl_experiment_next(experiment, TL_OUTPUT_PAGE, technique))) {
             if (run->quick ? technique->quick : i == 0 || !technique->once)
                 done = measure_technique(run, technique, error);
-            tl_progress_update(&progress, (double)++measured, (double)(count * (size_t)appearances));
+            run->finished++;
+            show_progress(run, 0);
         }
     }
-    tl_progress_end(&progress);
+    tl_progress_end(&run->progress);
     return done;
 }
 
