@@ -48,6 +48,7 @@ add_library(toile_light STATIC
   gbuffer/clip.c
   gbuffer/cull.c
   gbuffer/raster.c
+  gbuffer/rings.c
   light/mirrors.c
   env/resample.c
   env/sun.c

@@ -30,7 +30,7 @@ static void free_vertices(struct tl_bounce *bounce)
     free(bounce->states);
     free(bounce->wanted);
     free(bounce->seen);
-    tl_bounce_rings_release(&bounce->rings);
+    tl_vertex_rings_release(&bounce->rings);
 }
 
 static void note_parts(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges)
@@ -72,7 +72,7 @@ static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_reque
     bounce->states = TL_NEW_ARRAY(uint8_t, count);
     bounce->wanted = TL_NEW_ARRAY(uint32_t, count);
     bounce->seen = TL_NEW_ARRAY(uint32_t, count);
-    bounce->rings = tl_bounce_rings_make(bounce, ranges);
+    bounce->rings = tl_vertex_rings_make(ranges);
     bounce->update = 0;
     note_parts(bounce, ranges);
 }
@@ -247,7 +247,7 @@ size_t tl_bounce_bytes(const struct tl_bounce *bounce)
     return 2 * bounce->vertex_count *
                (3 * sizeof(vec3s) + 2 * sizeof(struct tl_bounced) + sizeof(uint32_t) / 2 + sizeof(uint8_t) +
                 2 * sizeof(uint32_t)) +
-           tl_bounce_rings_bytes(bounce) +
+           tl_vertex_rings_bytes(&bounce->rings) +
            (bounce->first_vertex ? 2 * (bounce->surface_count + 1) * sizeof(size_t) : 0);
 }
 

@@ -28,7 +28,7 @@
 #include "render/bounce/bounced.h"
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
-#include "render/gbuffer/samples.h"
+#include "render/gbuffer/rings.h"
 #include "render/scene/lamp.h"
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
@@ -38,14 +38,6 @@ struct tl_bounce_sky {
     uint64_t revision;
     tl_cube cube; /* coarse */
     double *sums; /* [texels + 1] of luminance, texel by texel */
-};
-
-/* The neighbours of each vertex: corners of its triangles, or vertices that one takes its light from with it.
- */
-struct tl_bounce_rings {
-    size_t *first;    /* [vertex_count + 1] */
-    uint32_t *counts; /* [vertex_count] */
-    uint32_t *neighbours;
 };
 
 struct tl_bounce_material; /* bounce_internal.h */
@@ -69,7 +61,7 @@ struct tl_bounce {
     uint8_t *states;          /* ...: enum tl_bounce_state */
     uint32_t *wanted;         /* ...: update in which it was last seen or hit; 0: never */
     uint32_t *seen;           /* ...: update in which the camera last saw it; 0: never */
-    struct tl_bounce_rings rings;
+    struct tl_vertex_rings rings;
     struct tl_bounce_sky sky;
     bool is_done; /* at rest, and all wanted vertices have had their rounds */
 };

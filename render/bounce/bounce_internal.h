@@ -23,11 +23,6 @@ struct tl_bounce_material {
 /* Reads the materials of all parts, in the order of surfaces and parts; the result is the caller's. */
 struct tl_bounce_material *tl_bounce_materials_read(const struct tl_triangle_ranges *ranges);
 
-/* Lists the neighbours of all vertices; the result is the caller's: tl_bounce_rings_release. */
-struct tl_bounce_rings tl_bounce_rings_make(const struct tl_bounce *bounce,
-                                            const struct tl_triangle_ranges *ranges);
-void tl_bounce_rings_release(struct tl_bounce_rings *rings);
-size_t tl_bounce_rings_bytes(const struct tl_bounce *bounce);
 /* Fills `shown` with the means of each vertex and its neighbours: bounced light varies slowly, the noise of
  * sixteen rays does not. Then vertices without light of their own take what those have whose light they
  * share. In motion only where it is looked at: by the camera in this update, or by rays that metal mirrors.

@@ -1,92 +1,5 @@
 #include "render/bounce/bounce_internal.h"
 
-#include "config/memory.h"
-
-#include <stdlib.h>
-
-/* ---- Neighbours ---- */
-
-/* Calls `each` with the three vertices of every triangle, or the three that a vertex takes its light from. */
-static void for_threes(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
-                       void (*each)(const uint32_t three[3], size_t first, struct tl_bounce_rings *rings),
-                       struct tl_bounce_rings *rings)
-{
-    for (size_t s = 0; s < bounce->surface_count; s++) {
-        const tl_surface *surface = ranges->surfaces[s];
-        const struct tl_light_mesh *mesh = surface->light_mesh;
-        for (size_t v = 0; mesh && v < surface->vertex_count; v++)
-            if (mesh->from[v][0] != v)
-                each(mesh->from[v], bounce->first_vertex[s], rings);
-        for (size_t i = 0; !mesh && i < surface->index_count; i += 3)
-            each(surface->indices + i, bounce->first_vertex[s], rings);
-    }
-}
-
-static void count_three(const uint32_t three[3], size_t first, struct tl_bounce_rings *rings)
-{
-    for (int k = 0; k < 3; k++)
-        rings->first[first + three[k] + 1] += 2;
-}
-
-static void join_three(const uint32_t three[3], size_t first, struct tl_bounce_rings *rings)
-{
-    for (int k = 0; k < 3; k++)
-        for (int other = 1; other < 3; other++) {
-            const size_t vertex = first + three[k];
-            rings->neighbours[rings->first[vertex] + rings->counts[vertex]++] =
-                (uint32_t)(first + three[(k + other) % 3]);
-        }
-}
-
-static int compare_numbers(const void *a, const void *b)
-{
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
-/* Leaves each neighbour once, and not the vertex itself. */
-static void leave_once(struct tl_bounce_rings *rings, size_t vertex)
-{
-    uint32_t *ring = rings->neighbours + rings->first[vertex], kept = 0;
-    qsort(ring, rings->counts[vertex], sizeof *ring, compare_numbers);
-    for (uint32_t i = 0; i < rings->counts[vertex]; i++)
-        if (ring[i] != vertex && (kept == 0 || ring[i] != ring[kept - 1]))
-            ring[kept++] = ring[i];
-    rings->counts[vertex] = kept;
-}
-
-struct tl_bounce_rings tl_bounce_rings_make(const struct tl_bounce *bounce,
-                                            const struct tl_triangle_ranges *ranges)
-{
-    struct tl_bounce_rings rings = {.first = TL_NEW_ARRAY(size_t, bounce->vertex_count + 1),
-                                    .counts = TL_NEW_ARRAY(uint32_t, bounce->vertex_count)};
-    for_threes(bounce, ranges, count_three, &rings);
-    for (size_t v = 0; v < bounce->vertex_count; v++)
-        rings.first[v + 1] += rings.first[v];
-    rings.neighbours = TL_NEW_ARRAY(uint32_t, rings.first[bounce->vertex_count]);
-    for_threes(bounce, ranges, join_three, &rings);
-    for (size_t v = 0; v < bounce->vertex_count; v++)
-        leave_once(&rings, v);
-    return rings;
-}
-
-void tl_bounce_rings_release(struct tl_bounce_rings *rings)
-{
-    free(rings->first);
-    free(rings->counts);
-    free(rings->neighbours);
-    *rings = (struct tl_bounce_rings){0};
-}
-
-size_t tl_bounce_rings_bytes(const struct tl_bounce *bounce)
-{
-    const size_t count = bounce->vertex_count;
-    return count > 0 ? (count + 1) * sizeof(size_t) + (count + bounce->rings.first[count]) * sizeof(uint32_t)
-                     : 0;
-}
-
-/* ---- Means ---- */
-
 /* Whether the camera, or a ray that metal mirrors, looks at a side. At rest all count: the camera may turn.
  */
 static bool is_looked_at(const struct tl_bounce *bounce, size_t at, bool in_motion)
@@ -98,7 +11,7 @@ static bool is_looked_at(const struct tl_bounce *bounce, size_t at, bool in_moti
 /* The mean of a side's light and its neighbours', as far as it is known. */
 TL_CLONES static void smooth_side(struct tl_bounce *bounce, size_t vertex, size_t side)
 {
-    const struct tl_bounce_rings *rings = &bounce->rings;
+    const struct tl_vertex_rings *rings = &bounce->rings;
     const size_t at = 2 * vertex + side;
     const uint32_t *ring = rings->neighbours + rings->first[vertex];
     struct tl_bounced sum = {0}, mean = {0};

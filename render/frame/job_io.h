@@ -245,6 +245,7 @@
     IO(READS, bounce)                                                                                        \
     IO(SEES, facts)                                                                                          \
     IO(READS, lights)                                                                                        \
+    IO(READS, regions)                                                                                       \
     IO(SEES, regions_revision)                                                                               \
     IO(SEES, environment)                                                                                    \
     IO(READS, exact)                                                                                         \

@@ -118,13 +118,15 @@ bool tl_run_ratios(const struct tl_ratios_job *job, tl_error *error)
                                               .materials = job->shade_materials,
                                               .points = job->points,
                                               .lights = *job->lights,
+                                              .region_count = (int)job->regions->count,
                                               .lobes = job->exact->lobes,
                                               .bounce =
                                                   *job->facts & TL_BIT(TL_SCENE_BOUNCE) ? job->bounce : NULL,
                                               .environment_yaw = *job->yaw,
                                               .eye = job->camera->view.eye,
                                               .params = job->light_options,
-                                              .light_revision = light_revision(job)};
+                                              .light_revision = light_revision(job),
+                                              .shapes_revision = job->shapes->revision};
     tl_ratios_make(job->ratios, &request);
     return true;
 }

@@ -6,10 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_triangle_ranges *ranges,
-                            bool have_fuzz)
+static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
+    const struct tl_triangle_ranges *ranges = request->ranges;
+    const bool have_fuzz = request->materials->have_fuzz;
     size_t vertices = 0;
+    if (ratios->shapes_revision != request->shapes_revision)
+        tl_vertex_rings_release(&ratios->rings);
+    ratios->shapes_revision = request->shapes_revision;
     for (size_t s = 0; s < ranges->surface_count; s++)
         vertices += ranges->surfaces[s]->vertex_count;
     if (ratios->surface_count != ranges->surface_count || !ratios->first_vertex) {
@@ -22,10 +26,12 @@ static void follow_surfaces(struct tl_vertex_ratios *ratios, const struct tl_tri
     if (vertices == ratios->vertex_count && have_fuzz == (ratios->fuzz != NULL))
         return;
     free(ratios->items);
+    free(ratios->found);
     free(ratios->fuzz);
     free(ratios->stamps);
     ratios->fuzz = have_fuzz ? tl_alloc_lines(2 * vertices, sizeof *ratios->fuzz) : NULL;
     ratios->items = TL_NEW_ARRAY(struct tl_vertex_ratio, 2 * vertices);
+    ratios->found = TL_NEW_ARRAY(struct tl_vertex_ratio, 2 * vertices);
     ratios->stamps = TL_NEW_ARRAY(uint32_t, 2 * vertices);
     ratios->vertex_count = vertices;
     ratios->update = 0;
@@ -246,9 +252,83 @@ static void fill_seen(struct tl_vertex_ratios *ratios, const struct tl_ratios_re
     }
 }
 
+/* ---- In motion: means over neighbours ---- */
+
+/* What a neighbour counts, where the vertex itself counts 1. Means take away the noise of single rays, but
+ * blur what differs: a gloss whose direction, and so the normal, changes along a fold; and the more regions
+ * there are, the less noise there is. Satin and cotton in flights of 48 regions have less FLIP for it, satin
+ * at 192 as much (docs/measuring.md, "Frame budgets"). */
+static float neighbour_share(vec3s normal, vec3s other, float doubt)
+{
+    const float narrowness = 64;
+    const float overlap = 1 / (1 + narrowness * glms_vec3_distance2(normal, other));
+    return doubt * overlap * overlap;
+}
+
+static float doubt_of(int regions)
+{
+    const float single = 48.0f / (float)regions;
+    return tl_minf(single * single, 1);
+}
+
+TL_CLONES static void smooth_place(struct tl_vertex_ratios *ratios, const tl_surface *surface, size_t first,
+                                   size_t vertex, size_t side, float doubt)
+{
+    const struct tl_vertex_rings *rings = &ratios->rings;
+    const uint32_t *ring = rings->neighbours + rings->first[first + vertex];
+    const size_t place = 2 * (first + vertex) + side;
+    struct tl_vertex_ratio sum = ratios->found[place];
+    float shares = 1;
+    for (uint32_t i = 0; i < rings->counts[first + vertex] && sum.glossy[3] == 0; i++) {
+        const size_t from = 2 * (size_t)ring[i] + side;
+        const struct tl_vertex_ratio *other = &ratios->found[from];
+        if (ratios->stamps[from] != ratios->update || other->glossy[3] > 0)
+            continue; /* not seen, or covered */
+        const float share =
+            neighbour_share(surface->normals[vertex], surface->normals[ring[i] - first], doubt);
+        shares += share;
+        for (int c = 0; c < 3; c++) {
+            sum.diffuse[c] += share * other->diffuse[c];
+            sum.glossy[c] += share * other->glossy[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        sum.diffuse[c] /= shares;
+        sum.glossy[c] /= shares;
+    }
+    ratios->items[place] = sum;
+}
+
+static void smooth_seen(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
+{
+    const float doubt = doubt_of(request->region_count);
+    if (!ratios->rings.first)
+        ratios->rings = tl_vertex_rings_make(request->ranges);
+    for (size_t s = 0; s < ratios->surface_count; s++) {
+        const tl_surface *surface = request->ranges->surfaces[s];
+        const size_t first = ratios->first_vertex[s];
+#pragma omp parallel for schedule(dynamic, 256)
+        for (size_t v = 0; v < surface->vertex_count; v++)
+            for (size_t side = 0; side < 2; side++)
+                if (ratios->stamps[2 * (first + v) + side] == ratios->update)
+                    smooth_place(ratios, surface, first, v, side, doubt);
+    }
+}
+
+static void show_found(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
+{
+    if (tl_points_are_sparse(request->points)) {
+        smooth_seen(ratios, request);
+        fill_seen(ratios, request);
+        return;
+    }
+    for (size_t i = 0; i < ratios->count; i++)
+        ratios->items[ratios->places[i]] = ratios->found[ratios->places[i]];
+}
+
 void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request)
 {
-    follow_surfaces(ratios, request->ranges, request->materials->have_fuzz);
+    follow_surfaces(ratios, request);
     list_corners(ratios, request);
     struct tl_compose_request compose = {.samples = &ratios->samples,
                                          .lights = request->lights,
@@ -263,7 +343,7 @@ void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_requ
     compose.values = tl_points_values(request->points, &compose.stride);
     tl_compose_ratios(&compose, ratios->made);
     for (size_t i = 0; i < ratios->count; i++) {
-        struct tl_vertex_ratio *ratio = &ratios->items[ratios->places[i]];
+        struct tl_vertex_ratio *ratio = &ratios->found[ratios->places[i]];
         bool covered = tl_points_is_covered(request->points, ratios->taps[i].point[0]);
         *ratio = (struct tl_vertex_ratio){.glossy = {0, 0, 0, covered ? 1.0f : 0.0f}};
         memcpy(ratio->diffuse, ratios->made[i].diffuse.raw, sizeof(vec3s));
@@ -274,16 +354,17 @@ void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_requ
             fuzz[3] = 0;
         }
     }
-    if (tl_points_are_sparse(request->points))
-        fill_seen(ratios, request);
+    show_found(ratios, request);
 }
 
 void tl_ratios_release(struct tl_vertex_ratios *ratios)
 {
     free(ratios->first_vertex);
     free(ratios->items);
+    free(ratios->found);
     free(ratios->fuzz);
     free(ratios->stamps);
+    tl_vertex_rings_release(&ratios->rings);
     free(ratios->taps);
     free(ratios->places);
     free(ratios->made);
@@ -294,7 +375,9 @@ void tl_ratios_release(struct tl_vertex_ratios *ratios)
 size_t tl_ratios_bytes(const struct tl_vertex_ratios *ratios)
 {
     const size_t fuzz = ratios->fuzz ? sizeof *ratios->fuzz : 0;
-    return 2 * ratios->vertex_count * (sizeof *ratios->items + fuzz + sizeof *ratios->stamps) +
+    return 2 * ratios->vertex_count *
+               (sizeof *ratios->items + sizeof *ratios->found + fuzz + sizeof *ratios->stamps) +
+           tl_vertex_rings_bytes(&ratios->rings) +
            ratios->capacity *
                (sizeof(tl_sample) + sizeof *ratios->taps + sizeof *ratios->places + sizeof *ratios->made);
 }

@@ -9,6 +9,7 @@
 #define TOILE_RENDER_SHADE_RATIOS_H
 
 #include "render/gbuffer/ids.h"
+#include "render/gbuffer/rings.h"
 #include "render/light/compose.h"
 #include "render/shade/materials.h"
 
@@ -21,11 +22,13 @@ struct tl_vertex_ratios {
     size_t surface_count, vertex_count;
     size_t *first_vertex;          /* [surface_count + 1] */
     struct tl_vertex_ratio *items; /* [2 vertex_count]: front, back */
+    struct tl_vertex_ratio *found; /* ...: as made; in motion `items` are means with those of neighbours */
     float (*fuzz)[4];              /* ...: of fibres by channel, and 0; NULL: no part has any */
     uint32_t *stamps;              /* ...: update in which it was last seen; 0: never */
     uint32_t update;
-    uint64_t light_revision;
-    size_t count, capacity; /* of those made in the last update */
+    uint64_t light_revision, shapes_revision;
+    struct tl_vertex_rings rings; /* made when something first moves */
+    size_t count, capacity;       /* of those made in the last update */
     struct tl_samples samples;
     struct tl_taps *taps;
     uint32_t *places; /* [count]: index into `items` */
@@ -38,16 +41,20 @@ struct tl_ratios_request {
     const struct tl_shade_materials *materials;
     const tl_points *points; /* updated for the triangles of `ids` */
     const struct tl_region_lights *lights;
+    int region_count;
     const struct tl_lobes *lobes;
     const struct tl_bounce *bounce; /* updated for the triangles of `ids`; NULL: none */
     float environment_yaw;          /* rad */
     vec3s eye;
     const struct tl_light_params *params;
-    uint64_t light_revision; /* changes with the environment, its yaw and the surfaces' materials */
+    uint64_t light_revision;  /* changes with the environment, its yaw and the surfaces' materials */
+    uint64_t shapes_revision; /* changes when vertex numbers or materials do */
 };
 
 /* Makes the ratios of half of the vertices that are seen, the other half in the next update, and of all that
- * were not seen in the last one; of all when the light has changed. */
+ * were not seen in the last one; of all when the light has changed. While something moves the values of the
+ * points are single rays, and a region that is the most of a gloss is seen from one vertex and hidden from
+ * the next: then what is shown are means over neighbours, the more so the fewer the regions. */
 void tl_ratios_make(struct tl_vertex_ratios *ratios, const struct tl_ratios_request *request);
 void tl_ratios_release(struct tl_vertex_ratios *ratios);
 size_t tl_ratios_bytes(const struct tl_vertex_ratios *ratios);
