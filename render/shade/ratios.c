@@ -256,8 +256,8 @@ static void fill_seen(struct tl_vertex_ratios *ratios, const struct tl_ratios_re
 
 /* What a neighbour counts, where the vertex itself counts 1. Means take away the noise of single rays, but
  * blur what differs: a gloss whose direction, and so the normal, changes along a fold; and the more regions
- * there are, the less noise there is. Satin and cotton in flights of 48 regions have less FLIP for it, satin
- * at 192 as much (docs/measuring.md, "Frame budgets"). */
+ * there are, the less noise there is. Satin and cotton in flights of 48 and 96 regions have less FLIP for
+ * it, satin at 192 as much (docs/measuring.md, "Frame budgets"). */
 static float neighbour_share(vec3s normal, vec3s other, float doubt)
 {
     const float narrowness = 64;
@@ -267,7 +267,7 @@ static float neighbour_share(vec3s normal, vec3s other, float doubt)
 
 static float doubt_of(int regions)
 {
-    const float single = 48.0f / (float)regions;
+    const float single = 96.0f / (float)regions;
     return tl_minf(single * single, 1);
 }
 
