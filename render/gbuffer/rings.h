@@ -1,7 +1,8 @@
 /* The vertices around each vertex at which light is computed, to take means over: of the scene's surfaces in
  * order, numbered through. A vertex without light of its own (tl_light_mesh) has none.
  *
- * Lifetime: a plain struct that starts as {0} and owns its arrays. Threads: made by one, read by any. */
+ * Errors: none. Lifetime: a plain struct that starts as {0} and owns its arrays. Threads: made by one, read
+ * by any. */
 #ifndef TOILE_RENDER_GBUFFER_RINGS_H
 #define TOILE_RENDER_GBUFFER_RINGS_H
 
