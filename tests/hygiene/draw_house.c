@@ -5,7 +5,7 @@ int main(void)
 {
     struct house house;
     house_read(&house, TOILE_SOURCE_DIR);
-    house_read_objects(&house, TOILE_BINARY_DIR);
+    house_read_objects(&house, TOILE_OBJECTS, TOILE_BINARY_DIR);
     house_draw(&house, stdout);
     house_release(&house);
     return 0;

@@ -283,15 +283,16 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const struct symbol *)a)->name, ((const struct symbol *)b)->name);
 }
 
-/* "ROOT/cloth/CMakeFiles/toile_cloth.dir/mesh/rigid.c.o" -> the pair cloth/mesh/rigid; `count` if it is none.
- */
+/* "ROOT/cloth/CMakeFiles/toile_cloth.dir/mesh/rigid.c.o" and
+ * "ROOT/app/lab/CMakeFiles/toile_lab.dir/check/check.c.o" -> the pairs cloth/mesh/rigid and
+ * app/lab/check/check; `count` if it is none. */
 static size_t pair_of_object(const struct house *house, const char *object, const char *root)
 {
     const char *path = object + strlen(root) + 1, *inner = strstr(path, ".dir/");
-    const char *slash = strchr(path, '/');
+    const char *target = strstr(path, "/CMakeFiles/");
     size_t pair = house->pairs.count;
-    if (inner && slash) {
-        char *name = tl_format("%.*s/%s", (int)(slash - path), path, inner + strlen(".dir/"));
+    if (inner && target) {
+        char *name = tl_format("%.*s/%s", (int)(target - path), path, inner + strlen(".dir/"));
         char *without_o = without(name, '.'), *without_c = without(without_o, '.');
         pair = graph_find(&house->pairs, without_c);
         free(without_c);
@@ -301,39 +302,37 @@ static size_t pair_of_object(const struct house *house, const char *object, cons
     return pair;
 }
 
-void house_read_objects(struct house *house, const char *objects)
+void house_read_objects(struct house *house, const char *list, const char *root)
 {
     struct symbol *defined = NULL, *used = NULL;
     size_t defined_count = 0, used_count = 0;
-    for (size_t i = 0; house_floors[i]; i++) {
-        char *command =
-            tl_format("find '%s/%s/CMakeFiles' -name '*.o' -exec nm -A -g -P {} +", objects, house_floors[i]);
-        FILE *lines = popen(command, "r");
-        char object[PATH_MAX], name[1024], kind;
-        char *line = NULL;
-        size_t capacity = 0;
-        /* PATH: NAME KIND VALUE SIZE */
-        while (lines && getline(&line, &capacity, lines) > 0) {
-            if (sscanf(line, "%4095[^:]: %1023s %c", object, name, &kind) != 3)
-                continue;
-            struct symbol symbol = {NULL, pair_of_object(house, object, objects)};
-            /* Weak and common ones are C++'s inline functions: nobody's. */
-            if (symbol.pair == house->pairs.count || !strchr("UTDBRS", kind))
-                continue;
-            symbol.name = tl_copy_string(name);
-            struct symbol **list = kind == 'U' ? &used : &defined;
-            size_t *count = kind == 'U' ? &used_count : &defined_count;
-            *list = grown(*list, *count, sizeof **list);
-            (*list)[(*count)++] = symbol;
-        }
-        if (!lines || pclose(lines) != 0 || defined_count == 0) {
-            fprintf(stderr, "%s/%s: no object file can be read: build toile, and install binutils\n", objects,
-                    house_floors[i]);
-            exit(1);
-        }
-        free(line);
-        free(command);
+    char *command = tl_format("sed 's:/\\./:/:; s/.*/\"&\"/' '%s' | xargs nm -A -g -P", list);
+    FILE *lines = popen(command, "r");
+    char object[PATH_MAX], name[1024], kind;
+    char *line = NULL;
+    size_t capacity = 0;
+    /* PATH: NAME KIND VALUE SIZE */
+    while (lines && getline(&line, &capacity, lines) > 0) {
+        if (sscanf(line, "%4095[^:]: %1023s %c", object, name, &kind) != 3)
+            continue;
+        struct symbol symbol = {NULL, pair_of_object(house, object, root)};
+        /* Weak and common ones are C++'s inline functions: nobody's. */
+        if (symbol.pair == house->pairs.count || !strchr("UTDBRS", kind))
+            continue;
+        symbol.name = tl_copy_string(name);
+        struct symbol **known = kind == 'U' ? &used : &defined;
+        size_t *count = kind == 'U' ? &used_count : &defined_count;
+        *known = grown(*known, *count, sizeof **known);
+        (*known)[(*count)++] = symbol;
     }
+    if (!lines || pclose(lines) != 0 || defined_count == 0) {
+        fprintf(stderr,
+                "%s: its object files cannot be read: build toile and toile_library, and install binutils\n",
+                list);
+        exit(1);
+    }
+    free(line);
+    free(command);
     qsort(defined, defined_count, sizeof *defined, by_name);
     for (size_t i = 0; i < used_count; i++) {
         const struct symbol *found = bsearch(&used[i], defined, defined_count, sizeof *defined, by_name);

@@ -57,9 +57,9 @@ struct house {
 extern const char *const house_floors[]; /* lowest first; NULL-terminated */
 
 void house_read(struct house *house, const char *root);
-/* Adds the arrows that linked symbols make: a pair uses what another one defines. `objects`: the build tree
- * that holds <floor>/CMakeFiles/<target>.dir/<room>/<file>.o. Needs nm (binutils). */
-void house_read_objects(struct house *house, const char *objects);
+/* Adds the arrows that linked symbols make: a pair uses what another one defines. `list`: a file that names
+ * an object file a line, ROOT/<folder>/CMakeFiles/<target>.dir/<rest>/<file>.o. Needs nm (binutils). */
+void house_read_objects(struct house *house, const char *list, const char *root);
 void house_release(struct house *house);
 
 bool house_starts_with_folder(const char *path, const char *folder);
