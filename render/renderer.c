@@ -126,8 +126,8 @@ static void release_environment(struct tl_resources *resources)
     tl_slices_release(&resources->slices.slices);
     tl_slice_maps_release(&resources->slices.maps);
     tl_light_cache_release(&resources->light_cache);
-    tl_cube_release(&resources->surroundings.cube);
-    tl_lobes_release(&resources->surroundings.lobes);
+    tl_cube_release(&resources->envmap_source.cube);
+    tl_lobes_release(&resources->envmap_source.lobes);
 }
 
 static void release_scene(struct tl_resources *resources)
@@ -170,14 +170,12 @@ void tl_renderer_destroy(tl_renderer **renderer)
     *renderer = NULL;
 }
 
-static struct tl_plan_input plan_input(const tl_renderer *renderer, const tl_frame *frame,
-                                       const struct tl_render_settings *settings, tl_bits changed,
+static struct tl_plan_input plan_input(const tl_renderer *renderer, tl_bits facts, tl_bits changed,
                                        tl_bits wanted)
 {
     /* Shadow maps that wait for their turn are out of date, so they do not count as valid. */
     tl_bits waiting =
         tl_shadow_maps_wait(renderer->resources.maps) ? TL_BIT(TL_MADE_DEPTHS) | TL_BIT(TL_MADE_MAPS) : 0;
-    tl_bits facts = tl_frame_facts(frame, settings);
     /* After light in motion nothing may have moved, and yet samples have no points. */
     if (!(facts & TL_BIT(TL_SCENE_RATIOS)) && !tl_points_are_for_samples(renderer->resources.points))
         waiting |= TL_BIT(TL_MADE_POINTS);
@@ -195,11 +193,11 @@ static tl_bits read_of(const tl_frame *frame)
     return TL_BIT(TL_MADE_IMAGE) | (frame->aovs ? TL_BIT(TL_MADE_SAMPLES) : 0);
 }
 
-static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signatures[TL_INPUT_COUNT])
+static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t hashes[TL_INPUT_COUNT])
 {
     tl_bits changed = 0;
     for (int i = 0; i < TL_INPUT_COUNT; i++)
-        if (signatures[i] != renderer->signatures[i])
+        if (hashes[i] != renderer->hashes[i])
             changed |= TL_BIT(i);
     return changed;
 }
@@ -209,14 +207,14 @@ static tl_bits changed_inputs(const tl_renderer *renderer, const uint64_t signat
 static void forget(tl_renderer *renderer)
 {
     renderer->resources.valid = 0;
-    memset(renderer->signatures, 0, sizeof renderer->signatures);
+    memset(renderer->hashes, 0, sizeof renderer->hashes);
 }
 
 /* Treats all surfaces as moved. Resources that follow from the environment alone are kept, because they do
  * not depend on earlier frames. */
 void tl_renderer_forget(tl_renderer *renderer)
 {
-    renderer->signatures[TL_INPUT_MOTION] = 0;
+    renderer->hashes[TL_INPUT_MOTION] = 0;
     renderer->rest = (struct tl_rest){0};
     tl_points_destroy(&renderer->resources.points); /* visibility at points refines earlier values */
     renderer->resources.points = tl_points_create();
@@ -230,7 +228,7 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     renderer->resources.valid &= TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_REGIONS) | TL_BIT(TL_MADE_LOBE) |
                                  TL_BIT(TL_MADE_PEMS) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_SLICES) |
                                  TL_BIT(TL_MADE_LIGHTS) | TL_BIT(TL_MADE_ENVMAP_LOBES);
-    renderer->signatures[TL_INPUT_MOTION] = 0; /* ends averaging */
+    renderer->hashes[TL_INPUT_MOTION] = 0; /* ends averaging */
     renderer->rest = (struct tl_rest){0};
     tl_surfaces_destroy(&renderer->resources.surfaces);
     renderer->resources.surfaces = tl_surfaces_create(renderer->resources.gpu);
@@ -403,71 +401,12 @@ static void release_unused(struct tl_resources *resources, const struct tl_detai
     }
 }
 
-/* Lists the surfaces to draw: those of the frame, then the ground if it is shown. */
-static void list_surfaces(const tl_frame *frame, bool has_ground, uint64_t revision,
-                          struct tl_resources *resources)
+static struct tl_motion_state motion_state_of(const tl_renderer *renderer)
 {
-    struct tl_shapes_input *shapes = &resources->shapes;
-    shapes->surfaces = frame->surfaces;
-    shapes->surface_count = frame->surface_count;
-    shapes->revision = revision;
-    shapes->drawn = tl_resize(shapes->drawn, frame->surface_count + 1,
-                              sizeof *shapes->drawn); // NOLINT(bugprone-sizeof-expression): of a pointer
-    for (size_t i = 0; i < frame->surface_count; i++)
-        shapes->drawn[i] = &frame->surfaces[i];
-    shapes->drawn[frame->surface_count] = &resources->ground.surface;
-    shapes->drawn_count = frame->surface_count + (has_ground ? 1 : 0);
-    tl_triangle_ranges_make(shapes->drawn, shapes->drawn_count, &shapes->ranges);
-    resources->motion =
-        (struct tl_motion_input){.surfaces = frame->surfaces, .surface_count = frame->surface_count};
-}
-
-/* The inputs of the frame: each holds what its signature covers (frame/inputs.h). */
-static void set_inputs(const tl_renderer *renderer, struct tl_resources *resources)
-{
-    const tl_frame *frame = &renderer->frame;
-    const struct tl_render_settings *settings = &renderer->settings;
-    const struct tl_light_params *light = &settings->light;
-    const struct tl_image_params *image = &settings->image;
-    list_surfaces(frame, image->ground, renderer->signatures[TL_INPUT_SHAPES], resources);
-    resources->environment = (struct tl_environment_input){frame->environment, frame->environment_revision};
-    resources->yaw = frame->environment_yaw;
-    resources->camera =
-        (struct tl_camera_input){frame->camera, tl_view_make(&frame->camera, image->width, image->height)};
-    resources->shift = tl_input_shift(&renderer->rest, &resources->camera.view, image->width, image->height);
-    resources->size = (struct tl_size_input){
-        .width = image->width, .height = image->height, .supersample = image->supersample};
-    tl_image_samples(image, &resources->size.columns, &resources->size.rows);
-    resources->ground_input = tl_input_ground(frame, image);
-    resources->pem_size = light->pem_size;
-    resources->filter = light->filter;
-    resources->takes_suns = light->sun;
-    resources->cut = (struct tl_cut_input){light->regions, light->cut};
-    resources->pem_storage = (struct tl_pem_storage){light->pems_per_pass, light->pem_layout};
-    resources->lobes_input = tl_input_lobes(light);
-    resources->shadow_options = tl_input_shadows(light);
-    resources->ray_options = (struct tl_rays_input){tl_light_ray_params(light), tl_light_averages(light)};
-    resources->round = renderer->rest.image;
-    resources->scene_round = renderer->rest.scene;
-    resources->light_options = tl_input_light(light);
-    resources->lamps = tl_input_lamps(frame, &settings->shading);
-    resources->reference_options = settings->reference;
-    resources->detail_steps = settings->detail;
-    resources->detail_options = tl_input_detail_maps(&settings->detail);
-    resources->show_options = tl_input_show(image);
-    resources->envmap_size = (struct tl_envmap_input){settings->maps.size, settings->maps.capture_every > 0,
-                                                      settings->maps.light_map};
-    resources->layout = tl_input_layout(&settings->maps);
-    resources->look_up = tl_input_look_up(&settings->maps);
-    resources->capture_options = tl_input_capture(&settings->maps);
-    resources->view_options = tl_input_view(image);
-    resources->ratio_at = light->ratio_at;
-    resources->facts = tl_frame_facts(frame, settings);
     const tl_bits moves_shadows = TL_BIT(TL_INPUT_MOTION) | TL_BIT(TL_INPUT_YAW);
-    resources->moment = (struct tl_moment){.still = frame->still,
-                                           .moves_shadows = renderer->moving & moves_shadows,
-                                           .moves_lamps = renderer->moving & TL_BIT(TL_INPUT_LAMPS)};
-    resources->points_are_done = renderer->rest.is_done;
+    return (struct tl_motion_state){.still = renderer->frame.still,
+                                    .moves_shadows = renderer->moving & moves_shadows,
+                                    .moves_lamps = renderer->moving & TL_BIT(TL_INPUT_LAMPS)};
 }
 
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
@@ -480,18 +419,20 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
         !check_light_size(&used, &bytes, error) || !check_envmap_size(frame, &used, error))
         return false;
     reload_shaders(renderer);
-    uint64_t signatures[TL_INPUT_COUNT];
-    tl_frame_sign(frame, &used, renderer->signatures, &renderer->rest, signatures);
-    tl_bits changed = changed_inputs(renderer, signatures);
+    const tl_bits facts = tl_frame_facts(frame, &used);
+    uint64_t hashes[TL_INPUT_COUNT];
+    tl_frame_hash_inputs(frame, &used, facts, renderer->hashes, &renderer->rest, hashes);
+    tl_bits changed = changed_inputs(renderer, hashes);
     if (resources->valid) /* the first frame has no earlier one to differ from */
         renderer->moving = changed;
     renderer->frame = *frame;
-    renderer->counts = tl_work_count(frame, &used);
+    renderer->counts = tl_work_count(frame, facts);
     renderer->settings = used;
-    memcpy(renderer->signatures, signatures, sizeof signatures);
-    set_inputs(renderer, resources);
+    memcpy(renderer->hashes, hashes, sizeof hashes);
+    tl_inputs_set(resources, frame, &used, facts, &renderer->rest, hashes);
+    resources->motion_state = motion_state_of(renderer);
     release_unused(resources, &used.detail);
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
+    const struct tl_plan_input input = plan_input(renderer, facts, changed, read_of(frame));
     bool fine = run_plan(renderer, &input, &renderer->plan, error);
     const bool waits = resources->facts & TL_BIT(TL_SCENE_BOUNCE) && !resources->bounce.is_done;
     renderer->rest.is_done = resources->points_are_done && !waits;
@@ -582,11 +523,12 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out)
 {
     struct tl_render_settings used = tl_render_settings_resolve(settings);
-    uint64_t signatures[TL_INPUT_COUNT];
+    const tl_bits facts = tl_frame_facts(frame, &used);
+    uint64_t hashes[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
-    tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
+    tl_frame_hash_inputs(frame, &used, facts, renderer->hashes, &rest, hashes);
     const struct tl_plan_input input =
-        plan_input(renderer, frame, &used, changed_inputs(renderer, signatures), read_of(frame));
+        plan_input(renderer, facts, changed_inputs(renderer, hashes), read_of(frame));
     make_plan(renderer, &input, &used, out);
 }
 
@@ -600,12 +542,13 @@ tl_bits tl_renderer_predict_jobs(const tl_renderer *renderer, const tl_frame *fr
                                  const struct tl_render_settings *settings)
 {
     struct tl_render_settings used = tl_render_settings_resolve(settings);
-    uint64_t signatures[TL_INPUT_COUNT];
+    const tl_bits facts = tl_frame_facts(frame, &used);
+    uint64_t hashes[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
-    tl_frame_sign(frame, &used, renderer->signatures, &rest, signatures);
+    tl_frame_hash_inputs(frame, &used, facts, renderer->hashes, &rest, hashes);
     tl_bits moving = renderer->moving ? renderer->moving : TL_BIT(TL_INPUT_MOTION);
-    tl_bits changed = changed_inputs(renderer, signatures) | (moving & MOVING_INPUTS) | ROUND_INPUTS;
-    const struct tl_plan_input input = plan_input(renderer, frame, &used, changed, read_of(frame));
+    tl_bits changed = changed_inputs(renderer, hashes) | (moving & MOVING_INPUTS) | ROUND_INPUTS;
+    const struct tl_plan_input input = plan_input(renderer, facts, changed, read_of(frame));
     tl_plan plan;
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, &input, NULL, &plan);
     tl_bits jobs = 0;
@@ -638,10 +581,12 @@ double tl_renderer_load(const tl_renderer *renderer)
 
 bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
 {
-    uint64_t signatures[TL_INPUT_COUNT];
+    uint64_t hashes[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
-    tl_frame_sign(frame, &renderer->settings, renderer->signatures, &rest, signatures);
-    tl_bits moving = renderer->moving | changed_inputs(renderer, signatures);
+    /* Facts decide how rounds are counted, and rounds are no motion: those of the last frame do. */
+    tl_frame_hash_inputs(frame, &renderer->settings, renderer->resources.facts, renderer->hashes, &rest,
+                         hashes);
+    tl_bits moving = renderer->moving | changed_inputs(renderer, hashes);
     return !renderer->resources.valid || moving & (MOVING_INPUTS | TL_BIT(TL_INPUT_SHAPES));
 }
 

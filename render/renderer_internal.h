@@ -1,5 +1,5 @@
-/* The state of a renderer: the resources of the last frame, and the cost models and signatures that plan the
- * next one. */
+/* The state of a renderer: the resources of the last frame, and the cost models and input hashes that plan
+ * the next one. */
 #ifndef TOILE_RENDER_RENDERER_INTERNAL_H
 #define TOILE_RENDER_RENDERER_INTERNAL_H
 
@@ -14,8 +14,8 @@ struct tl_renderer {
     struct tl_render_settings settings;
     struct tl_work_counts counts;
     struct tl_rest rest;
-    uint64_t signatures[TL_INPUT_COUNT]; /* of its inputs */
-    tl_bits moving;                      /* inputs that changed before the last frame */
+    uint64_t hashes[TL_INPUT_COUNT]; /* of its inputs */
+    tl_bits moving;                  /* inputs that changed before the last frame */
 
     tl_plan plan;
     struct tl_cost_job costs[TL_JOBS_MAX];

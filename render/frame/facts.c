@@ -15,8 +15,8 @@
 
 #include <math.h>
 
-/* The smallest and the largest of some numbers. In many lanes, because the facts of a frame to come are asked
- * for several times a frame. */
+/* The smallest and the largest of some numbers. In many lanes, because a budget asks for the facts of a frame
+ * at other settings, too. */
 TL_CLONES static void range_of(const float *values, size_t count, float *low, float *high)
 {
     enum { LANES = 2 * TL_LANES }; /* loops of TL_LANES would be unrolled, and not become vector code */
@@ -188,24 +188,23 @@ static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *l
     return facts;
 }
 
-/* Facts of a frame whose pixels are lit from ratios at vertices; 0 where these are not wanted, or where
- * something in the scene needs samples. */
-static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+static bool has_mirrors(const tl_frame *frame, const struct tl_light_params *light)
+{
+    return light->reflect_scene &&
+           tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame->surfaces, frame->surface_count))) >
+               0;
+}
+
+/* True when ratios at vertices can light the pixels: nothing in the scene needs samples. */
+static bool fits_vertices(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
     struct tl_lamp lamps[TL_LAMPS_MAX];
-    bool wanted = light->ratio_at == TL_RATIO_AT_VERTICES && light->method == TL_METHOD_PEM &&
-                  light->visibility == TL_VISIBILITY_RAYS && light->lobe == TL_LOBE_DUAL && !frame->aovs;
-    if (!wanted || tl_lamps_lit(frame, lamps) > 0 ||
-        tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits) ||
-        !tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail))
-        return 0;
-    bool mirrors =
-        light->reflect_scene &&
-        tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame->surfaces, frame->surface_count))) > 0;
-    return mirrors ? 0
-                   : TL_BIT(TL_SCENE_RATIOS) | TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS) |
-                         TL_BIT(TL_SCENE_EXACT);
+    return light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
+           light->lobe == TL_LOBE_DUAL && !frame->aovs && tl_lamps_lit(frame, lamps) == 0 &&
+           !tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits) &&
+           tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail) &&
+           !has_mirrors(frame, light);
 }
 
 static tl_bits bounce_facts(const struct tl_light_params *light)
@@ -215,11 +214,15 @@ static tl_bits bounce_facts(const struct tl_light_params *light)
     return bounces ? TL_BIT(TL_SCENE_BOUNCE) : 0;
 }
 
-static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+static tl_bits ratio_facts(const struct tl_light_params *light)
 {
-    tl_bits ratios = ratio_facts(frame, settings);
-    if (ratios)
-        return ratios | bounce_facts(&settings->light);
+    return TL_BIT(TL_SCENE_RATIOS) | TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS) |
+           TL_BIT(TL_SCENE_EXACT) | bounce_facts(light);
+}
+
+/* Facts of a frame whose samples are lit. */
+static tl_bits sample_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
     const struct tl_light_params *light = &settings->light;
     if (light->method == TL_METHOD_REFERENCE)
         return TL_BIT(TL_SCENE_REFERENCE);
@@ -243,12 +246,20 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
         facts |= TL_BIT(TL_SCENE_EXACT);
     if (rays && tl_materials_have(frame->surfaces, frame->surface_count, tl_material_shows_more))
         facts |= TL_BIT(TL_SCENE_TRANSPARENCY);
-    if (rays && light->method == TL_METHOD_PEM && light->reflect_scene &&
-        tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame->surfaces, frame->surface_count))) > 0)
+    if (rays && light->method == TL_METHOD_PEM && has_mirrors(frame, light))
         facts |= TL_BIT(TL_SCENE_MIRRORS);
     if (rays)
         facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
     return facts | lamp_facts(frame, light) | bounce_facts(light);
+}
+
+static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    if (!fits_vertices(frame, settings))
+        return sample_facts(frame, settings);
+    return TL_BIT(TL_SCENE_FITS_VERTICES) |
+           (settings->light.ratio_at == TL_RATIO_AT_VERTICES ? ratio_facts(&settings->light)
+                                                             : sample_facts(frame, settings));
 }
 
 /* Facts of a frame whose view is not light, except those that follow from its materials. */

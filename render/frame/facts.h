@@ -5,7 +5,8 @@
 #include "render/frame/resource.h"
 #include "render/frame/settings.h"
 
-/* Bits of enum tl_scene_fact. `settings` as tl_render_settings_resolve returns them. */
+/* Bits of enum tl_scene_fact. `settings` as tl_render_settings_resolve returns them. It visits every material
+ * and reads the weaves' gloss maps, so a frame computes its facts once and passes them on. */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);
 
 /* The exponents of the lobes that the surfaces' materials need, as bits of env/lobes.h; and those of

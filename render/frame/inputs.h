@@ -1,12 +1,19 @@
-/* The inputs of a frame: the value of each, and a signature that changes when the value does. An input made
- * of options holds the options that its signature covers and those that earlier resources already depend on.
- * All others are 0, so that a job that reads an option without declaring it finds nothing. Pure. */
+/* The inputs of a frame: the value of each, and a hash that changes when the value does.
+ *
+ * An input made of options holds a copy of its table in which only those rows have a value whose column
+ * `affects` names the input (OPTION_INPUTS in inputs.c); all other fields are 0, so that a job that reads an
+ * option which the input does not hold finds nothing. A new row is in value and hash without further code.
+ *
+ * Units as in the options' rows. Lifetime: an input borrows what its comment says, until the next frame.
+ * Threads: pure, but for tl_inputs_set, which writes to the resources. Errors: none. */
 #ifndef TOILE_RENDER_FRAME_INPUTS_H
 #define TOILE_RENDER_FRAME_INPUTS_H
 
 #include "render/frame/resource.h"
 #include "render/frame/settings.h"
 #include "render/gbuffer/samples.h"
+
+struct tl_resources;
 
 struct tl_environment_input {
     const tl_environment *map; /* borrowed from the frame */
@@ -41,19 +48,20 @@ struct tl_shift_input {
 };
 
 struct tl_size_input {
-    int width, height, supersample; /* pixels, samples a pixel side */
-    int columns, rows;              /* samples */
+    struct tl_image_params options; /* width, height ... */
+    int columns, rows;              /* samples; fewer than pixels where options.scale is below 1 */
 };
 
 /* True when there are fewer samples than pixels, so that pixels need ids of their own. */
 static inline bool tl_size_has_outlines(const struct tl_size_input *size)
 {
-    return size->columns < size->width || size->rows < size->height;
+    return size->columns < size->options.width || size->rows < size->options.height;
 }
 
 struct tl_ground_input {
+    struct tl_image_params options;
     bool is_drawn;
-    vec3s colour; /* reflectance */
+    vec3s colour; /* reflectance: the options', else the environment's, else TL_GROUND_GREY */
 };
 
 struct tl_lobes_input {
@@ -61,19 +69,13 @@ struct tl_lobes_input {
     bool are_blended; /* into one between the two: TL_LOBE_SINGLE */
 };
 
-struct tl_cut_input {
-    int regions, cut; /* enum tl_cut */
-};
-
 struct tl_shadow_input {
-    enum tl_visibility kind;
-    enum tl_moments moments;
-    int map_size;   /* texels */
-    bool in_passes; /* maps in an array: as many as PEMs in a pass */
-    float blur_m;
+    struct tl_light_params options; /* visibility, moments, map_size, blur_m ... */
+    bool in_passes;                 /* maps in an array: as many as PEMs in a pass */
 };
 
 struct tl_rays_input {
+    struct tl_light_params options;
     struct tl_ray_params params;
     bool averages; /* rounds at rest change the image */
 };
@@ -86,13 +88,12 @@ struct tl_lamps_input {
 };
 
 struct tl_envmap_input {
-    int size;         /* texels */
-    bool is_captured; /* maps show the scene */
-    int light_map;    /* texels, side; 0: none */
+    struct tl_maps_params options; /* size, light_map */
+    bool is_captured;              /* maps show the scene */
 };
 
-/* Not an input: how the frame stands in time. */
-struct tl_moment {
+/* What moves in this frame. Not an input: no job runs because of it. */
+struct tl_motion_state {
     bool still;         /* as tl_frame.still */
     bool moves_shadows; /* surfaces or the environment's yaw differ from the last frame */
     bool moves_lamps;   /* lamps do */
@@ -105,31 +106,21 @@ struct tl_rest {
     int shift_set;     /* images of a set that are shifted; 0: none */
     int shifts;        /* ... that there were in this rest */
     int shifts_left;   /* ... that are to come once all rounds are in */
-    uint64_t captured; /* environment maps: the signature of the scene that they show; 0: none */
+    uint64_t captured; /* environment maps: the hash of the scene that they show; 0: none */
     int capture_age;   /* ... frames ago */
     bool is_captured;  /* ... and it is the one that is there */
 };
 
-/* One number for each input: an input has changed when its number has. `rest` becomes that of this frame. */
-void tl_frame_sign(const tl_frame *frame, const struct tl_render_settings *settings,
-                   const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
-                   uint64_t signatures[TL_INPUT_COUNT]);
+/* Computes one number for each input: an input has changed when its number has. `facts` are the frame's
+ * (facts.h), `before` the numbers of the frame before; `rest` is that frame's and becomes this one's. */
+void tl_frame_hash_inputs(const tl_frame *frame, const struct tl_render_settings *settings, tl_bits facts,
+                          const uint64_t before[TL_INPUT_COUNT], struct tl_rest *rest,
+                          uint64_t hashes[TL_INPUT_COUNT]);
 
-/* The view of the image to be drawn, `view` being that of the camera. Pixels. */
-struct tl_shift_input tl_input_shift(const struct tl_rest *rest, const struct tl_view *view, int width,
-                                     int height);
-
-/* The options of the inputs that hold some of a table. */
-struct tl_light_params tl_input_light(const struct tl_light_params *light);
-struct tl_lobes_input tl_input_lobes(const struct tl_light_params *light);
-struct tl_shadow_input tl_input_shadows(const struct tl_light_params *light);
-struct tl_detail_params tl_input_detail_maps(const struct tl_detail_params *detail);
-struct tl_maps_params tl_input_layout(const struct tl_maps_params *maps);
-struct tl_maps_params tl_input_look_up(const struct tl_maps_params *maps);
-struct tl_maps_params tl_input_capture(const struct tl_maps_params *maps);
-struct tl_ground_input tl_input_ground(const tl_frame *frame, const struct tl_image_params *image);
-struct tl_image_params tl_input_show(const struct tl_image_params *image);
-struct tl_image_params tl_input_view(const struct tl_image_params *image);
-struct tl_lamps_input tl_input_lamps(const tl_frame *frame, const struct tl_shading_params *shading);
+/* Sets the inputs, and the facts and rounds that jobs see. `hashes` are the frame's; the arrays of `frame`
+ * are borrowed. */
+void tl_inputs_set(struct tl_resources *resources, const tl_frame *frame,
+                   const struct tl_render_settings *settings, tl_bits facts, const struct tl_rest *rest,
+                   const uint64_t hashes[TL_INPUT_COUNT]);
 
 #endif

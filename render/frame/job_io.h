@@ -27,8 +27,8 @@
 
 #define TL_CUBE_JOB(IO)                                                                                      \
     IO(READS, environment)                                                                                   \
-    IO(READS, pem_size)                                                                                      \
-    IO(READS, takes_suns)                                                                                    \
+    IO(READS, pem_options)                                                                                      \
+    IO(READS, sun_options)                                                                                    \
     IO(WRITES, cube)                                                                                         \
     IO(WRITES, suns)                                                                                         \
     IO(USES, light_cache)                                                                                    \
@@ -37,22 +37,22 @@
 
 #define TL_REGIONS_JOB(IO)                                                                                   \
     IO(READS, cube)                                                                                          \
-    IO(READS, cut)                                                                                           \
+    IO(READS, cut_options)                                                                                           \
     IO(WRITES, regions)                                                                                      \
     IO(WRITES, regions_revision)                                                                             \
     IO(SEES, light_cache)
 
 #define TL_LOBE_JOB(IO)                                                                                      \
-    IO(READS, pem_size)                                                                                      \
-    IO(READS, filter)                                                                                        \
+    IO(READS, pem_options)                                                                                      \
+    IO(READS, filter_options)                                                                                        \
     IO(WRITES, lobe_levels)                                                                                  \
     IO(USES, gpu)
 
 #define TL_PEMS_JOB(IO)                                                                                      \
     IO(READS, cube)                                                                                          \
     IO(READS, regions)                                                                                       \
-    IO(READS, filter)                                                                                        \
-    IO(READS, pem_storage)                                                                                   \
+    IO(READS, filter_options)                                                                                        \
+    IO(READS, storage_options)                                                                                   \
     IO(WRITES, pems)                                                                                         \
     IO(USES, gpu)
 
@@ -76,7 +76,7 @@
     IO(READS, regions)                                                                                       \
     IO(READS, exact)                                                                                         \
     IO(READS, light_options)                                                                                 \
-    IO(SEES, cut)                                                                                            \
+    IO(SEES, cut_options)                                                                                            \
     IO(WRITES, lights)                                                                                       \
     IO(USES, light_cache)
 
@@ -102,14 +102,14 @@
     IO(READS, regions)                                                                                       \
     IO(READS, regions_revision)                                                                              \
     IO(READS, yaw)                                                                                           \
-    IO(READS, shadow_options)                                                                                \
-    IO(READS, pem_storage)                                                                                   \
+    IO(READS, shadows)                                                                                \
+    IO(READS, storage_options)                                                                                   \
     IO(READS, round)                                                                                         \
     IO(SEES, suns)                                                                                           \
     IO(SEES, shapes)                                                                                         \
     IO(SEES, ground_input)                                                                                   \
-    IO(SEES, ray_options)                                                                                    \
-    IO(SEES, moment)                                                                                         \
+    IO(SEES, rays)                                                                                    \
+    IO(SEES, motion_state)                                                                                         \
     IO(WRITES_HANDLE, maps)
 
 #define TL_BLUR_JOB(IO)                                                                                      \
@@ -119,14 +119,14 @@
     IO(READS_HANDLE, surfaces)                                                                               \
     IO(READS, casters)                                                                                       \
     IO(SEES, yaw)                                                                                            \
-    IO(SEES, shadow_options)                                                                                 \
-    IO(SEES, pem_storage)                                                                                    \
+    IO(SEES, shadows)                                                                                 \
+    IO(SEES, storage_options)                                                                                    \
     IO(SEES, round)                                                                                          \
     IO(SEES, suns)                                                                                           \
     IO(SEES, shapes)                                                                                         \
     IO(SEES, ground_input)                                                                                   \
-    IO(SEES, ray_options)                                                                                    \
-    IO(SEES, moment)
+    IO(SEES, rays)                                                                                    \
+    IO(SEES, motion_state)
 
 #define TL_GBUFFER_JOB(IO)                                                                                   \
     IO(READS_HANDLE, surfaces)                                                                               \
@@ -210,10 +210,10 @@
     IO(READS, ground_input)                                                                                  \
     IO(READS, ground)                                                                                        \
     IO(READS, yaw)                                                                                           \
-    IO(READS, ray_options)                                                                                   \
+    IO(READS, rays)                                                                                   \
     IO(READS, scene_round)                                                                                   \
     IO(SEES, round)                                                                                          \
-    IO(SEES, moment)                                                                                         \
+    IO(SEES, motion_state)                                                                                         \
     IO(SEES, facts)                                                                                          \
     IO(WRITES_HANDLE, points)                                                                                \
     IO(WRITES, points_are_done)
@@ -234,7 +234,7 @@
     IO(READS, light_options)                                                                                 \
     IO(READS, scene_round)                                                                                   \
     IO(SEES, environment)                                                                                    \
-    IO(SEES, moment)                                                                                         \
+    IO(SEES, motion_state)                                                                                         \
     IO(SEES, facts)                                                                                          \
     IO(WRITES, bounce)
 
@@ -351,15 +351,15 @@
 
 #define TL_ENVMAP_LOBES_JOB(IO)                                                                              \
     IO(READS, environment)                                                                                   \
-    IO(READS, envmap_size)                                                                                   \
+    IO(READS, envmap_input)                                                                                   \
     IO(READS, shapes)                                                                                        \
     IO(READS, detail_options)                                                                                \
-    IO(WRITES, surroundings)                                                                                 \
+    IO(WRITES, envmap_source)                                                                                 \
     IO(USES, map_resampling)
 
 #define TL_CAPTURE_JOB(IO)                                                                                   \
     IO(READS, capture_options)                                                                               \
-    IO(SEES, surroundings)                                                                                   \
+    IO(SEES, envmap_source)                                                                                   \
     IO(SEES, yaw)                                                                                            \
     IO(SEES, shapes)                                                                                         \
     IO(SEES, detail_options)                                                                                 \
@@ -373,13 +373,13 @@
     IO(USES, gpu)
 
 #define TL_ENVMAP_JOB(IO)                                                                                    \
-    IO(READS, surroundings)                                                                                  \
+    IO(READS, envmap_source)                                                                                  \
     IO(EXTENDS, capture, TL_MADE_ENVMAP)                                                                     \
-    IO(READS, layout)                                                                                        \
+    IO(READS, layout_options)                                                                                        \
     IO(READS, yaw)                                                                                           \
     IO(READS, shapes)                                                                                        \
     IO(READS, ground_input)                                                                                  \
-    IO(SEES, envmap_size)                                                                                    \
+    IO(SEES, envmap_input)                                                                                    \
     IO(SEES, detail_options)                                                                                 \
     IO(SEES, camera)                                                                                         \
     IO(WRITES, envmap)                                                                                       \
@@ -394,7 +394,7 @@
     IO(READS, ground_input)                                                                                  \
     IO(READS, reference_options)                                                                             \
     IO(READS, detail_steps)                                                                                  \
-    IO(READS, envmap_size)                                                                                   \
+    IO(READS, envmap_input)                                                                                   \
     IO(WRITES, light_map)                                                                                    \
     IO(USES, gpu)
 
@@ -403,7 +403,7 @@
     IO(AFTER, TL_MADE_ENVMAP)                                                                                \
     IO(AFTER, TL_MADE_LIGHT_MAP)                                                                             \
     IO(READS, camera)                                                                                        \
-    IO(READS, look_up)                                                                                       \
+    IO(READS, look_up_options)                                                                                       \
     IO(AFTER, TL_INPUT_LAMPS)                                                                                \
     IO(AFTER, TL_INPUT_VIEW)                                                                                 \
     IO(WRITES, light)                                                                                        \
@@ -419,7 +419,7 @@
     IO(READS_HANDLE, surfaces)                                                                               \
     IO(READS, casters)                                                                                       \
     IO(READS, lamps)                                                                                         \
-    IO(READS, shadow_options)                                                                                \
+    IO(READS, shadows)                                                                                \
     IO(READS, light_options)                                                                                 \
     IO(READS, motion)                                                                                        \
     IO(WRITES, local)                                                                                        \
@@ -487,9 +487,9 @@
 
 #define TL_BACKDROP_JOB(IO)                                                                                  \
     IO(READS, environment)                                                                                   \
-    IO(READS, pem_size)                                                                                      \
+    IO(READS, pem_options)                                                                                      \
     IO(READS, cube)                                                                                          \
-    IO(READS, filter)                                                                                        \
+    IO(READS, filter_options)                                                                                        \
     IO(READS, ground_input)                                                                                  \
     IO(WRITES_IN, present, TL_MADE_BACKDROP)
 

@@ -75,7 +75,7 @@ static size_t resource_bytes(const struct tl_resources *from, enum tl_resource r
     case TL_MADE_TRACE:
         return tl_trace_bytes(from->trace);
     case TL_MADE_ENVMAP_LOBES:
-        return cube_bytes(&from->surroundings.cube) + tl_lobes_bytes(&from->surroundings.lobes);
+        return cube_bytes(&from->envmap_source.cube) + tl_lobes_bytes(&from->envmap_source.lobes);
     case TL_MADE_CAPTURE:
         return tl_capture_bytes(&from->capture);
     case TL_MADE_ENVMAP:

@@ -92,5 +92,6 @@ const char *const tl_scene_fact_names[] = {
     [TL_SCENE_RATIOS] = "ratios at vertices",
     [TL_SCENE_INSPECT] = "view of something else than light",
     [TL_SCENE_CAPTURE] = "captured scene",
+    [TL_SCENE_FITS_VERTICES] = "light that vertices can hold",
     [TL_SCENE_FACT_COUNT] = NULL,
 };

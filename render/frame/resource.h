@@ -93,13 +93,14 @@ enum tl_scene_fact {
     TL_SCENE_CAPTURE,   /* ... and show the scene */
     TL_SCENE_LIGHT_MAP, /* ... beside diffuse light that is baked */
     TL_SCENE_LAMPS,
-    TL_SCENE_LAMP_MAPS, /* ... and depth maps shadow one of them */
-    TL_SCENE_LAMP_RAYS, /* ... and rays do */
-    TL_SCENE_SAMPLES,   /* rays start from what is seen */
-    TL_SCENE_COMPOSED,  /* light is composed from visibility by rays */
-    TL_SCENE_BOUNCE,    /* surfaces send light on to each other */
-    TL_SCENE_RATIOS,    /* ratios at vertices light the pixels, in one pass */
-    TL_SCENE_INSPECT,   /* something else than light is shown */
+    TL_SCENE_LAMP_MAPS,     /* ... and depth maps shadow one of them */
+    TL_SCENE_LAMP_RAYS,     /* ... and rays do */
+    TL_SCENE_SAMPLES,       /* rays start from what is seen */
+    TL_SCENE_COMPOSED,      /* light is composed from visibility by rays */
+    TL_SCENE_BOUNCE,        /* surfaces send light on to each other */
+    TL_SCENE_RATIOS,        /* ratios at vertices light the pixels, in one pass */
+    TL_SCENE_INSPECT,       /* something else than light is shown */
+    TL_SCENE_FITS_VERTICES, /* ratios at vertices could light the pixels; no job asks, work.c does */
     TL_SCENE_FACT_COUNT
 };
 

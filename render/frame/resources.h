@@ -38,8 +38,8 @@ struct tl_region_slices {
     struct tl_slice_maps maps;
 };
 
-/* The light of environment maps: all of it, suns included. */
-struct tl_surroundings {
+/* The light that environment maps are made from: all of it, suns included. */
+struct tl_envmap_source {
     tl_cube cube;
     struct tl_lobes lobes;
 };
@@ -55,13 +55,13 @@ struct tl_surroundings {
     RESOURCE(size, TL_INPUT_SIZE, struct tl_size_input)                                                      \
     RESOURCE(ground_input, TL_INPUT_GROUND, struct tl_ground_input)                                          \
     RESOURCE(lobes_input, TL_INPUT_LOBES, struct tl_lobes_input)                                             \
-    RESOURCE(pem_size, TL_INPUT_PEM_SIZE, int) /* texels */                                                  \
-    RESOURCE(filter, TL_INPUT_FILTER, int)     /* enum tl_chain_filter */                                    \
-    RESOURCE(takes_suns, TL_INPUT_SUN, bool)                                                                 \
-    RESOURCE(cut, TL_INPUT_REGIONS, struct tl_cut_input)                                                     \
-    RESOURCE(pem_storage, TL_INPUT_PASSES, struct tl_pem_storage)                                            \
-    RESOURCE(shadow_options, TL_INPUT_MAPS, struct tl_shadow_input)                                          \
-    RESOURCE(ray_options, TL_INPUT_RAYS, struct tl_rays_input)                                               \
+    RESOURCE(pem_options, TL_INPUT_PEM_SIZE, struct tl_light_params)                                         \
+    RESOURCE(filter_options, TL_INPUT_FILTER, struct tl_light_params)                                        \
+    RESOURCE(sun_options, TL_INPUT_SUN, struct tl_light_params)                                              \
+    RESOURCE(cut_options, TL_INPUT_REGIONS, struct tl_light_params)                                          \
+    RESOURCE(storage_options, TL_INPUT_PASSES, struct tl_light_params)                                       \
+    RESOURCE(shadows, TL_INPUT_MAPS, struct tl_shadow_input)                                                 \
+    RESOURCE(rays, TL_INPUT_RAYS, struct tl_rays_input)                                                      \
     RESOURCE(round, TL_INPUT_ROUND, int)                                                                     \
     RESOURCE(scene_round, TL_INPUT_SCENE_ROUND, int)                                                         \
     RESOURCE(shift, TL_INPUT_SHIFT, struct tl_shift_input)                                                   \
@@ -71,12 +71,12 @@ struct tl_surroundings {
     RESOURCE(detail_steps, TL_INPUT_DETAIL, struct tl_detail_params)                                         \
     RESOURCE(detail_options, TL_INPUT_DETAIL_MAPS, struct tl_detail_params)                                  \
     RESOURCE(show_options, TL_INPUT_SHOW, struct tl_image_params)                                            \
-    RESOURCE(envmap_size, TL_INPUT_ENVMAP, struct tl_envmap_input)                                           \
-    RESOURCE(layout, TL_INPUT_LAYOUT, struct tl_maps_params)                                                 \
-    RESOURCE(look_up, TL_INPUT_LOOK_UP, struct tl_maps_params)                                               \
+    RESOURCE(envmap_input, TL_INPUT_ENVMAP, struct tl_envmap_input)                                          \
+    RESOURCE(layout_options, TL_INPUT_LAYOUT, struct tl_maps_params)                                         \
+    RESOURCE(look_up_options, TL_INPUT_LOOK_UP, struct tl_maps_params)                                       \
     RESOURCE(capture_options, TL_INPUT_CAPTURE, struct tl_maps_params)                                       \
     RESOURCE(view_options, TL_INPUT_VIEW, struct tl_image_params)                                            \
-    RESOURCE(ratio_at, TL_INPUT_RATIO, int) /* enum tl_ratio_at */
+    RESOURCE(ratio_options, TL_INPUT_RATIO, struct tl_light_params)
 
 #define TL_MADE_RESOURCES(RESOURCE)                                                                          \
     RESOURCE(cube, TL_MADE_CUBE, tl_cube)        /* without the suns */                                      \
@@ -107,7 +107,7 @@ struct tl_surroundings {
     RESOURCE(points, TL_MADE_POINTS, tl_points *)                                                            \
     RESOURCE(bounce, TL_MADE_BOUNCE, struct tl_bounce)                                                       \
     RESOURCE(points_are_done, TL_MADE_POINTS, bool) /* another round would change nothing */                 \
-    RESOURCE(surroundings, TL_MADE_ENVMAP_LOBES, struct tl_surroundings)                                     \
+    RESOURCE(envmap_source, TL_MADE_ENVMAP_LOBES, struct tl_envmap_source)                                   \
     RESOURCE(capture, TL_MADE_CAPTURE, struct tl_capture)                                                    \
     RESOURCE(envmap, TL_MADE_ENVMAP, struct tl_envmap)                                                       \
     RESOURCE(light_map, TL_MADE_LIGHT_MAP, struct tl_light_map)                                              \
@@ -134,7 +134,7 @@ struct tl_resources {
 
     /* Further values of the frame that jobs read. A change of one is no reason to run. */
     tl_bits facts; /* of its scene */
-    struct tl_moment moment;
+    struct tl_motion_state motion_state;
     struct tl_picture_part show_part; /* what of the image is shown */
 };
 

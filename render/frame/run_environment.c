@@ -10,8 +10,8 @@ bool tl_run_cube(const struct tl_cube_job *job, tl_error *error)
     tl_cube_release(job->cube);
     tl_light_cache_begin(job->light_cache);
     tl_prepared *prepared = *job->prepared;
-    bool fits =
-        prepared && tl_prepared_fits(prepared, job->environment->revision, *job->pem_size, *job->takes_suns);
+    bool fits = prepared && tl_prepared_fits(prepared, job->environment->revision, job->pem_options->pem_size,
+                                             job->sun_options->sun);
     if (fits) {
         tl_prepared_give_cube(prepared, job->cube, job->suns);
         tl_prepared_give_lights(prepared, job->light_cache);
@@ -19,9 +19,10 @@ bool tl_run_cube(const struct tl_cube_job *job, tl_error *error)
     tl_prepared_destroy(job->prepared);
     if (fits)
         return true;
-    *job->cube = tl_cube_from_environment_with(job->environment->map, *job->pem_size, job->resampling);
+    *job->cube =
+        tl_cube_from_environment_with(job->environment->map, job->pem_options->pem_size, job->resampling);
     *job->suns = (struct tl_suns){0};
-    if (*job->takes_suns)
+    if (job->sun_options->sun)
         tl_suns_extract(job->cube, job->environment->map, job->suns);
     return true;
 }
@@ -30,12 +31,12 @@ bool tl_run_regions(const struct tl_regions_job *job, tl_error *error)
 {
     (void)error;
     const struct tl_regions *kept =
-        tl_light_cache_regions(job->light_cache, job->cut->regions, job->cut->cut);
+        tl_light_cache_regions(job->light_cache, job->cut_options->regions, job->cut_options->cut);
     if (kept) {
         tl_regions_release(job->regions);
         *job->regions = tl_regions_copy(kept);
     } else {
-        tl_light_cut_regions(job->cube, job->cut->regions, job->cut->cut, job->regions);
+        tl_light_cut_regions(job->cube, job->cut_options->regions, job->cut_options->cut, job->regions);
     }
     ++*job->regions_revision;
     return true;
@@ -73,7 +74,7 @@ bool tl_run_lobe(const struct tl_lobe_job *job, tl_error *error)
 {
     (void)error;
     struct tl_lobe_table table;
-    tl_lobe_calibrate(*job->pem_size, (enum tl_chain_filter) * job->filter, &table);
+    tl_lobe_calibrate(job->pem_options->pem_size, (enum tl_chain_filter)job->filter_options->filter, &table);
     tl_lobe_levels_upload(job->lobe_levels, *job->gpu, &table);
     return true;
 }
@@ -81,7 +82,9 @@ bool tl_run_lobe(const struct tl_lobe_job *job, tl_error *error)
 bool tl_run_pems(const struct tl_pems_job *job, tl_error *error)
 {
     (void)error;
-    tl_pems_build(job->pems, *job->gpu, job->cube, job->regions, *job->filter, *job->pem_storage);
+    const struct tl_pem_storage storage = {job->storage_options->pems_per_pass,
+                                           job->storage_options->pem_layout};
+    tl_pems_build(job->pems, *job->gpu, job->cube, job->regions, job->filter_options->filter, storage);
     return true;
 }
 
@@ -89,7 +92,7 @@ bool tl_run_lights(const struct tl_lights_job *job, tl_error *error)
 {
     (void)error;
     struct tl_light_cache *cache = job->light_cache;
-    *job->lights = tl_light_cache_lights(cache, job->cut->regions, job->cut->cut,
+    *job->lights = tl_light_cache_lights(cache, job->cut_options->regions, job->cut_options->cut,
                                          tl_light_region_weight(job->light_options), job->regions);
     cache->current = *job->lights;
     return true;
@@ -104,11 +107,11 @@ bool tl_run_backdrop(const struct tl_backdrop_job *job, tl_error *error)
     const vec3s *drawn = job->ground_input->is_drawn ? &ground : NULL;
     if (tl_image_floats(&map->backdrop)) {
         const tl_environment room = {.name = map->name, .layout = map->layout, .image = map->backdrop};
-        tl_cube cube = tl_cube_from_environment(&room, *job->pem_size);
-        tl_backdrop_set(backdrop, &cube, *job->filter, drawn);
+        tl_cube cube = tl_cube_from_environment(&room, job->pem_options->pem_size);
+        tl_backdrop_set(backdrop, &cube, job->filter_options->filter, drawn);
         tl_cube_release(&cube);
     } else {
-        tl_backdrop_set(backdrop, job->cube, *job->filter, drawn);
+        tl_backdrop_set(backdrop, job->cube, job->filter_options->filter, drawn);
     }
     return true;
 }

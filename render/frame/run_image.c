@@ -9,11 +9,11 @@
 bool tl_run_envmap_lobes(const struct tl_envmap_lobes_job *job, tl_error *error)
 {
     (void)error;
-    struct tl_surroundings *made = job->surroundings;
+    struct tl_envmap_source *made = job->envmap_source;
     tl_cube_release(&made->cube);
     tl_lobes_release(&made->lobes);
-    made->cube =
-        tl_cube_from_environment_with(job->environment->map, job->envmap_size->size, job->map_resampling);
+    made->cube = tl_cube_from_environment_with(job->environment->map, job->envmap_input->options.size,
+                                               job->map_resampling);
     tl_lobes_make(
         &made->lobes, &made->cube,
         tl_map_exponents_of(job->shapes->surfaces, job->shapes->surface_count, job->detail_options));
@@ -38,8 +38,8 @@ bool tl_run_capture(const struct tl_capture_job *job, tl_error *error)
     const struct tl_capture_request request = {
         .point = glms_vec3_add(casters->centre, offset),
         .size = maps->size,
-        .environment = &job->surroundings->cube,
-        .lobes = &job->surroundings->lobes,
+        .environment = &job->envmap_source->cube,
+        .lobes = &job->envmap_source->lobes,
         .environment_yaw = *job->yaw,
         .into_world = &into_world,
         .exponents = tl_map_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options),
@@ -60,14 +60,14 @@ bool tl_run_capture(const struct tl_capture_job *job, tl_error *error)
 bool tl_run_envmap(const struct tl_envmap_job *job, tl_error *error)
 {
     (void)error;
-    bool captured = job->envmap_size->is_captured;
+    bool captured = job->envmap_input->is_captured;
     const struct tl_shapes_input *shapes = job->shapes;
     if (captured)
         tl_lobes_make(&job->capture->lobes, &job->capture->cube,
                       tl_map_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options));
     mat3s into_world = environment_into_world(captured ? 0 : *job->yaw);
-    tl_envmap_fill(job->envmap, *job->gpu, job->layout,
-                   captured ? &job->capture->lobes : &job->surroundings->lobes, &into_world,
+    tl_envmap_fill(job->envmap, *job->gpu, job->layout_options,
+                   captured ? &job->capture->lobes : &job->envmap_source->lobes, &into_world,
                    &job->camera->view);
     tl_envmap_set_parts(job->envmap, *job->gpu, &shapes->ranges, job->ground_input->is_drawn);
     return true;
@@ -83,12 +83,13 @@ bool tl_run_light_map(const struct tl_light_map_job *job, tl_error *error)
                                                  .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                                  .params = job->reference_options,
                                                  .detail = job->detail_steps};
-    return tl_light_map_bake(job->light_map, *job->gpu, &request, job->envmap_size->light_map, error);
+    return tl_light_map_bake(job->light_map, *job->gpu, &request, job->envmap_input->options.light_map,
+                             error);
 }
 
 bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
 {
-    bool baked = job->look_up->light_map > 0;
+    bool baked = job->look_up_options->light_map > 0;
     if (!baked)
         tl_light_map_release(job->light_map);
     else if (!tl_light_map_draw(job->light_map, *job->gpu, &job->gbuffer->target, &job->shift->view,
@@ -100,7 +101,7 @@ bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
                                               .surfaces = job->surfaces,
                                               .surface_count = job->shapes->drawn_count,
                                               .baked = baked ? &job->light_map->target.colours[0] : NULL,
-                                              .params = job->look_up};
+                                              .params = job->look_up_options};
     bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, job->light, error);
     tl_gpu_reset_state(*job->gpu);
     return fine;
@@ -123,9 +124,9 @@ bool tl_run_reference(const struct tl_reference_job *job, tl_error *error)
         .lobe = job->light_options->lobe,
         .reflect_scene = job->light_options->reflect_scene,
         .bounces = tl_reference_bounces(job->light_options, job->reference_options),
-        .width = job->size->width,
-        .height = job->size->height,
-        .supersample = job->size->supersample};
+        .width = job->size->options.width,
+        .height = job->size->options.height,
+        .supersample = job->size->options.supersample};
     tl_image image;
     struct tl_reference_report report;
     if (!tl_reference_draw(&request, &image, &report, error))
@@ -162,12 +163,12 @@ bool tl_run_resolve(const struct tl_resolve_job *job, tl_error *error)
     (void)error;
     if (job->light->is_finished) {
         tl_present_resolve_texels(job->present, job->light->texels, job->size->columns, job->size->rows,
-                                  job->size->width, job->size->height, job->shift->before);
+                                  job->size->options.width, job->size->options.height, job->shift->before);
         return true;
     }
     tl_present_resolve(job->present, *job->gpu, &job->light->target.colours[0],
-                       &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->width, job->size->height,
-                       job->shift->before);
+                       &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->options.width,
+                       job->size->options.height, job->shift->before);
     return true;
 }
 

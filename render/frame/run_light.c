@@ -34,10 +34,10 @@ bool tl_run_light(const struct tl_light_job *job, tl_error *error)
 /* A still image takes all its rounds before it is lit. */
 static void take_rounds(const struct tl_points_job *job, struct tl_points_request *request)
 {
-    const struct tl_rays_input *options = job->ray_options;
+    const struct tl_rays_input *options = job->rays;
     struct tl_progress progress = tl_progress_begin("averaging");
     tl_points_update(job->points, request);
-    bool goes_on = job->moment->still && options->averages;
+    bool goes_on = job->motion_state->still && options->averages;
     for (int round = 1; goes_on && !tl_points_are_done(job->points) && !tl_interrupted(); round++) {
         request->moved = false;
         tl_points_update(job->points, request);
@@ -61,11 +61,11 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
                                         .shapes_revision = job->shapes->revision,
                                         .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                         .environment_yaw = *job->yaw,
-                                        .params = &job->ray_options->params,
+                                        .params = &job->rays->params,
                                         .moved = *job->scene_round == 0,
                                         .only_camera =
                                             at_vertices && *job->scene_round > 0 && *job->round == 0,
-                                        .whole_rounds = job->moment->still};
+                                        .whole_rounds = job->motion_state->still};
     take_rounds(job, &request);
     *job->points_are_done = tl_points_are_done(job->points);
     return true;
@@ -92,8 +92,8 @@ bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
                                         .seen = job->ids->seen,
                                         .seen_count = job->ids->seen_count,
                                         .all = job->light_options->bounce == TL_BOUNCE_ALL,
-                                        .moved = *job->scene_round == 0 || job->moment->moves_lamps,
-                                        .at_once = job->moment->still,
+                                        .moved = *job->scene_round == 0 || job->motion_state->moves_lamps,
+                                        .at_once = job->motion_state->still,
                                         .shares = job->light_options->bounce_shares};
     tl_bounce_update(job->bounce, &request);
     request.moved = false;
@@ -152,13 +152,14 @@ bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
 static void enlarge(const struct tl_shade_job *job, const float *shaded)
 {
     const struct tl_size_input *size = job->size;
-    const struct tl_resample resample = {
-        .from = shaded,
-        .from_width = size->columns,
-        .from_height = size->rows,
-        .to = tl_present_begin_cpu_image(job->present, size->width, size->height, job->shift->before),
-        .to_width = size->width,
-        .to_height = size->height};
+    const struct tl_resample resample = {.from = shaded,
+                                         .from_width = size->columns,
+                                         .from_height = size->rows,
+                                         .to = tl_present_begin_cpu_image(job->present, size->options.width,
+                                                                          size->options.height,
+                                                                          job->shift->before),
+                                         .to_width = size->options.width,
+                                         .to_height = size->options.height};
     const struct tl_outlines_request outlines = {.samples = job->ids,
                                                  .pixels = job->pixel_ids,
                                                  .light = shaded,
@@ -188,11 +189,11 @@ bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
                                               .view = &job->shift->view,
                                               .environment_yaw = *job->yaw};
     const struct tl_size_input *size = job->size;
-    int side = size->columns / size->width;
-    if (side * size->width == size->columns && side * size->height == size->rows) {
-        tl_pixels_shade(
-            &request, side,
-            tl_present_begin_cpu_image(job->present, size->width, size->height, job->shift->before));
+    int side = size->columns / size->options.width;
+    if (side * size->options.width == size->columns && side * size->options.height == size->rows) {
+        tl_pixels_shade(&request, side,
+                        tl_present_begin_cpu_image(job->present, size->options.width, size->options.height,
+                                                   job->shift->before));
         tl_present_end_cpu_image(job->present);
         return true;
     }
@@ -277,7 +278,7 @@ bool tl_run_lamp_maps(const struct tl_lamp_maps_job *job, tl_error *error)
                                                  .caster_count = job->motion->surface_count,
                                                  .casters = *job->casters,
                                                  .surfaces = job->surfaces,
-                                                 .map_size = job->shadow_options->map_size};
+                                                 .map_size = job->shadows->options.map_size};
     return tl_lamp_maps_draw(&job->local->shadows, *job->gpu, &request, error);
 }
 

@@ -21,17 +21,19 @@ bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
 #define SHADOW_REQUEST(job)                                                                                  \
     (struct tl_shadow_request)                                                                               \
     {                                                                                                        \
-        .kind = (job)->shadow_options->kind, .moments = (job)->shadow_options->moments,                      \
-        .regions = (job)->regions, .suns = (job)->suns, .environment_yaw = *(job)->yaw,                      \
-        .caster_surfaces = (job)->shapes->surfaces, .caster_count = (job)->shapes->surface_count,            \
-        .casters = *(job)->casters, .surfaces = (job)->surfaces,                                             \
-        .surface_count = (job)->shapes->drawn_count,                                                         \
+        .kind = (enum tl_visibility)(job)->shadows->options.visibility,                                      \
+        .moments = (enum tl_moments)(job)->shadows->options.moments, .regions = (job)->regions,              \
+        .suns = (job)->suns, .environment_yaw = *(job)->yaw, .caster_surfaces = (job)->shapes->surfaces,     \
+        .caster_count = (job)->shapes->surface_count, .casters = *(job)->casters,                            \
+        .surfaces = (job)->surfaces, .surface_count = (job)->shapes->drawn_count,                            \
         .ground_index = (job)->ground_input->is_drawn ? (int)(job)->shapes->drawn_count - 1 : -1,            \
-        .map_size = (job)->shadow_options->map_size,                                                         \
-        .maps_per_array = (job)->shadow_options->in_passes ? (job)->pem_storage->per_array : TL_REGIONS_MAX, \
-        .blur_m = (job)->shadow_options->blur_m, .regions_revision = *(job)->regions_revision,               \
-        .refresh =                                                                                           \
-            (job)->moment->moves_shadows && !(job)->moment->still ? (job)->ray_options->params.refresh : 0,  \
+        .map_size = (job)->shadows->options.map_size,                                                        \
+        .maps_per_array =                                                                                    \
+            (job)->shadows->in_passes ? (job)->storage_options->pems_per_pass : TL_REGIONS_MAX,              \
+        .blur_m = (job)->shadows->options.blur_m, .regions_revision = *(job)->regions_revision,              \
+        .refresh = (job)->motion_state->moves_shadows && !(job)->motion_state->still                         \
+                       ? (job)->rays->options.refresh                                                        \
+                       : 0,                                                                                  \
         .round = *(job)->round                                                                               \
     }
 
@@ -91,8 +93,8 @@ bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
                                          .only_triangle = true};
     if (!tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error))
         return false;
-    request.width = size->width;
-    request.height = size->height;
+    request.width = size->options.width;
+    request.height = size->options.height;
     return !tl_size_has_outlines(size) ||
            tl_ids_draw_nearest(job->pixel_ids, *job->gpu, &request, &job->shapes->ranges, error);
 }

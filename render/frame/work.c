@@ -54,18 +54,16 @@ static bool is_bumpy(const tl_material *material)
     return material->weave || material->normal_map.image;
 }
 
-struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings)
+struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts)
 {
-    struct tl_render_settings at_vertices = *settings;
-    at_vertices.light.ratio_at = TL_RATIO_AT_VERTICES;
     const tl_surface *surfaces = frame->surfaces;
     size_t count = frame->surface_count;
     struct tl_lamp lamps[TL_LAMPS_MAX];
     struct tl_work_counts counts = {.lamps = (int)tl_lamps_lit(frame, lamps),
                                     .is_glossy = tl_materials_have(surfaces, count, is_glossy),
                                     .is_bumpy = tl_materials_have(surfaces, count, is_bumpy),
-                                    .is_faceted = tl_materials_have(surfaces, count, tl_material_is_faceted)};
-    counts.fits_vertices = tl_frame_facts(frame, &at_vertices) & TL_BIT(TL_SCENE_RATIOS);
+                                    .is_faceted = tl_materials_have(surfaces, count, tl_material_is_faceted),
+                                    .fits_vertices = facts & TL_BIT(TL_SCENE_FITS_VERTICES)};
     for (size_t i = 0; i < count; i++)
         counts.triangles += (double)surfaces[i].index_count / 3;
     return counts;

@@ -26,7 +26,8 @@ struct tl_work_counts {
     bool fits_vertices;                   /* ratios at vertices can light the pixels */
     bool is_glossy, is_faceted, is_bumpy; /* any material */
 };
-struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings);
+/* `facts` are the frame's (facts.h). */
+struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts);
 /* `resources` and `counts` are those of the last frame; `settings` are those of the next. */
 struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources,
                                             const struct tl_work_counts *counts,

@@ -1,6 +1,6 @@
-/* The inputs of a frame that options of the renderer affect, one bit each. The signature of such an input is
- * a hash of the options whose rows have its bit (render/frame/inputs.c), and a job runs again when the
- * signature of an input that it reads has changed. Threads: constants. */
+/* The inputs of a frame that options of the renderer affect, one bit each. The hash of such an input
+ * covers the options whose rows have its bit (render/frame/inputs.c), and a job runs again when the
+ * hash of an input that it reads has changed. Threads: constants. */
 #ifndef TOILE_RENDER_PLAN_AFFECTS_H
 #define TOILE_RENDER_PLAN_AFFECTS_H
 

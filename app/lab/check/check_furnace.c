@@ -22,7 +22,7 @@ static bool is_two_lobes(const tl_material *material)
 
 static void add_sample(const struct tl_resources *inside, const tl_sample *sample, struct albedo *albedo)
 {
-    int lobe = inside->light_options.lobe, side = inside->size.supersample;
+    int lobe = inside->light_options.lobe, side = inside->size.options.supersample;
     vec3s colour = lobe == TL_LOBE_SINGLE
                        ? glms_vec3_lerp(sample->diffuse, sample->specular, sample->glossiness)
                        : glms_vec3_add(sample->diffuse, sample->specular);
@@ -40,7 +40,7 @@ static struct albedo *find_albedos(const struct tl_resources *inside, int width,
     for (int i = 0; i < width * height; i++)
         albedos[i].is_known = true;
     tl_samples_read(&inside->gbuffer, &inside->shapes.ranges, inside->camera.view.eye, &samples);
-    int side = inside->size.supersample;
+    int side = inside->size.options.supersample;
     for (size_t i = 0; i < samples.primary_count; i++) {
         int x = (int)samples.items[i].texel % samples.width / side;
         int y = height - 1 - (int)samples.items[i].texel / samples.width / side;

@@ -383,7 +383,7 @@ void tl_measure_pems(const struct tl_checked *checked, struct tl_finding *findin
         tl_renderer_frame_resources(checked->renderer)->pems.count == 0)
         return;
     const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
-    struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter);
+    struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter_options.filter);
     if (whole.level_count >
         1) /* the first level is cut, not filtered, and takes four times as long to read */
         add_pem_level(inside, &whole, 1, finding);

@@ -7,9 +7,10 @@
 #include "app/lab/flight/fly_account.h"
 #include "app/scene/session.h"
 #include "config/memory.h"
-#include "render/frame/inputs.h"
+#include "render/frame/resources.h"
 #include "render/plan/affects.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define ROWS_MAX 64
@@ -161,66 +162,63 @@ static void recorded_flights_follow_a_new_row(void **state)
     cJSON_Delete(record.settings);
 }
 
-/* The inputs, by bits, whose signatures differ between two frames that differ in the new option. */
-static uint64_t inputs_that_follow(uint64_t bits, const struct tl_render_settings *settings)
+/* Sets the inputs of a frame without surfaces, and computes their hashes. */
+static void compute_inputs(const struct tl_render_settings *settings, struct tl_resources *resources,
+                           uint64_t hashes[TL_INPUT_COUNT])
 {
-    const struct tl_lamp lamp = {
-        .kind = TL_LAMP_DIRECTIONAL, .direction = {{0, 1, 0}}, .irradiance = {{1, 1, 1}}};
     const tl_environment place = {0};
-    const tl_frame frame = {.camera = {.target = {{0, 0, -1}}, .up = {{0, 1, 0}}},
-                            .environment = &place,
-                            .lamps = &lamp,
-                            .lamp_count = 1};
-    struct tl_render_settings other = *settings;
-    uint64_t zero[TL_INPUT_COUNT] = {0}, a[TL_INPUT_COUNT], b[TL_INPUT_COUNT], follow = 0;
+    const tl_frame frame = {.camera = {.target = {{0, 0, -1}}, .up = {{0, 1, 0}}}, .environment = &place};
+    const uint64_t zero[TL_INPUT_COUNT] = {0};
     struct tl_rest rest = {0};
-    other.image.legend = !other.image.legend;
-    affects = bits;
-    tl_frame_sign(&frame, settings, zero, &rest, a);
-    rest = (struct tl_rest){0};
-    tl_frame_sign(&frame, &other, zero, &rest, b);
-    for (int i = 0; i < TL_INPUT_COUNT; i++)
-        follow |= (uint64_t)(a[i] != b[i]) << i;
-    return follow;
+    tl_frame_hash_inputs(&frame, settings, 0, zero, &rest, hashes);
+    tl_inputs_set(resources, &frame, settings, 0, &rest, hashes);
+    free(resources->shapes.drawn);
+    tl_triangle_ranges_release(&resources->shapes.ranges);
+    resources->shapes.drawn = NULL;
 }
 
+/* The new row of table image in the inputs that hold this table; every row that there is, in all inputs:
+ * tests/render/frame/test_inputs.c. */
 static void inputs_follow_a_new_row(void **state)
 {
     (void)state;
-    static const struct {
+    static struct tl_resources resources;
+    const struct {
         uint64_t bit;
         enum tl_resource input;
+        const bool *field;
     } cases[] = {
-        {TL_AFFECTS_SIZE, TL_INPUT_SIZE},         {TL_AFFECTS_GROUND, TL_INPUT_GROUND},
-        {TL_AFFECTS_PEM_SIZE, TL_INPUT_PEM_SIZE}, {TL_AFFECTS_FILTER, TL_INPUT_FILTER},
-        {TL_AFFECTS_SUN, TL_INPUT_SUN},           {TL_AFFECTS_REGIONS, TL_INPUT_REGIONS},
-        {TL_AFFECTS_PASSES, TL_INPUT_PASSES},     {TL_AFFECTS_SHADOW_MAPS, TL_INPUT_MAPS},
-        {TL_AFFECTS_RAYS, TL_INPUT_RAYS},         {TL_AFFECTS_LIGHT, TL_INPUT_LIGHT},
-        {TL_AFFECTS_LAMPS, TL_INPUT_LAMPS},       {TL_AFFECTS_REFERENCE, TL_INPUT_REFERENCE},
-        {TL_AFFECTS_DETAIL, TL_INPUT_DETAIL},     {TL_AFFECTS_DETAIL_MAPS, TL_INPUT_DETAIL_MAPS},
-        {TL_AFFECTS_SHOW, TL_INPUT_SHOW},         {TL_AFFECTS_ENVMAP, TL_INPUT_ENVMAP},
-        {TL_AFFECTS_LAYOUT, TL_INPUT_LAYOUT},     {TL_AFFECTS_LOOK_UP, TL_INPUT_LOOK_UP},
-        {TL_AFFECTS_CAPTURE, TL_INPUT_CAPTURE},   {TL_AFFECTS_VIEW, TL_INPUT_VIEW},
-        {TL_AFFECTS_VIEW_SCALE, TL_INPUT_VIEW},
+        {TL_AFFECTS_SIZE, TL_INPUT_SIZE, &resources.size.options.legend},
+        {TL_AFFECTS_GROUND, TL_INPUT_GROUND, &resources.ground_input.options.legend},
+        {TL_AFFECTS_SHOW, TL_INPUT_SHOW, &resources.show_options.legend},
+        {TL_AFFECTS_VIEW, TL_INPUT_VIEW, &resources.view_options.legend},
+        {TL_AFFECTS_VIEW_SCALE, TL_INPUT_VIEW, &resources.view_options.legend},
     };
     affects = 0;
     struct tl_settings loaded = load();
     struct tl_render_settings settings = tl_settings_render(&loaded);
+    uint64_t off[TL_INPUT_COUNT], on[TL_INPUT_COUNT];
     settings.image.view = TL_VIEW_VISIBILITY;
-    settings.light.method = TL_METHOD_MAPS;
-    settings.maps.capture_every = 1;
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
-        uint64_t expected = (uint64_t)1 << cases[i].input;
-        /* A capture shows the ground, and is lit by lamps. */
-        if (cases[i].input == TL_INPUT_GROUND || cases[i].input == TL_INPUT_LAMPS)
-            expected |= (uint64_t)1 << TL_INPUT_CAPTURE;
-        assert_int_equal(inputs_that_follow(cases[i].bit, &settings), expected);
+        affects = cases[i].bit;
+        settings.image.legend = false;
+        compute_inputs(&settings, &resources, off);
+        assert_false(*cases[i].field);
+        settings.image.legend = true;
+        compute_inputs(&settings, &resources, on);
+        assert_true(*cases[i].field);
+        assert_int_not_equal(off[cases[i].input], on[cases[i].input]);
+        affects = TL_AFFECTS_NOTHING;
+        compute_inputs(&settings, &resources, on);
+        assert_false(*cases[i].field);
     }
-    assert_int_equal(inputs_that_follow(TL_AFFECTS_SIZE | TL_AFFECTS_RAYS, &settings),
-                     (uint64_t)1 << TL_INPUT_SIZE | (uint64_t)1 << TL_INPUT_RAYS);
-    assert_int_equal(inputs_that_follow(TL_AFFECTS_NOTHING, &settings), 0);
+    affects = TL_AFFECTS_VIEW_SCALE;
     settings.image.view = TL_VIEW_LIGHT;
-    assert_int_equal(inputs_that_follow(TL_AFFECTS_VIEW_SCALE, &settings), 0);
+    settings.image.legend = false;
+    compute_inputs(&settings, &resources, off);
+    settings.image.legend = true;
+    compute_inputs(&settings, &resources, on);
+    assert_memory_equal(off, on, sizeof off);
 }
 
 /* Each row of each table has its column, and a table of the renderer is bound for the inputs as well. */
