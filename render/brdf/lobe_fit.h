@@ -1,5 +1,5 @@
 /* A fit of the gloss towards one viewer by a few cosine lobes, for which prefiltered light can be looked up
- * [DESIGN 4; TECHNIQUES D7, "several lobes for a BRDF"]:
+ * [after Knuth et al. 2014, 6]:
  *
  *     f_r(l, v) cos a  ~  sum over k of weight_k K_{s_k}(direction_k, l)
  *

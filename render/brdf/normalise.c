@@ -61,7 +61,7 @@ static vec3s rounded_vector(vec3s v)
     return (vec3s){{rounded(v.x), rounded(v.y), rounded(v.z)}};
 }
 
-/* v + v/2 (1 - v.v), evaluated by two register combiner stages [001, eq. 6]. */
+/* v + v/2 (1 - v.v), evaluated by two register combiner stages [Schroecker 2002, eq. 6]. */
 static vec3s newton_fixed(vec3s v)
 {
     vec3s start = rounded_vector(v);

@@ -1,4 +1,4 @@
-/* Renormalisation of interpolated vectors by five methods [001, section 4.2 and figure 9].
+/* Renormalisation of interpolated vectors by five methods [Schroecker 2002, 4.2 and figure 9].
  *
  * Linear interpolation between two unit vectors leaves the sphere and slows down towards the middle of the
  * arc; slerp is the exact interpolation that it approximates. The cube maps hold directions in n bits a
@@ -45,7 +45,7 @@ struct tl_normalise_error {
     double direction; /* rad, largest angle to the exactly normalised vector */
     double vector; /* root mean square distance from the exactly normalised vector: the method's own error */
     double slerp;  /* the same from slerp: includes the uneven speed of linear interpolation */
-    double highlight; /* largest error of (v.h)^8 against slerp, h anywhere on the arc [001, figure 9] */
+    double highlight; /* largest error of (v.h)^8 against slerp, h anywhere on the arc */
 };
 #define TL_NORMALISE_CUBE_SIZE 256 /* texels along a face of the cubes measured */
 struct tl_normalise_error tl_normalise_error(int method, double angle);

@@ -1,4 +1,4 @@
-/* A cosine raised to the exponent of a highlight by three methods [001, sections 5.1, 5.2 and figure 10]:
+/* A cosine raised to the exponent of a highlight by three methods [Schroecker 2002, 5.1, 5.2 and figure 10]:
  * pow; repeated squaring in 8 bits and a sign, as register combiners do; a table of 8-bit values that a
  * texture unit interpolates. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_POWER_H

@@ -1,4 +1,4 @@
-/* Maps derived from a height field [004]: normals, horizons, the spread of normals, and the gloss
+/* Maps derived from a height field [Wimmer n.d.]: normals, horizons, the spread of normals, and the gloss
  * widened by it. Each function returns a new image, which the caller releases, of the size of its source
  * unless stated otherwise. Pure; deterministic at any number of threads. */
 #ifndef TOILE_RENDER_DETAIL_BAKE_H

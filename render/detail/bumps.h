@@ -1,5 +1,5 @@
-/* Bumped normals: Blinn's form and the shorter forms that approximate it [004]. In any space; pure; threads:
- * any. */
+/* Bumped normals: Blinn's form and the shorter forms that approximate it [Wimmer n.d.]. In any space; pure;
+ * threads: any. */
 #ifndef TOILE_RENDER_DETAIL_BUMPS_H
 #define TOILE_RENDER_DETAIL_BUMPS_H
 

@@ -1,5 +1,5 @@
-/* A height field over the tangent plane of a surface, and its visibility: parallax [004], relief [004],
- * shadows. The counterpart of detail.glsl on the CPU.
+/* A height field over the tangent plane of a surface, and its visibility: parallax, relief, shadows [Wimmer
+ * n.d.]. The counterpart of detail.glsl on the CPU.
  *
  * Tangent space: x along u, y along minus v, z outwards; metres; unit directions towards the viewer or the
  * light. Heights are above the surface of the mesh. Positions are in repeats of the map (uv of its texels).

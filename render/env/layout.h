@@ -6,15 +6,16 @@
  * - lat-long, 2:1: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi: the centre looks along -Z, +X right of it.
  * - cube, 1:6: faces +X -X +Y -Y +Z -Z stacked from the top, each in GL orientation (render/env/cube.h).
  * - sphere, 1:1: a mirror ball seen by an orthographic camera that looks along -Z: a point of the unit disc,
- *   y up, is h.xy, where h halves the angle between the direction and +Z (Heidrich and Seidel 1999, 4.1). The
+ *   y up, is h.xy, where h halves the angle between the direction and +Z [Heidrich and Seidel 1999, 4.1]. The
  *   centre shows +Z. -Z is singular: the whole rim shows it.
  * - paraboloid, 2:1: two mirrors side by side that show a hemisphere each: d.xy / (1 + d.z) on the left for
- *   z >= 0, and on the right the same seen from behind, (-d.x, d.y) / (1 - d.z) (op. cit., eq. 5 to 7).
+ *   z >= 0, and on the right the same seen from behind, (-d.x, d.y) / (1 - d.z) [Heidrich and Seidel
+ *   1999, eq. 5 to 7].
  * - octahedral, 1:1: the octahedron |x| + |y| + |z| = 1 unfolded about +Y: the upper half is (x, z), +X right
  *   and +Z down, and below the horizon the four corners are folded outwards, -Y in each of them.
  *
- * Points outside of the discs are not part of the sphere. There paraboloids are continued (op. cit., 4.1) and
- * the rim of the ball is repeated, so that filters do not read black. */
+ * Points outside of the discs are not part of the sphere. There paraboloids are continued [Heidrich and
+ * Seidel 1999, 4.1] and the rim of the ball is repeated, so that filters do not read black. */
 #ifndef TOILE_RENDER_ENV_LAYOUT_H
 #define TOILE_RENDER_ENV_LAYOUT_H
 

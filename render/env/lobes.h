@@ -1,6 +1,6 @@
-/* The whole environment convolved exactly with cosine lobes: E(d, s) = integral of L(w) K_s(d, w) dw [DESIGN
- * 4], for the exponents that a frame needs. Pure, but for the cache of files (config/cache/cache.h), in which
- * slow results are kept between runs; results do not depend on it, nor on the number of threads.
+/* The whole environment convolved exactly with cosine lobes: E(d, s) = integral of L(w) K_s(d, w) dw, for the
+ * exponents that a frame needs. Pure, but for the cache of files (config/cache/cache.h), in which slow
+ * results are kept between runs; results do not depend on it, nor on the number of threads.
  *
  * One octahedral map per exponent, its side following the width of the lobe, with a border of one texel, so
  * that a bilinear fetch needs no special case at seams. */

@@ -8,9 +8,9 @@
 #include <string.h>
 
 /* The smallest share of all light. A sun that stays in the regions is shadowed by interpolation from vertex
- * to vertex, which cost 13 % of the image where the sun held 65 % of the light (FRONTIER, finding 3). At this
- * share it costs 1 %, compared with about 3 % that interpolated visibility costs anyway. Its own rays take a
- * tenth of the time of a frame. */
+ * to vertex, which cost 13 % of the image where the sun held 65 % of the light (docs/notes/visibility.md, 3).
+ * At this share it costs 1 %, compared with about 3 % that interpolated visibility costs anyway. Its own rays
+ * take a tenth of the time of a frame. */
 #define SHARE_MIN 0.05
 /* Largest radius (rad): half of that of the smallest regions (with 384 regions 5.9 degrees). A larger light,
  * such as a soft box, is divided into regions and gets its penumbra from them. */

@@ -1,6 +1,6 @@
-/* Suns: compact lights so strong that no region may hold them (FRONTIER, finding 3). They are removed from
- * the cube, whose texels there get the colour of their surroundings, and are shadowed by their own rays or
- * shadow map. Pure; threads: any. */
+/* Suns: compact lights so strong that no region may hold them (docs/notes/visibility.md, 3). They are removed
+ * from the cube, whose texels there get the colour of their surroundings, and are shadowed by their own rays
+ * or shadow map. Pure; threads: any. */
 #ifndef TOILE_RENDER_ENV_SUN_H
 #define TOILE_RENDER_ENV_SUN_H
 

@@ -17,11 +17,12 @@ enum tl_maps_mode {
 /* OFF: the reflectance of the G-buffer. The others: F from a table over the cosine, Lo = F Lm + Ld, or F Lm +
  * (1 - F) Ld [Heidrich and Seidel 1999, 4.4]. */
 enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FRESNEL_COAT };
-/* ONE: everything in one pass. SEVERAL: a pass for every texture [op. cit., 4.2, 4.4]
+/* ONE: everything in one pass. SEVERAL: a pass for every texture [Heidrich and Seidel 1999, 4.2, 4.4]
  * (render/envmap/passes.c). */
 enum tl_maps_passes { TL_MAPS_PASSES_ONE, TL_MAPS_PASSES_SEVERAL };
 /* Where directions of look-ups and the cosine of Fresnel's term are computed: at pixels; or at vertices, from
- * where they are interpolated without renormalisation, as texture coordinates were [op. cit., 4.1]. */
+ * where they are interpolated without renormalisation, as texture coordinates were [Heidrich and Seidel
+ * 1999, 4.1]. */
 enum tl_maps_vectors { TL_MAPS_VECTORS_PIXEL, TL_MAPS_VECTORS_VERTEX };
 struct tl_maps_params {  /* table "maps", of TL_METHOD_MAPS */
     int layout;          /* enum tl_layout (render/env/layout.h) */

@@ -1,6 +1,7 @@
 #version 450 core
-// One additive pass over some of the regions, their light from filter chains [002, eq. 5]: c += VIS_i PEM_i; or, after
-// the exact light, what is missing: c += (VIS_i - 1) PEM_i. PARABOLOIDS: these are cropped paraboloid maps.
+// One additive pass over some of the regions, their light from filter chains [Knuth et al. 2014, eq. 5]: c += VIS_i
+// PEM_i; or, after the exact light, what is missing: c += (VIS_i - 1) PEM_i. PARABOLOIDS: these are cropped paraboloid
+// maps.
 #ifdef PARABOLOIDS
 #include "paraboloids.glsl"
 #endif
@@ -59,8 +60,9 @@ void main()
     Sample place = read_sample(ivec2(gl_FragCoord.xy));
     vec3 sum = vec3(0.0);
     if (lobe == LOBE_SINGLE) {
-        // One look-up for direction and glossiness [002, section 3.4]; its direction and its colour go from
-        // diffuse (n, kd) at g = 0 to mirror (r, F ks) at g = 1. n.r >= 0, so the mean never vanishes.
+        // One look-up for direction and glossiness [Knuth et al. 2014, 3.2]. The paper does not state how they mix;
+        // here they go from diffuse (n, kd) at g = 0 to mirror (r, F ks) at g = 1. n.r >= 0, so the mean never
+        // vanishes.
         PLACE d = pem_place(into_environment(mix(place.normal, place.mirror, place.glossiness)));
         float level = lobe_level(place.glossiness);
         for (int i = 0; i < region_range.y; i++)

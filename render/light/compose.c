@@ -170,8 +170,8 @@ static void add_suns(const struct block *block, size_t index, const struct frame
     }
 }
 
-/* The two lobes of the material as one [002, section 3.4], its direction and colour between diffuse and
- * mirror. */
+/* The two lobes of the material as one: one look-up [Knuth et al. 2014, 3.2], whose direction and colour lie
+ * between diffuse and mirror, which is our choice. */
 TL_INLINE struct frame frame_of(struct block *block, const tl_sample *sample)
 {
     vec3s gloss = sample->mirror;

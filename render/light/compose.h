@@ -6,8 +6,8 @@
  *
  * E is the exact unshadowed light (env/lobes.h); w_i and u_i stand for P_i: the region's power times the
  * lobe, broadened by the region's spread. v_i is the visibility of region i at the sample, clipped at the
- * sample's own horizon (FRONTIER, findings 1 and 2). Suns stand apart: power times lobe times their own
- * visibility. The other methods of enum tl_method are made of the same sums.
+ * sample's own horizon (docs/notes/visibility.md, 1 and 2). Suns stand apart: power times lobe times their
+ * own visibility. The other methods of enum tl_method are made of the same sums.
  *
  * A material whose gloss is not a lobe about r has a few lobes (render/brdf/lobe_fit.h), a coat has one more;
  * each is taken as the glossy one is, but that none has mirrors' rays: what they reflect of the scene is

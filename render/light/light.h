@@ -1,7 +1,7 @@
 /* The light passes: the light of every sample of the G-buffer from the regions' light and their shadow maps.
  *
  *     dual:   c = sum VIS_i [ kd P_i(n, 1) + F ks P_i(r, s) ]
- *     single: c = sum VIS_i mix(kd, F ks, g) P_i(mix(n, r, g), s) [002, eq. 5]
+ *     single: c = sum VIS_i mix(kd, F ks, g) P_i(mix(n, r, g), s) [Knuth et al. 2014, eq. 5]
  *
  * chain.frag adds up P_i of the filter chains, some regions a pass, as the paper does. regions.frag takes all
  * regions at once: P_i from exact slices, or what stands for it, the region's power times a cosine lobe

@@ -1,6 +1,6 @@
 /* Near mirrors: samples whose lobe is so narrow that one visibility a region is too coarse for it get rays
- * along the lobe. What such a ray hits is lit like any other sample, instead of black as in [002, section 7]:
- * it becomes a sample itself, behind the camera's own.
+ * along the lobe. What such a ray hits is lit like any other sample, instead of black [as in Knuth et al.
+ * 2014, 6]: it becomes a sample itself, behind the camera's own.
  *
  *     F ks [ E(r, s) sum v_m E(w_m, M s) / sum E(w_m, M s)  +  1/M sum (1 - v_m) L(hit_m) ]
  *

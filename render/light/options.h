@@ -6,10 +6,9 @@
 #include "render/visibility/options.h"
 
 enum tl_method {
-    TL_METHOD_PEM,    /* the environment's regions, shadowed one by one */
-    TL_METHOD_LIGHTS, /* the regions as directional lights: no prefiltered maps [002, figure 6 and section 7]
-                       */
-    TL_METHOD_AO,     /* unshadowed light times ambient occlusion */
+    TL_METHOD_PEM,        /* the environment's regions, shadowed one by one */
+    TL_METHOD_LIGHTS,     /* the regions as directional lights: no prefiltered maps */
+    TL_METHOD_AO,         /* unshadowed light times ambient occlusion */
     TL_METHOD_AO_COLOUR,  /* ... times the occlusion of the diffuse light, by channel */
     TL_METHOD_UNSHADOWED, /* visibility is 1 everywhere */
     TL_METHOD_REFERENCE,  /* ray traced: render/reference */
@@ -18,8 +17,8 @@ enum tl_method {
 enum tl_lobe { TL_LOBE_SINGLE, TL_LOBE_DUAL };
 enum tl_cut { TL_CUT_FACES, TL_CUT_SPHERE };
 enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
-/* sum: VIS_i P_i [002, eq. 5]. difference: E - (1 - VIS_i) P_i. ratio: E x sum VIS_i w_i / sum w_i, w_i being
- * P_i or what stands for it. E is the exact unshadowed light. */
+/* sum: VIS_i P_i [Knuth et al. 2014, eq. 5]. difference: E - (1 - VIS_i) P_i. ratio: E x sum VIS_i w_i / sum
+ * w_i, w_i being P_i or what stands for it. E is the exact unshadowed light. */
 /* Where the ratio of seen to exact light is computed: for every sample, or at the vertices of the triangles
  * that are seen (render/shade), from where pixels interpolate it. */
 enum tl_ratio_at { TL_RATIO_AT_SAMPLES, TL_RATIO_AT_VERTICES };
@@ -49,9 +48,9 @@ struct tl_light_params { /* table "light" */
     int bounce;          /* enum tl_light_bounce, of rays */
     int bounce_shares;   /* ... in motion traced at one in so many of the vertices that are seen */
     int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
-    bool reflect_scene; /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black, as [002] */
-    int map_size;       /* texels, side of a shadow map */
-    int moments;        /* enum tl_moments, of variance maps */
+    bool reflect_scene;  /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black */
+    int map_size;        /* texels, side of a shadow map */
+    int moments;         /* enum tl_moments, of variance maps */
     float blur_m; /* metres, like all below by tl_casters_scale: the Gaussian's sigma is blur_m x tan(cone) */
     float depth_bias_m;    /* metres */
     float min_variance;    /* m^2, floor of the VSM variance */

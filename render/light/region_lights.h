@@ -4,7 +4,7 @@
  * spread. The sum of all regions is then not quite E(d, s), the exact light; `gain` is what it must be
  * multiplied by, by direction and channel, so that light is exact where everything is seen:
  *
- *     c = E sum v_i w_i / sum w_i = gain sum v_i w_i                                   (FRONTIER, finding 2)
+ *     c = E sum v_i w_i / sum w_i = gain sum v_i w_i (docs/notes/visibility.md, 2)
  *
  * Environment's frame. Pure; results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_LIGHT_REGION_LIGHTS_H

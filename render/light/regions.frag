@@ -63,7 +63,7 @@ void main()
 {
     Sample place = read_sample(ivec2(gl_FragCoord.xy));
     Lobe gloss = Lobe(place.mirror, 1.0 / max(1.0 - place.glossiness, 1e-6));
-    if (lobe == LOBE_SINGLE) // the two lobes as one, its direction and colour between diffuse and mirror [002, 3.4]
+    if (lobe == LOBE_SINGLE) // the two lobes as one, its direction and colour between diffuse and mirror
         gloss.direction = normalize(mix(place.normal, place.mirror, place.glossiness));
     float level = exponent_level(gloss.exponent);
     vec3 d = into_environment(place.normal), m = into_environment(gloss.direction);

@@ -12,8 +12,8 @@ TERM float lobe_cosine(float s, float cosine)
 // Exponent of the cosine lobe that stands for K_s averaged over a region whose directions lie `spread` (root mean
 // square angle, rad) about its centre. Along each of two axes the region's variance is spread^2 / 2 and the lobe's
 // nearly 1 / (s + 1); variances add. Against the average over a disc it is off by less than 3 % in L1 while
-// spread^2 (s + 1) < 1, by 10 % at 2: beyond that a lobe's peak is the region's own shape. Broad lobes over large regions
-// add up to 0.9 spread^2 / sqrt(s): their foot, where the hemisphere cuts them, is no power.
+// spread^2 (s + 1) < 1, by 10 % at 2: beyond that a lobe's peak is the region's own shape. Broad lobes over large
+// regions add up to 0.9 spread^2 / sqrt(s): their foot, where the hemisphere cuts them, is no power.
 TERM float lobe_broadened_exponent(float s, float spread)
 {
     return max((s + 1.0f) / (1.0f + (s + 1.0f) * 0.5f * spread * spread) - 1.0f, 0.25f);
@@ -51,7 +51,8 @@ TERM float horizon_share(float cosine, float cone)
 }
 
 // A bumped surface's own shadow: 0 where the light lies below the plane of the smooth normal, a steep ramp above, which
-// flickers less than a step does [001, eq. 7]. Its steepness costs light: with 8 an image is 0.7 % darker than with 32.
+// flickers less than a step does [Schroecker 2002, 4.5]. Its steepness costs light: with 8 an image is 0.7 % darker
+// than with 32.
 TERM float self_shadow_ramp(float cosine)
 {
     return clamp(32.0f * cosine, 0.0f, 1.0f);

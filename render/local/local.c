@@ -328,7 +328,7 @@ static void prepare_product(struct tl_local *local, tl_gpu *gpu, const struct tl
 }
 
 /* Multiplies the tables by blending, a few in each pass. A last pass adds the product and the diffuse light
- * [000, 3.1]. */
+ * [Heidrich and Seidel 1999, 3.1]. */
 static bool draw_passes(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                         const struct lit_part *part, tl_error *error)
 {

@@ -1,6 +1,6 @@
 /* Shading of surfaces by lamps: table "shading". The defaults shade exactly. Every other setting is an
- * approximation that hardware without shaders, or with little precision, used [Heidrich and Seidel 1999,
- * section 3; Per-pixel lighting on the GeForce3, sections 4 and 5]. */
+ * approximation that hardware without shaders, or with little precision, used [Heidrich and Seidel 1999, 3;
+ * Schroecker 2002, 4 and 5]. */
 #ifndef TOILE_RENDER_LOCAL_SHADING_H
 #define TOILE_RENDER_LOCAL_SHADING_H
 
@@ -13,8 +13,8 @@
 /* The place of evaluation of the reflectance model: at vertices; at pixels with interpolated vectors as they
  * are; at pixels with renormalised vectors. */
 enum tl_frequency { TL_FREQUENCY_GOURAUD, TL_FREQUENCY_FAST_PHONG, TL_FREQUENCY_PHONG };
-/* The origin of the cosines: from the normal by one matrix, with constant light and view directions [000, eq.
- * 2 and 3]; computed at vertices and interpolated; from vectors at pixels. */
+/* The origin of the cosines: from the normal by one matrix, with constant light and view directions [Heidrich
+ * and Seidel 1999, eq. 2 and 3]; computed at vertices and interpolated; from vectors at pixels. */
 enum tl_coordinates { TL_COORDINATES_MATRIX, TL_COORDINATES_VERTEX, TL_COORDINATES_PIXEL };
 enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE, TL_REFLECTANCE_FACTORED };
 enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };

@@ -11,8 +11,8 @@
 #include <string.h>
 
 /* Choices that the paper leaves open:
- *  - Level l + 1 is level l shrunk and then filtered, so that level 0 stays the mirror [002, figure 2: the
- *    pyramid "contains a convolution with a mirror reflective glossiness at the top resolution"].
+ *  - Level l + 1 is level l shrunk and then filtered, so that level 0 stays the mirror [Knuth et al. 2014,
+ * figure 2: the pyramid "contains a convolution with a mirror reflective glossiness at the top resolution"].
  *  - Beyond a border the plane of the face is continued, and the colour in that direction is fetched from the
  *    neighbouring faces as GL does: seamless, bilinear. So borders and corners need no special case.
  *  - Each face is filtered with these borders by rows, then by columns.

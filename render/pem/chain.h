@@ -1,6 +1,6 @@
-/* The filter chain of a PEM [002, figure 2]: alternating 2x2 shrinking and separable 5x5 filtering, across
- * the borders of faces. Level 0 is the input (the mirror); the last level has one texel per face. Pure;
- * threads: any. */
+/* The filter chain of a PEM [Knuth et al. 2014, figure 2]: alternating 2x2 shrinking and separable 5x5
+ * filtering, across the borders of faces. Level 0 is the input (the mirror); the last level has one texel per
+ * face. Pure; threads: any. */
 #ifndef TOILE_RENDER_PEM_CHAIN_H
 #define TOILE_RENDER_PEM_CHAIN_H
 
@@ -32,7 +32,7 @@ void tl_chain_release(struct tl_chain *chain);
 /* Trilinear look-up at a fractional level; clamped to the levels that exist. */
 vec3s tl_chain_sample(const struct tl_chain *chain, vec3s direction, float level);
 
-/* One PEM: a copy of the cube, black outside of region i [002, section 4]. */
+/* One PEM: a copy of the cube, black outside of region i [Knuth et al. 2014, 4]. */
 struct tl_regions;
 tl_cube tl_pem_cut(const tl_cube *cube, const struct tl_regions *regions, int i);
 

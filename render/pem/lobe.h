@@ -1,4 +1,4 @@
-/* Calibration of the chain: the level that stands for a glossiness [002, sections 3.2 and 5].
+/* Calibration of the chain: the level that stands for a glossiness [Knuth et al. 2014, 3.2 and 5].
  *
  * The chain's lobe is the response to one white texel on black. Its volume divided by its peak (sr) is
  * matched to that of the cosine lobe, 2 pi / (s + 1). The response is averaged over texel positions on a

@@ -1,6 +1,6 @@
-/* The difference between a prefilter's response to one lit texel and the cosine lobe: the measure of the
- * paper's figures 4 and 5 [002, section 5], with an explicit metric. Pure; results do not depend on the
- * number of threads.
+/* The difference between a prefilter's response to one lit texel and the cosine lobe: the measure of [Knuth
+ * et al. 2014, figures 4 and 5], with an explicit metric. Pure; results do not depend on the number of
+ * threads.
  *
  * One texel of a cube emits power 1. The prefiltered radiance in direction d, E(d, s), is the response. The
  * exact response is K_s averaged over the texel:

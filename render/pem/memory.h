@@ -1,5 +1,5 @@
-/* Memory of the maps of all regions in several forms: the paper's figure 8 and this program's own [002,
- * section 5]. Computed without making the maps. For slices see tl_slices_bytes_of (slices.h). Pure; threads:
+/* Memory of the maps of all regions in several forms: this program's own and those of [Knuth et al. 2014,
+ * figure 8]. Computed without making the maps. For slices see tl_slices_bytes_of (slices.h). Pure; threads:
  * any. */
 #ifndef TOILE_RENDER_PEM_MEMORY_H
 #define TOILE_RENDER_PEM_MEMORY_H

@@ -1,4 +1,4 @@
-/* PEMs as cropped parts of paraboloid maps [002, section 6].
+/* PEMs as cropped parts of paraboloid maps [Knuth et al. 2014, 5].
  *
  * There are six charts, a paraboloid about each of the axes +X -X +Y -Y +Z -Z. A unit direction d lies in the
  * chart of its largest component m, at p = (the other two in order) / (1 + |m|): |p| = tan(a / 2) at the

@@ -1,5 +1,6 @@
-/* The PEMs on the GPU: one filtered cube map per region [002, section 4], several in each cube map array; or,
- * as the paper proposes, cropped paraboloid maps (paraboloids.h), those of several regions in one texture.
+/* The PEMs on the GPU: one filtered cube map per region [Knuth et al. 2014, 4], several in each cube map
+ * array; or, as the paper proposes, cropped paraboloid maps (paraboloids.h), those of several regions in one
+ * texture.
  *
  * RGBA16F, as in the paper. A sun beyond the range of half floats is preserved: all values are stored
  * multiplied by one power of two for the whole environment, which costs no precision, and the light pass

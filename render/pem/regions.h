@@ -1,9 +1,9 @@
 /* Division of the environment into regions, by two methods. Pure; bit-identical at any number of threads.
  *
- * Faces: median cut [Debevec 2005] on the six faces of a cube, as [002] section 4 does. Sphere: variance
+ * Faces: median cut [Debevec 2005] on the six faces of a cube, [Knuth et al. 2014, 4]. Sphere: variance
  * minimisation [Viriyothai and Debevec 2009]: the whole sphere is cut along the longest axis of a node, where
  * the cut leaves the least variance, so that no cut divides a compact light. The measure is half luminance
- * and half solid angle (FRONTIER, finding 5). */
+ * and half solid angle (docs/notes/visibility.md, 5). */
 #ifndef TOILE_RENDER_PEM_REGIONS_H
 #define TOILE_RENDER_PEM_REGIONS_H
 

@@ -1,11 +1,11 @@
-/* Exactly prefiltered partial environment maps: P_i(d, s) = integral over region i of L(w) K_s(d, w) dw
- * [DESIGN 4], by direct convolution with solid-angle weights. Each source texel belongs to one region, so all
- * regions together cost about as much as one whole map.
+/* Exactly prefiltered partial environment maps: P_i(d, s) = integral over region i of L(w) K_s(d, w) dw, by
+ * direct convolution with solid-angle weights. Each source texel belongs to one region, so all regions
+ * together cost about as much as one whole map.
  *
  * The slice of region i and exponent k is a small square map in the frame of the region: Lambert's azimuthal
- * equal-area projection about the direction of the region, cropped to where its lobes do not vanish. (The
- * paper proposes cropped paraboloid maps [002, section 6]; in this projection all texels have the same size.)
- * P is 0 outside of the map. Pure; results do not depend on the number of threads. */
+ * equal-area projection about the direction of the region, cropped to where its lobes do not vanish. (Cropped
+ * paraboloid maps, which [Knuth et al. 2014, 5] propose, are paraboloids.h; in this projection all texels
+ * have the same size.) P is 0 outside of the map. Pure; results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_PEM_SLICES_H
 #define TOILE_RENDER_PEM_SLICES_H
 

@@ -1,4 +1,4 @@
-/* The cosine lobe K_s(axis, w) = (s + 1) / 2 pi cos^s (DESIGN 3): its value, and directions sampled from it.
+/* The cosine lobe K_s(axis, w) = (s + 1) / 2 pi cos^s: its value, and directions sampled from it.
  * Pure; threads: any. */
 #ifndef TOILE_RENDER_REFERENCE_LOBE_SAMPLE_H
 #define TOILE_RENDER_REFERENCE_LOBE_SAMPLE_H

@@ -1,5 +1,6 @@
-/* The reference renderer: the exact colour of a pixel (DESIGN 4) by ray tracing. It uses no GL and none of
- * the renderer's approximations; it shares the scene, the camera and the definition of a material.
+/* The reference renderer: the exact colour of a pixel (docs/inside.md, "What a pixel is") by ray tracing. It
+ * uses no GL and none of the renderer's approximations; it shares the scene, the camera and the definition of
+ * a material.
  *
  *     c*(x) = integral of L(w) V(x, w) [ kd K_1(n, w) + F ks K_s(r, w) ] dw
  *

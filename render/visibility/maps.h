@@ -1,15 +1,15 @@
 /* Shadow maps of the regions, each seen along one direction of its region, of two kinds:
  *
  * vsm: a variance shadow map a region, fitted to the casters' sphere and blurred by a Gaussian that follows
- * the region's cone [002, sections 3.3 and 4]. Depth is linear, 0 and 1 where the sphere begins and ends, so
- * one unit is its diameter. Moments are RG32F, or RG16F, which takes half the memory: there a depth of half a
- * unit has steps of 2^-12, and its variance an error of as much, so that light leaks where the shadow's
- * caster is less than 1 / 64 of a unit away: several centimetres.
+ * the region's cone [Knuth et al. 2014, 3.3 and 4]. Depth is linear, 0 and 1 where the sphere begins and
+ * ends, so one unit is its diameter. Moments are RG32F, or RG16F, which takes half the memory: there a depth
+ * of half a unit has steps of 2^-12, and its variance an error of as much, so that light leaks where the
+ * shadow's caster is less than 1 / 64 of a unit away: several centimetres.
  *
  * depth: a plain depth map a region, fitted to the casters as they are seen along its direction; four texels
- * compared and blended by a look-up. A blur wider than that costs more truth than it gives beauty (FRONTIER:
- * hard maps 3.9 %, blurred ones 6 to 11 %); soft shadows come from many regions, and from directions that
- * vary from round to round.
+ * compared and blended by a look-up. A blur wider than that costs more truth than it gives beauty (hard maps
+ * of 96 regions err by 3.9 %, blurred ones by 6 to 11 %: docs/notes/visibility.md); soft shadows come from
+ * many regions, and from directions that vary from round to round.
  *
  * Suns have depth maps of their own, of higher resolution, whatever the kind of the regions' maps. Receivers
  * outside of a map are lit. */

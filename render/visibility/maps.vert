@@ -1,6 +1,6 @@
 #version 450 core
-// A surface seen along a region's direction: orthographic, depth linear [002, section 3.3]. What a plain depth map does
-// not keep is not handed on: on software GL that is a third of its time.
+// A surface seen along a region's direction: orthographic, depth linear [Knuth et al. 2014, 3.3]. What a plain depth
+// map does not keep is not handed on: on software GL that is a third of its time.
 layout(location = 0) in vec3 position;
 layout(location = 3) in vec2 vertex_uv;
 

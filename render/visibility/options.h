@@ -6,7 +6,7 @@
 
 /* auto: the program chooses between rays and maps at start (app/budget/back_end.h); the renderer gets one. */
 enum tl_visibility { TL_VISIBILITY_VSM, TL_VISIBILITY_DEPTH, TL_VISIBILITY_RAYS, TL_VISIBILITY_AUTO };
-/* The numbers in which variance maps keep moments: RG32F, or RG16F as in [002, figure 8]. */
+/* The numbers in which variance maps keep moments: RG32F, or RG16F [as Knuth et al. 2014, figure 8]. */
 enum tl_moments { TL_MOMENTS_FLOAT, TL_MOMENTS_HALF };
 
 struct tl_ray_params {

@@ -1,6 +1,6 @@
 /* Visibility by rays, kept at points of the surfaces: one number for each point and region, which stays with
- * the vertex and so survives deformation (FRONTIER method F: a cache that is refreshed by importance and
- * age).
+ * the vertex and so survives deformation. This cache is refreshed by importance and age
+ * (docs/notes/visibility.md).
  *
  * A point is a render vertex seen from one side, or an extra point that a sample owns (repair). A sample
  * reads up to four points with weights. In motion R regions of each visible point are traced again each

@@ -1,6 +1,7 @@
 /* Shadows of the suns, by rays from every sample: one to a place of the sun, all samples to the same, and
- * more where a sample's neighbours in the image disagree, which is where penumbrae are (FRONTIER, finding 3).
- * At rest every round goes to other places of the sun, and is averaged in. Part of points.c. */
+ * more where a sample's neighbours in the image disagree, which is where penumbrae are
+ * (docs/notes/visibility.md, 3). At rest every round goes to other places of the sun, and is averaged in.
+ * Part of points.c. */
 #ifndef TOILE_RENDER_VISIBILITY_SUN_RAYS_H
 #define TOILE_RENDER_VISIBILITY_SUN_RAYS_H
 

@@ -43,8 +43,8 @@ static void orientation(void **state)
     tl_environment_release(&painted);
 }
 
-/* The texel of a lat-long map that a direction meets (DESIGN: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) /
- * pi). */
+/* The texel of a lat-long map that a direction meets (docs/inside.md, conventions: u = 0.5 + atan2(x, -z) /
+ * 2pi, v = acos(y) / pi). */
 static const float *latlong_towards(const tl_environment *map, const double d[3])
 {
     double u = 0.5 + atan2(d[0], -d[2]) / (2 * M_PI), v = acos(d[1]) / M_PI;

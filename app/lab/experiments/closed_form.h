@@ -25,8 +25,9 @@ tl_garment tl_strip_make(double length_m, int columns, bool is_warp);
 
 /* A tube of `columns` cells around, hung by its rim at y = 0. Every vertex of a row is like its neighbours,
  * so that it hangs by rows: row j sinks by sum over i <= j of height_i (weight below row i) / (k columns
- * width), for any triangulation (CLOTH.md section 3, 3). Of `row_count` rows of cells the first half may be
- * shorter than the others by `mass_ratio`; all cells' heights and widths differ by its root at most. */
+ * width), for any triangulation (docs/notes/cloth.md, closed forms). Of `row_count` rows of cells the first
+ * half may be shorter than the others by `mass_ratio`; all cells' heights and widths differ by its root at
+ * most. */
 struct tl_tube {
     int columns, row_count;
     double height_m; /* of all rows, at rest */

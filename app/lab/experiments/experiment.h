@@ -76,7 +76,7 @@ enum tl_picture_motion {
  * the measured errors and reports whether they agree. */
 struct tl_experiment_claim {
     const char *nearer, *farther; /* names of techniques in pictures */
-    const char *source;           /* "figure 9 of [001]" */
+    const char *source;           /* "[Schroecker 2002, figure 9]" */
 };
 
 struct tl_experiment {

@@ -23,7 +23,7 @@ extern const struct tl_experiment_list tl_shading_experiments, tl_maps_experimen
 #define SET(...)          .setup = {.assignments = {__VA_ARGS__}}
 #define PRESET(name, ...) .setup = {.preset = name, .assignments = {__VA_ARGS__}}
 
-#define TECHNIQUES(list)   .techniques = (list), .technique_count = TL_COUNT(list)
+#define METHODS(list)      .techniques = (list), .technique_count = TL_COUNT(list)
 #define APPEARANCES(array) .appearances = (array), .appearance_count = (int)TL_COUNT(array)
 
 /* One directional lamp in the dark. */

@@ -397,8 +397,10 @@ static void up_is_view(struct tl_extreme_scene *scene)
     "3.14 times of it"
 #define RAYS      "light.visibility=rays light.composition=ratio"
 #define SUN_APART RAYS " light.sun=true"
-#define MIRROR    "paper: what a mirror reflects of the scene is black [002]; review: the cache lights it"
-#define BOUNCED   "paper: nothing bounces; review: two bands of bounced light"
+#define MIRROR                                                                                               \
+    "paper: what a mirror reflects of the scene is black [Knuth et al. 2014, 6]; review: the cache lights "  \
+    "it"
+#define BOUNCED "paper: nothing bounces; review: two bands of bounced light"
 
 /* clang-format off: one extreme a line, or two. */
 const struct tl_extreme tl_extremes[] = {

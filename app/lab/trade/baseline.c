@@ -9,7 +9,7 @@
 #define DENSITY   0.2    /* kg/m^2 */
 #define STIFFNESS 1000.0 /* N/m, of structural springs */
 #define GRAVITY   9.81
-/* h_c = min sqrt(2 m / sum k) is a bound from below: CLOTH.md section 2. */
+/* Below the critical step of Verlet's method, for which h_c = min sqrt(2 m / sum k) is a lower bound. */
 #define SAFETY 0.9
 
 struct spring {

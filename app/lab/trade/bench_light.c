@@ -19,7 +19,7 @@
 #define REST_MAX     1024 /* frames at rest */
 
 struct light_schedule {
-    int warm;          /* frames of history before the first measured one; FRONTIER.md measured with 16 */
+    int warm;          /* frames of history before the first measured one */
     int measured;      /* at most FRAMES_MAX */
     int compare_every; /* every so many measured frames one is compared with the reference */
 };

@@ -1,5 +1,5 @@
 /* toile bench shading: every technique of shading under a lamp, timed in turn on a mesh that fills the image
- * [001, figure 12]. */
+ * [Schroecker 2002, figure 12]. */
 #include "app/cli/json.h"
 #include "app/lab/experiments/experiment.h"
 #include "app/lab/experiments/experiments.h"

@@ -4,7 +4,7 @@
  * then); its positions are compared with those of the same sheet solved with a step as short as changes no
  * more, and with those of the finest such sheet, which shows what the mesh is worth. A sheet held by two
  * corners comes to rest; its energy, strain and shape are compared with the reference's calmest rest at its
- * size: a drape has a mirror image of equal energy, so the nearer of the two counts (CLOTH.md section 2). */
+ * size: a drape has a mirror image of equal energy, so the nearer of the two counts (docs/notes/cloth.md). */
 #ifndef TOILE_APP_LAB_TRADE_TRADE_CLOTH_H
 #define TOILE_APP_LAB_TRADE_TRADE_CLOTH_H
 

@@ -24,8 +24,8 @@ struct tl_table_error {
 struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
                                           const struct tl_brdf_table_params *params);
 
-/* The artefact of [000, figure 2]: the sum over lights of the gloss from tables at one angle of the viewer,
- * divided by that of the formula. 1 is exact, less is too dark. */
+/* The artefact of [Heidrich and Seidel 1999, figure 2]: the sum over lights of the gloss from tables at one
+ * angle of the viewer, divided by that of the formula. 1 is exact, less is too dark. */
 double tl_brdf_table_ratio(const struct tl_brdf *brdf, const struct tl_brdf_tables *tables, float n_dot_v);
 
 #endif

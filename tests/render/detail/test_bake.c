@@ -1,5 +1,5 @@
-/* Maps baked from heights, against analytic slopes, the cylinder of the lecture [004], walls, and rays cast
- * in the field. */
+/* Maps baked from heights, against analytic slopes, the cylinder of the lecture [Wimmer n.d.], walls, and
+ * rays cast in the field. */
 #include "assets/builtin/weave.h"
 #include "config/memory.h"
 #include "render/detail/bake.h"

@@ -1,4 +1,4 @@
-/* A weave that is seen from afar [TECHNIQUES C8]: its mean shade against that of the same view with samples
+/* A weave that is seen from afar: its mean shade against that of the same view with samples
  * finer than its texels, octave by octave; and how much it shimmers while the camera backs away. */
 #include "tests/render/scenes.h"
 

@@ -68,7 +68,7 @@ static void texels_return(void **state)
     }
 }
 
-/* DESIGN: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi. */
+/* docs/inside.md, conventions: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi. */
 static void latlong_is_the_convention(void **state)
 {
     (void)state;

@@ -306,9 +306,9 @@ static void cubes_have_suns_too(void **state)
     tl_environment_release(&cube);
 }
 
-/* kloppenheim_05 has a sun with 65 % of the light (FRONTIER); the soft boxes of the photo studios are area
- * lights; the built-in studio has one small lamp. What came out, kept to notice change; the sun's core, above
- * a 256th of its peak, has 0.33 degrees. */
+/* kloppenheim_05 has a sun with 65 % of the light (docs/notes/visibility.md); the soft boxes of the photo
+ * studios are area lights; the built-in studio has one small lamp. What came out, kept to notice change; the
+ * sun's core, above a 256th of its peak, has 0.33 degrees. */
 static void real_environments(void **state)
 {
     (void)state;

@@ -19,7 +19,7 @@ static inline vec3s lights(vec3s d)
 }
 #define BRIGHTEST 3.2
 
-/* K_s [DESIGN 3], integrated over the environment's texels. */
+/* K_s integrated over the environment's texels. */
 static inline vec3s integrate(const tl_environment *environment, vec3s direction, double s)
 {
     const tl_image *image = &environment->image;

@@ -159,7 +159,7 @@ static void compose(const struct scene *scene)
     tl_compose(&request, scene->light);
 }
 
-/* DESIGN 4, texel by texel. */
+/* The integral that a pixel is (docs/inside.md), texel by texel. */
 static vec3s truth(const struct scene *scene, const tl_sample *sample, bool shadowed)
 {
     double sum[3] = {0};
@@ -193,9 +193,9 @@ static double error_of(struct scene *scene)
     return sqrt(square / (3 * SAMPLES)) / (mean / (3 * SAMPLES));
 }
 
-/* With exact visibility of every region what is left is its being one number a region: FRONTIER, finding 5,
- * has 1.4 to 2.2 % at 96 regions, 0.3 to 0.6 % at 384. Here the obstacle is half the sphere, which cuts more
- * regions. */
+/* With exact visibility of every region what is left is its being one number a region:
+ * docs/notes/visibility.md, 5, has 1.4 to 2.2 % at 96 regions, 0.3 to 0.6 % at 384. Here the obstacle is half
+ * the sphere, which cuts more regions. */
 static void exact_visibility_gives_the_light(void **state)
 {
     static const struct {

@@ -92,7 +92,8 @@ static void coordinates_differ_close_by(void **state)
 /* A8. Against a sphere of 65,000 triangles, shaded exactly. A coarse one loses its highlight to Gouraud, and
  * keeps it whole with unit vectors. Vectors left short between vertices do not save it: with a far light the
  * cosine c is linear in between, and c^s is convex, so that (sum w c)^s <= sum w c^s, which is Gouraud's.
- * The paper calls them much better [000, 3.1]; this can only refer to Mach bands as seen by the eye. */
+ * The paper calls them much better [Heidrich and Seidel 1999, 3.1]; this can only refer to Mach bands as seen
+ * by the eye. */
 static void gouraud_loses_the_highlight_first(void **state)
 {
     enum { STEPS = 4 };

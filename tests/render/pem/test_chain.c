@@ -138,9 +138,9 @@ static void level_zero_is_the_mirror(void **state)
     tl_cube_release(&cube);
 }
 
-/* [002, section 3.1]: "It is equivalent whether we filter the sum of the single regions or whether we sum up
- * the filtered regions." With values to 16, the 24 additions and the roundings of five levels stay below 2e-6
- * of that. */
+/* [Knuth et al. 2014, 3.1]: "It is equivalent whether we filter the sum of the single regions or whether we
+ * sum up the filtered regions." With values to 16, the 24 additions and the roundings of five levels stay
+ * below 2e-6 of that. */
 static void pems_add_up_to_the_whole(void **state)
 {
     (void)state;
