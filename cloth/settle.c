@@ -21,7 +21,7 @@ static const struct phase {
 /* The only phase of cloth that was carried here from a coarser version. Its forces are out of balance, so
  * that it has speed from the first frame on, and its folds rearrange in waves: a dress of 10,500 vertices
  * comes to rest in 67 frames, a skirt of 11,700 in 77, in 54 and 93 under a drag of 6. Stopping all cloth at
- * each peak of its kinetic energy (Barnes 1999) was slower: ripples make a peak every few frames, and wide
+ * each peak of its kinetic energy [Barnes 1999] was slower: ripples make a peak every few frames, and wide
  * swings never gather speed (a skirt of 10,000 vertices: 116 frames, 67 under this drag). */
 static const struct phase carried_phase = {4, 0.25};
 

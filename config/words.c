@@ -30,7 +30,7 @@ static size_t min_size(size_t a, size_t b)
 }
 
 /* Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours, no part edited
- * twice (the restricted form of Damerau, CACM 7(3), 1964). Three rows of the table suffice, because a swap
+ * twice (the restricted form of [Damerau 1964]). Three rows of the table suffice, because a swap
  * looks two rows back. */
 static size_t alignment_distance(const char *a, size_t a_length, const char *b, size_t b_length)
 {

@@ -96,7 +96,7 @@ tl_surface tl_moving_surface(const struct tl_moving *moving, const char *name,
     return surface;
 }
 
-/* Moeller & Trumbore 1997; both sides count. */
+/* The intersection of [Moeller and Trumbore 1997]; both sides count. */
 static bool hit_triangle(vec3s origin, vec3s direction, const vec3s corners[3], float *distance_m,
                          float weights[3])
 {

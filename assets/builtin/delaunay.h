@@ -1,4 +1,4 @@
-/* Delaunay triangulation of a planar point set (Bowyer 1981, Watson 1981), for up to some ten thousand points
+/* Delaunay triangulation of a planar point set [Bowyer 1981; Watson 1981], for up to some ten thousand points
  * without duplicates. Threads: pure. */
 #ifndef TOILE_ASSETS_BUILTIN_DELAUNAY_H
 #define TOILE_ASSETS_BUILTIN_DELAUNAY_H

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The figure's mesh: surface nets (Gibson 1998) of its distance function. Each cell of a grid that the
+/* The figure's mesh: surface nets [Gibson 1998] of its distance function. Each cell of a grid that the
  * surface passes through gets one vertex, each edge of the grid that it passes through a quad of the four
  * cells around it. Vertices are then moved onto the surface. */
 #define CELL_M 0.014

@@ -188,8 +188,8 @@ static struct interval find_half(const struct weighted *values, struct interval 
     return best;
 }
 
-/* The mode of weighted values: halves of halves (Bickel & Fruehwirth 2006, "On a fast, robust estimator of
- * the mode") down to an interval as narrow as `finest`, and the mean of that. Sorts the values. */
+/* The mode of weighted values: halves of halves [Bickel and Fruehwirth 2006] down to an interval as narrow as
+ * `finest`, and the mean of that. Sorts the values. */
 static double find_mode(struct weighted *values, size_t count)
 {
     const double finest = 0.01;

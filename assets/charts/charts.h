@@ -6,10 +6,9 @@
  * such charts are stretched here and there, or each has a scale of its own. A chart is a set of triangles
  * that are connected across edges on which they agree about positions and UVs.
  *
- * With s metres per unit of UV and the singular values a, b of the map from UVs to space over a triangle (as
- * Sander et al. 2001, "Texture Mapping Progressive Meshes", measure the stretch of charts), the residual of
- * the triangle is ln(a/s), ln(b/s): 0 for cloth at rest, and nearly the principal strains of cloth that is
- * worn.
+ * With s metres per unit of UV and the singular values a, b of the map from UVs to space over a triangle
+ * ([Sander et al. 2001] measure the stretch of charts by them), the residual of the triangle is ln(a/s),
+ * ln(b/s): 0 for cloth at rest, and nearly the principal strains of cloth that is worn.
  *
  * Metres and units of UV. Lifetime: plain structs that own their arrays. Threads: pure. */
 #ifndef TOILE_ASSETS_CHARTS_CHARTS_H

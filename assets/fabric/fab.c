@@ -9,7 +9,7 @@
  *
  * Bending (D1 and U1: a strip between clamps 2 cm apart is pushed together, and buckles down, up): Euler's
  * load of a strip clamped at both ends, F = 4 pi^2 B b / L^2, which in the buckled strip grows by half of its
- * relative shortening (Timoshenko and Gere, Theory of Elastic Stability, 2.7, to first order). The mean over
+ * relative shortening [Timoshenko and Gere 1961, 2.7, to first order]. The mean over
  * both directions is free of the strip's own curl. */
 #include "assets/fabric/fabric_internal.h"
 #include "config/memory.h"

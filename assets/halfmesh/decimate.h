@@ -3,12 +3,12 @@
  *
  * A collapse moves a vertex onto a neighbour, so that what is left is a subset of the vertices, with their
  * attributes. Lines collapse along themselves only: borders, sides at which vertices of one place differ (a
- * seam of UVs or normals), sides between parts. Ends and crossings of lines stay. Costs are quadrics (Garland
- * & Heckbert 1997, "Surface Simplification Using Quadric Error Metrics") with a term of the new edges'
- * lengths, which decides where the surface is flat. Each removed vertex is followed on the face that it is
- * nearest to; a collapse is refused if one would then be farther from the surface, or from its own UV, than
- * allowed. Any list of triangles is accepted: a face that OpenMesh refuses, because it makes an edge or a
- * vertex that is not manifold, gets vertices of its own there, and its corners stay.
+ * seam of UVs or normals), sides between parts. Ends and crossings of lines stay. Costs are quadrics [Garland
+ * and Heckbert 1997] with a term of the new edges' lengths, which decides where the surface is flat. Each
+ * removed vertex is followed on the face that it is nearest to; a collapse is refused if one would then be
+ * farther from the surface, or from its own UV, than allowed. Any list of triangles is accepted: a face that
+ * OpenMesh refuses, because it makes an edge or a vertex that is not manifold, gets vertices of its own
+ * there, and its corners stay.
  *
  * Metres. Lifetime: plain structs that own their arrays. Threads: pure; one core. */
 #ifndef TOILE_ASSETS_HALFMESH_DECIMATE_H

@@ -458,7 +458,7 @@ double weigh(Decimation &work)
 }
 
 /* A number whose order keeps neighbours in space together: the bits of a point's coordinates, interleaved
- * (Morton 1966). `scale`: steps per metre. */
+ * [Morton 1966]. `scale`: steps per metre. */
 uint64_t morton_of(const Vec &point, const Vec &lower, double scale)
 {
     uint64_t code = 0;

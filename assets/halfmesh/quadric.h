@@ -7,8 +7,8 @@
 extern "C" {
 #endif
 
-/* The weighted sum of squared distances from planes, as a quadratic form (Garland & Heckbert 1997, "Surface
- * Simplification Using Quadric Error Metrics"): the upper triangle of a symmetric 4 x 4 matrix, by rows. */
+/* The weighted sum of squared distances from planes, as a quadratic form [Garland and Heckbert 1997]: the
+ * upper triangle of a symmetric 4 x 4 matrix, by rows. */
 struct tl_quadric {
     double a[10];
 };
@@ -25,7 +25,7 @@ double tl_quadric_at(const struct tl_quadric *quadric, const double point[3]);
 double tl_triangle_shape(const double a[3], const double b[3], const double c[3], double twice_area);
 
 /* The squared distance from a point to a triangle, and the weights of the corners at the nearest point of it
- * (Ericson, "Real-Time Collision Detection", 2005, 5.1.5). */
+ * [Ericson 2005, 5.1.5]. */
 double tl_triangle_nearest(const double point[3], const double triangle[3][3], double weights[3]);
 
 /* The distance from a point to the segment between two others. */

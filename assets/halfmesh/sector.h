@@ -6,7 +6,7 @@
  * target: faces with that spoke vanish, the others become the triangles between the target and their outer
  * side. Cloth is flat at rest, so that the layout is exact but for rounding where the garment's rest shapes
  * fit together; where they do not (a closed sector whose angles do not add up to 2 pi), the angles are scaled
- * (as Lee et al. 1998, "MAPS: Multiresolution Adaptive Parameterization of Surfaces", do).
+ * [as Lee et al. 1998].
  *
  * Lengths in metres. Threads: pure. */
 #ifndef TOILE_ASSETS_HALFMESH_SECTOR_H

@@ -11,9 +11,9 @@
 #include <string.h>
 
 /* MTL describes a Phong model. Kd is the diffuse colour, taken as linear; Ks the strength of the
- * highlight, which exporters write from 0 to 1 with 0.5 for ordinary surfaces, so F0 = 0.08 Ks (Burley 2012,
- * "Physically Based Shading at Disney", 5.5: the specular parameter); Ns the exponent of the halfway vector,
- * four times that of the mirror direction (as in tl_glossiness_from_roughness). */
+ * highlight, which exporters write from 0 to 1 with 0.5 for ordinary surfaces, so F0 = 0.08 Ks [Burley
+ * 2012, 5.5: the specular parameter]; Ns the exponent of the halfway vector, four times that of the mirror
+ * direction (as in tl_glossiness_from_roughness). */
 #define F0_OF_KS 0.08f
 
 /* The state of reading. */

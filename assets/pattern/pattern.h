@@ -1,6 +1,6 @@
 /* Sewing patterns: flat panels with their outlines, the stitches that join them, and where each panel hangs
- * before it is sewn. Read from GarmentCode's pattern JSON (Korosteleva & Sorkine-Hornung 2023, "GarmentCode:
- * Programming Parametric Sewing Patterns") and that of its predecessor (Korosteleva & Lee 2021).
+ * before it is sewn. Read from GarmentCode's pattern JSON [Korosteleva and Sorkine-Hornung 2023] and that of
+ * its predecessor [Korosteleva and Lee 2021].
  *
  * Lengths are in metres. A panel's own axes are those of its outer side: x to the right and y up as one who
  * stands outside sees it, so that its outline runs counter-clockwise. Lifetime: a pattern owns everything

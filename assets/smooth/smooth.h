@@ -2,11 +2,10 @@
  * the smooth surface that endless subdivision leads to. The weights depend on connectivity alone, so that a
  * frame only sums them.
  *
- * Loop, "Smooth Subdivision Surfaces Based on Triangles", 1987; limit positions after Hoppe et al.,
- * "Piecewise Smooth Surface Reconstruction", 1994. Creases and borders are cubic B-splines of their own
- * vertices, the same ones from both sides, so the surface stays closed. Where creases end, cross or turn in
- * one triangle, the vertex stays. Any list of triangles is accepted: an edge of one, or of more than two of
- * them is a crease.
+ * Weights after [Loop 1987], limit positions after [Hoppe et al. 1994]. Creases and borders are cubic
+ * B-splines of their own vertices, the same ones from both sides, so the surface stays closed. Where creases
+ * end, cross or turn in one triangle, the vertex stays. Any list of triangles is accepted: an edge of one, or
+ * of more than two of them is a crease.
  *
  * Lifetime: plain structs that own their arrays. Threads: pure; tl_smooth_apply is parallel inside, with the
  * same results at any number of threads. */

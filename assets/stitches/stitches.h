@@ -1,6 +1,6 @@
 /* A garment whose file has stitches is sewn by them: they become seams, one vertex against one vertex.
  *
- * Codim-IPC's OBJ files (Li, Kaufman, Jiang 2021, "Codimensional Incremental Potential Contact") hold panels
+ * Codim-IPC's OBJ files [Li et al. 2021] hold panels
  * in space, their pattern as texture coordinates, and lines
  *
  *     stitch A B C t      vertex A is sewn to the point (1 - t) B + t C of an edge; vertices count from 0

@@ -1,6 +1,5 @@
-/* Nearest points of a point and a triangle, and of two segments (Ericson, "Real-Time Collision Detection",
- * 2005, 5.1.5 and 5.1.9). Degenerate triangles and segments give the nearest of what is left of them.
- * Threads: pure. */
+/* Nearest points of a point and a triangle, and of two segments [Ericson 2005, 5.1.5 and 5.1.9]. Degenerate
+ * triangles and segments give the nearest of what is left of them. Threads: pure. */
 #ifndef TOILE_CLOTH_APART_CLOSEST_H
 #define TOILE_CLOTH_APART_CLOSEST_H
 

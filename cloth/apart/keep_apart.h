@@ -4,8 +4,8 @@
  * with normal (b - a) / |b - a|, has one feature on each side. While each of the four vertices stays on its
  * side, the pair cannot touch; pairs that are not near cannot touch while each vertex stays within a ball.
  * Given planes and balls, every vertex is bounded on its own: it is projected back on its side ("Divide and
- * Truncate" in NVIDIA's Newton; the balls are those of Chen et al. 2025, "Offset Geometric Contact"). Results
- * do not depend on an order or on the number of threads.
+ * Truncate" in NVIDIA's Newton; the balls are those of [Chen et al. 2025]). Results do not depend on an order
+ * or on the number of threads.
  *
  * A window is the time for which planes and balls hold. It ends when a vertex nears the rim of its ball, so
  * that cloth at rest searches nothing. Planes and balls move by the affine motion that fits the cloth's
@@ -17,8 +17,7 @@
  * Cloth is carried by cloth that lies on the body (avatar or ground): one sweep over contacts moves a stack
  * of n sheets by one nth of what its weight needs, so the stack would be pressed together, and creep down a
  * slope. A second sweep goes from the body outwards and moves the upper feature of each contact only, as if
- * the lower one were fixed ("shock propagation" in Guendelman, Bridson and Fedkiw, "Nonconvex rigid bodies
- * with stacking", 2003).
+ * the lower one were fixed ("shock propagation" in [Guendelman et al. 2003]).
  *
  * Cloth that comes crossed is untangled (untangle.h) before all this holds.
  *

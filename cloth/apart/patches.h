@@ -1,8 +1,7 @@
 /* Crossings of a fine mesh that moves with a coarse one: a patch is what lies on one coarse triangle.
  *
  * A patch whose triangles face within a half space does not cross itself, nor a neighbour if both do together
- * (Volino & Magnenat-Thalmann 1994, "Efficient self-collision detection on smoothly discretized surface
- * animations using geometrical shape regularity"; their condition on the outline is left out, but patches can
+ * ([Volino and Magnenat-Thalmann 1994]; their condition on the outline is left out, but patches can
  * be named for which it may fail). So only sharp folds are tested, those patches, and patches that are not
  * neighbours and whose boxes overlap: smooth cloth needs one pass over its triangles.
  *

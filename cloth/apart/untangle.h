@@ -3,8 +3,8 @@
  * While it is not clean, crossings of an edge with a triangle are searched in every window. The pairs of
  * features by which a crossing can come out are left free (tl_untangle_is_free); no other can cross beside
  * them. Each crossing is pushed to where its contour, the line in which the cloth passes through itself, gets
- * shorter (Volino and Magnenat-Thalmann, "Resolving surface collisions through intersection contour
- * minimization", 2006). Crossings of one contour share one direction, or they would push against each other.
+ * shorter [Volino and Magnenat-Thalmann 2006]. Crossings of one contour share one direction, or they would
+ * push against each other.
  *
  * Metres. Errors: none. Lifetime: a plain struct that owns its arrays; it starts as {0}. Threads: one call at
  * a time. */

@@ -111,7 +111,7 @@ static vec3d face_normal(const tl_collider *collider, size_t triangle, double ph
     return vec3d_unit_or(area_vector(t), (vec3d){0});
 }
 
-/* Pseudo-normal of the feature that the nearest point lies on (Baerentzen & Aanaes 2005): the normal of a
+/* Pseudo-normal of the feature that the nearest point lies on [Baerentzen and Aanaes 2005]: the normal of a
  * face; for an edge the sum of both faces' normals; for a vertex the sum of its faces' normals, weighted by
  * their angles at it. Its dot product with the offset gives the side for every closed mesh. The normal of the
  * nearest face alone gives the wrong side for points beyond sharp edges. */
@@ -211,7 +211,7 @@ bool tl_collider_query(const tl_collider *collider, const double point[3], doubl
     return tl_collider_query_at(collider, point, 1, reach_m, out);
 }
 
-/* Solid angle of the triangle a, b, c seen from the origin (van Oosterom & Strackee 1983):
+/* Solid angle of the triangle a, b, c seen from the origin [Van Oosterom and Strackee 1983]:
  * tan(angle / 2) = a.(b x c) / (|a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|). */
 static double solid_angle(vec3d a, vec3d b, vec3d c)
 {

@@ -1,7 +1,7 @@
 /* The collider: a closed triangle mesh that may move from frame to frame, and the ground plane y = 0.
  *
  * Closest points come from Embree's point queries on a BVH over the welded mesh, the side from the
- * angle-weighted pseudo-normal of the closest feature (Baerentzen & Aanaes 2005). Metres, world. Lifetime:
+ * angle-weighted pseudo-normal of the closest feature [Baerentzen and Aanaes 2005]. Metres, world. Lifetime:
  * copies the mesh. Threads: queries may run concurrently, but not with a move. */
 #ifndef TOILE_CLOTH_CONTACT_COLLIDER_H
 #define TOILE_CLOTH_CONTACT_COLLIDER_H
@@ -39,8 +39,8 @@ bool tl_collider_query_at(const tl_collider *collider, const double point[3], do
 
 /* Winding number of the current surface around a point: 1 inside, 0 outside, also near creases. A pose that
  * pushes the surface through itself has creases that are inside out: a point outside that is nearest to the
- * back of one has a negative distance. Sums the solid angles of all triangles (van Oosterom & Strackee 1983),
- * so it is for few points. */
+ * back of one has a negative distance. Sums the solid angles of all triangles [Van Oosterom and Strackee
+ * 1983], so it is for few points. */
 double tl_collider_winding(const tl_collider *collider, const double point[3]);
 
 /* A point of a triangle in the previous and in the current pose. */

@@ -102,7 +102,7 @@ bool tl_contacts_height_asked(const tl_collider *collider, vec3d x, struct tl_co
 void tl_contacts_solve(struct tl_contacts *contacts, const struct tl_contact_params *params,
                        struct tl_particles *particles);
 
-/* The velocity half of RATTLE (Andersen 1983). Call it after velocities have changed since tl_contacts_solve,
+/* The velocity half of RATTLE [Andersen 1983]. Call it after velocities have changed since tl_contacts_solve,
  * as by the second half kick of Verlet. Removes the approaching normal velocity of every particle and probe
  * in contact, and applies Coulomb friction bounded by that normal impulse. */
 void tl_contacts_solve_velocities(const struct tl_contacts *contacts, const struct tl_contact_params *params,

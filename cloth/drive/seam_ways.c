@@ -18,7 +18,7 @@ static double distance_to(const tl_collider *collider, vec3d at)
     return tl_collider_query(collider, point, REACH_M, &contact) ? contact.distance_m : REACH_M;
 }
 
-/* Whether the straight thread passes the body: steps of the distance to it (Hart 1996, "Sphere tracing"). */
+/* Whether the straight thread passes the body: steps of the distance to it [Hart 1996]. */
 static bool is_clear(const tl_collider *collider, vec3d a, vec3d b)
 {
     double length = vec3d_distance(a, b), done = 0;

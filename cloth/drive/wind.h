@@ -1,7 +1,7 @@
 /* Wind: the pressure of air on every triangle that moves against it,
  *     F = 1/2 rho A |v_n| v_n n,   v_n = n.(wind - velocity of the triangle)
- * (a plate across a stream, drag coefficient 1, as in Rayleigh 1876), so a sheet
- * falls flat at sqrt(2 g areal density / rho). Gusts travel with the wind unchanged (Taylor 1938), as three
+ * (a plate across a stream, drag coefficient 1 [as in Rayleigh 1876]), so a sheet
+ * falls flat at sqrt(2 g areal density / rho). Gusts travel with the wind unchanged [Taylor 1938], as three
  * waves whose lengths have no common measure. SI. Threads: pure. */
 #ifndef TOILE_CLOTH_DRIVE_WIND_H
 #define TOILE_CLOTH_DRIVE_WIND_H

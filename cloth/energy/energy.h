@@ -5,10 +5,9 @@
  * so that the tension of a strip per width is k times its strain, in any triangulation.
  *
  * Bending, per triangle with its up to three neighbours. A hinge's bend is the vector h = sum K_i x_i, K the
- * cotangents of the flat hinge (Bergou et al. 2006, "A Quadratic Bending Model for Inextensible Surfaces");
+ * cotangents of the flat hinge [Bergou et al. 2006];
  * |h| is the fold angle times the edge length. Spread over the hinge's two triangles in proportion to their
- * heights, the hinges give the triangle's curvature tensor (the mid-edge operator of Grinspun et al. 2006,
- * "Computing discrete shape operators on general meshes"):
+ * heights, the hinges give the triangle's curvature tensor (the mid-edge operator of [Grinspun et al. 2006]):
  *     L = sum over edges h / (A + A') n n^T,     n the edge's unit normal in the rest plane
  *     E = A/2 [ B_weft L_uu^2 + B_warp L_vv^2 + 2 sqrt(B_weft B_warp) L_uv^2 ]
  * A sum of squared hinge angles weighted by l^2/A would overstate B by up to 3 on a grid, where all bending

@@ -20,10 +20,9 @@ struct tl_cloth_fabric {
 extern const struct tl_option_table tl_cloth_fabric_options;
 
 /* The distance that contact keeps between the middle surfaces of two plies, metres: the cloth's thickness, or
- * where it is unknown that of a cloth of 500 kg/m^3, up to 3 mm. (Penava, Simic Penava and Knezic 2014:
- * cotton 470, wool 410, polyester 650.) At least a tenth of a millimetre, five times what a ply keeps from
- * the planes that hold it apart from others (cloth/contact/window.c): nearer plies would stop without
- * friction. */
+ * where it is unknown that of a cloth of 500 kg/m^3, up to 3 mm. [Penava et al. 2014] have cotton 470, wool
+ * 410, polyester 650. At least a tenth of a millimetre, five times what a ply keeps from the planes that hold
+ * it apart from others (cloth/contact/window.c): nearer plies would stop without friction. */
 double tl_cloth_fabric_ply(const struct tl_cloth_fabric *fabric);
 
 #endif

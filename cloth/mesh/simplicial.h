@@ -1,6 +1,6 @@
 /* Maps the vertices of a fine mesh to the vertices of a coarse one on which it lies, so that each triangle
  * becomes a triangle, a side or a corner of the coarse mesh: a simplicial approximation of the fine mesh's
- * place on it (Hatcher 2002, "Algebraic topology", theorem 2C.1). With its vertices there the fine mesh
+ * place on it [Hatcher 2002, theorem 2C.1]. With its vertices there the fine mesh
  * covers parts of the coarse mesh and nothing else, so it crosses itself only where the coarse mesh does.
  *
  * A vertex becomes the corner that has its largest share. Where the fine triangles are not small against the

@@ -1,7 +1,6 @@
 /* Moves the vertices of a fine mesh by the rigid motions of the vertices of a coarse one, its bones: linear
- * blend skinning (Magnenat-Thalmann, Laperriere & Thalmann 1988, "Joint-dependent local deformations for hand
- * animation and object grasping"). What is finer than the coarse mesh, wrinkles and facets, moves along
- * rigidly.
+ * blend skinning [Magnenat-Thalmann et al. 1988]. What is finer than the coarse mesh, wrinkles and facets,
+ * moves along rigidly.
  *
  * Weights: those of the places on the coarse triangles are hats, whose sides would show as creases of what
  * moves. They are diffused over the fine mesh's edges until the second moment sum w_j |x - x_j|^2 is nearly

@@ -1,7 +1,7 @@
 /* The strain limit of `preview`: edges longer than 1 + strain times their rest length are shortened to that,
- * edge by edge (Provot 1995, "Deformation constraints in a mass-spring model to describe rigid cloth
- * behavior"), because one XPBD iteration a substep leaves heavy or soft cloth too long. The limit is not part
- * of the energy: the other solvers do not have it, and a fabric that really stretches further needs it off.
+ * edge by edge [Provot 1995], because one XPBD iteration a substep leaves heavy or soft cloth too long. The
+ * limit is not part of the energy: the other solvers do not have it, and a fabric that really stretches
+ * further needs it off.
  *
  * Only two kinds of edges are tested, those of triangles that came near the limit in this substep and those
  * that were corrected in the last one. The first suffice because a substep moves cloth by far less than the

@@ -1,4 +1,4 @@
-/* `reference`: velocity Verlet (Stoermer 1907), explicit and symplectic, at 0.9 of the critical step.
+/* `reference`: velocity Verlet [Stoermer 1907], explicit and symplectic, at 0.9 of the critical step.
  *
  * Second order; conserves momentum to rounding and energy up to a ripple of order (omega h)^2; adds no
  * damping of its own. It is the most exact solver for its cost. Its price: the step is proportional to the

@@ -1,7 +1,6 @@
-/* `preview`: XPBD (Macklin, Mueller, Chentanez 2016) with one iteration per substep (Macklin et al. 2019,
- * "Small Steps in Physics Simulation"): predict positions, solve each constraint once in a fixed order,
- * derive velocities from displacements. The multiplier starts at 0 in each substep, so that a single spring
- * is exactly implicit Euler.
+/* `preview`: XPBD [Macklin et al. 2016] with one iteration per substep [Macklin et al. 2019]: predict
+ * positions, solve each constraint once in a fixed order, derive velocities from displacements. The
+ * multiplier starts at 0 in each substep, so that a single spring is exactly implicit Euler.
  *
  * Bending is an explicit force in the prediction if the substep is at most 0.55 of bending's own critical
  * step, which holds for clothes in their usual mesh and substeps: it then bends exactly as the energy says,

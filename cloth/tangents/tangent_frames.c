@@ -182,7 +182,7 @@ TL_INLINE void finish_normals(const float sum[3][LANES], float normal[3][LANES])
     }
 }
 
-/* Duff et al. 2017, "Building an Orthonormal Basis, Revisited". */
+/* Completes a unit vector to a basis [Duff et al. 2017]. */
 TL_INLINE void find_planes(const float normal[3][LANES], struct planes *planes)
 {
     for (int i = 0; i < LANES; i++) {

@@ -1,5 +1,5 @@
 /* The part of tangent frames that depends on connectivity and UVs only: the sets of triangle corners that
- * share a normal, and the sets that share a tangent (the groups of MikkTSpace, Mikkelsen 2008). Built once
+ * share a normal, and the sets that share a tangent (the groups of MikkTSpace [Mikkelsen 2008]). Built once
  * per mesh; tangent_layout.h arranges it for streaming.
  *
  * Corner c is corner c % 3 of triangle c / 3. Errors: none. Lifetime: plain struct that owns its arrays.

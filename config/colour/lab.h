@@ -1,8 +1,5 @@
 /* Colours as CIELAB of the standard observer of 1931 under D65, the white of Rec. 709, and their difference
- * CIEDE2000.
- *
- * Sharma, Wu, Dalal: "The CIEDE2000 color-difference formula: implementation notes, supplementary test data,
- * and mathematical observations", Color Research and Application 30(1), 2005. Pure; threads: any. */
+ * CIEDE2000 [Sharma et al. 2005]. Pure; threads: any. */
 #ifndef TOILE_CONFIG_COLOUR_LAB_H
 #define TOILE_CONFIG_COLOUR_LAB_H
 

@@ -16,7 +16,7 @@
  *
  * D has width w = w_u. The integral of D cos d over h is pi/4, so that a white surface reflects all incident
  * light: GAUSSIAN exp(-(d/w)^2) / (4 w^2 P(w^2)), BECKMANN exp(-(tan d/w)^2) / (4 w^2 cos^4 d), GGX
- * 1 / (4 w^2 cos^4 d (1 + tan^2 d / w^2)^2) [Walter, Marschner, Li and Torrance 2007, eq. 33], whose w is
+ * 1 / (4 w^2 cos^4 d (1 + tan^2 d / w^2)^2) [Walter et al. 2007, eq. 33], whose w is
  * glTF's alpha, roughness squared. G is SMITH's, heights correlated: 1 / (1 + L(a) + L(b)), for Beckmann's
  * slopes L(x) = (exp(-k^2)/(k sqrt pi) - erfc k)/2, k = 1/(w tan x), for GGX L(x) = (sqrt(1 + w^2 tan^2 x) -
  * 1)/2 [Heitz 2014, eq. 72]; or of V_GROOVES: min(1, 2 cos d min(cos a, cos b)/cos t). Reciprocal.
@@ -67,7 +67,7 @@ struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float gloss
 struct tl_brdf_frame tl_brdf_own_frame(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame);
 
 /* The gloss of cloth of which light comes back from the threads' surface, white, and from their inside,
- * coloured [Sadeghi, Bisker, De Deken and Jensen 2013 measure both; their cylinders are not used here]:
+ * coloured ([Sadeghi et al. 2013] measure both; their cylinders are not used here):
  *
  *     f_r cos a = F W_surface + sum over the systems of threads of colour (1 - F) W_thread
  *

@@ -13,7 +13,8 @@ float tl_fresnel_schlick(float f0, float cosine)
     return f0 + (fminf(50 * f0, 1) - f0) * fifth;
 }
 
-/* Fresnel's equations [Born and Wolf, 1.5.2]. An index below 1 reflects totally beyond the critical angle. */
+/* Fresnel's equations [Born and Wolf 1999, 1.5.2]. An index below 1 reflects totally beyond the critical
+ * angle. */
 float tl_fresnel_dielectric(float index, float cosine)
 {
     float c = clamp01(cosine), inside_squared = index * index - (1 - c * c);
@@ -26,8 +27,9 @@ float tl_fresnel_dielectric(float index, float cosine)
     return clamp01((s * s + p * p) / 2);
 }
 
-/* The same with a complex index [Born and Wolf, 14.4], in the real form: (p + iq)^2 = (n + ik)^2 - sin^2.
- * Computed in double, because n^2 + k^2 of metals is large compared with the differences taken from it. */
+/* The same with a complex index [Born and Wolf 1999, 14.4], in the real form: (p + iq)^2 = (n + ik)^2 -
+ * sin^2. Computed in double, because n^2 + k^2 of metals is large compared with the differences taken from
+ * it. */
 float tl_fresnel_conductor(float index, float extinction, float cosine)
 {
     double c = (double)clamp01(cosine), s2 = 1 - c * c, n = (double)index, k = (double)extinction;

@@ -1,7 +1,6 @@
 /* Fuzz: the sheen of short fibres that stand on a cloth, over everything else of its material:
  *
- *     Lo = colour Lfuzz + (1 - R max colour) Lbase        [Zeltner, Burley, Chiang 2022; MaterialX's
- * layering]
+ *     Lo = colour Lfuzz + (1 - R max colour) Lbase        [Zeltner et al. 2022; MaterialX]
  *
  * fuzz_terms.glsl has its lobe, which lamps, suns and the reference evaluate. For light from an environment
  * the lobe is replaced by its mean over the azimuth of the light, as a signed sum of cosine powers about the

@@ -1,5 +1,5 @@
-// The sheen of short fibres that stand on a cloth, written once for GLSL and C (fuzz.h): the common subset of both, float
-// functions only. The linearly transformed cosine of [Zeltner, Burley, Chiang 2022] with the analytic fit that MaterialX
+// The sheen of short fibres that stand on a cloth, written once for GLSL and C (fuzz.h): the common subset of both,
+// float functions only. The linearly transformed cosine of [Zeltner et al. 2022] with the analytic fit that MaterialX
 // publishes (mx_microfacet_sheen.glsl). x: cosine of viewer and normal, y: roughness.
 #ifndef TERM
 #define TERM
@@ -15,7 +15,8 @@ TERM float fuzz_albedo(float x, float y)
     return exp(-0.5f * from * from) / (width * 2.50662827f) + over;
 }
 
-// The two entries of the inverse transform that are not 0 or 1: w = (a l_x + b l_z, a l_y, l_z), l_x towards the viewer.
+// The two entries of the inverse transform that are not 0 or 1: w = (a l_x + b l_z, a l_y, l_z), l_x towards the
+// viewer.
 TERM float fuzz_stretch(float x, float y)
 {
     return (2.58126f * x + 0.813703f * y) * y / (1.0f + 0.310327f * x * x + 2.60994f * x * y);

@@ -208,7 +208,7 @@ struct tl_slope_quadrature {
 #define TL_SLOPE_RANGE  3.0f
 #define TL_SLOPE_POINTS 5 /* of Gauss and Legendre on [-1, 1] */
 
-/* erf within 1.5e-7 [Abramowitz and Stegun 7.1.26]. */
+/* erf within 1.5e-7 [Abramowitz and Stegun 1964, 7.1.26]. */
 TL_INLINE float tl_slope_erf(float x)
 {
     float size = fabsf(x), t = 1 / (1 + 0.3275911f * size);

@@ -1,4 +1,4 @@
-/* Relaxed cone maps for ray marching of height fields [Policarpo and Oliveira 2007, after Dummer 2006].
+/* Relaxed cone maps for ray marching of height fields [Policarpo and Oliveira 2007; Dummer 2006].
  *
  * Every texel stores the width of a cone with its apex on the field, such that a ray which enters the cone
  * from above crosses the field at most once before it leaves the cone. A march from cone to cone does not

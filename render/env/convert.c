@@ -24,7 +24,7 @@
     19 /* largest number of corners: each of four clips adds at most half as many, 4 6 9 13 19               \
         */
 /* The shares are then scaled alternately by source and by target until each source texel distributes and each
- * target texel receives its exact solid angle (iterative proportional fitting: Deming and Stephan 1940). */
+ * target texel receives its exact solid angle (iterative proportional fitting [Deming and Stephan 1940]). */
 #define ROUNDS_MAX 400
 /* A fixed number of blocks of texels, each with its own list of shares, so that the result does not depend on
  * the number of threads. */

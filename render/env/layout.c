@@ -293,8 +293,8 @@ struct face_outline {
     int count;
 };
 
-/* Van Oosterom and Strackee 1983, eq. 8. The triple product of points whose coordinates sum to 1 is twice the
- * area that they span in (u, v). */
+/* Solid angle by [Van Oosterom and Strackee 1983, eq. 8]. The triple product of points whose coordinates sum
+ * to 1 is twice the area that they span in (u, v). */
 static double triangle_solid_angle(const double a[2], const double b[2], const double c[2])
 {
     const double *corners[3] = {a, b, c};

@@ -1,4 +1,4 @@
-/* Mip levels of a picture of the sphere, weighted by solid angle (Heidrich and Seidel 1999, 4.2): a texel is
+/* Mip levels of a picture of the sphere, weighted by solid angle [Heidrich and Seidel 1999, 4.2]: a texel is
  * the mean of four texels of the finer level, weighted by the solid angles that they cover. So every level
  * holds the same light as the first, in any layout. Pure; results do not depend on the number of threads.
  *

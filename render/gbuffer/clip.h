@@ -1,4 +1,4 @@
-/* Clips triangles to the view frustum as Mesa's draw module does: Sutherland and Hodgman's algorithm [1974],
+/* Clips triangles to the view frustum as Mesa's draw module does: by [Sutherland and Hodgman 1974],
  * plane by plane, in float. Pure. */
 #ifndef TOILE_RENDER_GBUFFER_CLIP_H
 #define TOILE_RENDER_GBUFFER_CLIP_H

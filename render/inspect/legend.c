@@ -23,7 +23,7 @@ int tl_view_strain_axis(int view)
     return view - TL_VIEW_STRAIN_WARP;
 }
 
-/* OKLab to linear Rec. 709 (Ottosson 2020, "A perceptual color space for image processing"). */
+/* OKLab to linear Rec. 709 [Ottosson 2020]. */
 static vec3s from_oklab(float lightness, float a, float b)
 {
     float l = lightness + 0.3963377774f * a + 0.2158037573f * b;
@@ -52,8 +52,8 @@ vec3s tl_direction_colour(vec3s direction)
     return colour;
 }
 
-/* Hue and lightness follow Roberts' R2 sequence (2018, "The unreasonable effectiveness of quasirandom
- * sequences"): any number of its points are well apart, and so are the colours of any number of regions. */
+/* Hue and lightness follow the R2 sequence [Roberts 2018]: any number of its points are well apart, and so
+ * are the colours of any number of regions. */
 vec3s tl_number_colour(uint32_t number)
 {
     const double plastic = 1.32471795724474602596;

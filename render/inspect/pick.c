@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-/* Moeller & Trumbore 1997. The distance, or -1. */
+/* The distance at which a ray hits a triangle [Moeller and Trumbore 1997], or -1. */
 static float meet(vec3s origin, vec3s direction, const vec3s corners[3], float weights[3])
 {
     vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);

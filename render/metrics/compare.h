@@ -2,9 +2,8 @@
  * Pure; threads: any.
  *
  * Linear RGB(A) float images of equal size. A pixel counts if alpha > 0 in either image; images without alpha
- * count entirely. FLIP: Andersson et al. 2020, "FLIP: A Difference Evaluator for Alternating Images", and
- * 2021 for HDR. HDR exposures are computed from covered pixels only; an exposure that is not finite is an
- * error. */
+ * count entirely. FLIP is that of flip.h. HDR exposures are computed from covered pixels only; an exposure
+ * that is not finite is an error. */
 #ifndef TOILE_RENDER_METRICS_COMPARE_H
 #define TOILE_RENDER_METRICS_COMPARE_H
 

@@ -1,8 +1,6 @@
 /* FLIP, the perceived difference when two images are alternated in place, as a map in [0, 1].
  *
- * LDR: P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. Fairchild: "FLIP: A
- * Difference Evaluator for Alternating Images", HPG 2020. HDR: P. Andersson, J. Nilsson, P. Shirley, T.
- * Akenine-Moller: "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021. Images are
+ * LDR after [Andersson et al. 2020], HDR after [Andersson et al. 2021]. Images are
  * linear Rec. 709, [height][width][3]; beyond the frame the outermost texels are repeated. Pure;
  * bit-identical at any number of threads. */
 #ifndef TOILE_RENDER_METRICS_FLIP_H

@@ -1,4 +1,4 @@
-/* Pseudo-random numbers, the same on every machine: splitmix64 [Steele, Lea and Flood 2014]. Each work item
+/* Pseudo-random numbers, the same on every machine: splitmix64 [Steele et al. 2014]. Each work item
  * starts its own sequence from a key, so that results depend neither on threads nor on their order. Pure. */
 #ifndef TOILE_RENDER_REFERENCE_RANDOM_H
 #define TOILE_RENDER_REFERENCE_RANDOM_H

@@ -1,7 +1,7 @@
 /* Outlines and folds at a picture's full size where light was computed at fewer samples. Every pixel has its
  * own id, so that what it shows is known exactly; its light is that of samples which show the same: the same
- * part of the same surface, its same side, at a depth that continues the pixel's triangle. [Joint bilateral
- * upsampling: Kopf, Cohen, Lischinski and Uyttendaele 2007; with weights of 0 and 1.]
+ * part of the same surface, its same side, at a depth that continues the pixel's triangle. This is joint
+ * bilateral upsampling [Kopf et al. 2007] with weights of 0 and 1.
  *
  * Pure; results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_SHADE_OUTLINES_H

@@ -5,8 +5,8 @@
 #include <cglm/struct.h>
 #include <stdint.h>
 
-/* Number i of a sequence that fills the unit square evenly [Roberts 2018, "The unreasonable effectiveness of
- * quasirandom sequences": R2], begun elsewhere for every item. Fixed point: exact at any i. */
+/* Number i of a sequence that fills the unit square evenly [the R2 sequence of Roberts 2018], begun elsewhere
+ * for every item. Fixed point: exact at any i. */
 static inline vec2s tl_spread(uint32_t item, uint32_t i)
 {
     uint32_t hash = (item + 1) * 0x9e3779b1u;

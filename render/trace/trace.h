@@ -58,9 +58,8 @@ void tl_trace_transmittance_packet(const tl_trace *trace, const struct tl_ray_pa
                                    float transmittance[16]);
 
 /* The point on the smooth surface that a point of a triangle stands for: the weighted mean of its projections
- * on the tangent planes of the corners, where these lie outside [Hanika 2021, "Hacking the shadow
- * terminator", Ray Tracing Gems II, ch. 4]. `weights` are barycentric; the normals point to the side of the
- * viewer. */
+ * on the tangent planes of the corners, where these lie outside [Hanika 2021]. `weights` are barycentric; the
+ * normals point to the side of the viewer. */
 vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3], const float weights[3]);
 
 /* Distance (m) from its own surface at which a ray may safely start: 1e-4 of the half diagonal of the

@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-/* Moeller and Trumbore 1997: the point p + t (q - p) = a + u (b - a) + v (c - a). */
+/* The intersection of [Moeller and Trumbore 1997]: the point p + t (q - p) = a + u (b - a) + v (c - a). */
 static inline bool oracle_segment_meets(vec3d p, vec3d q, vec3d a, vec3d b, vec3d c)
 {
     vec3d way = vec3d_sub(q, p), side = vec3d_sub(b, a), other = vec3d_sub(c, a), from = vec3d_sub(p, a);

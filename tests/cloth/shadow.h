@@ -1,6 +1,6 @@
 /* The energy that Verlet conserves. Up to a part that is exponentially small in the step, its orbit is an
  * exact solution for a Hamiltonian near the true one, the shadow Hamiltonian. It is measured from the orbit
- * alone (Engle, Skeel and Drees 2005, "Monitoring energy drift with shadow Hamiltonians"). An additional
+ * alone [Engle et al. 2005]. An additional
  * variable makes the energy homogeneous: beta' = x.dU/dx - 2 U. Any energy then is (x'.p - p'.x - beta')/2.
  * The shadow is that of the curve through the orbit's positions, momenta and betas, with beta stepped as p
  * is. The derivatives are central differences of orders up to 16; with order 2 n the error against the shadow
@@ -118,7 +118,7 @@ static inline double shadow_energy(const struct shadow *shadow, const tl_cloth *
 }
 
 /* The h^2 term (J) of the shadow in closed form: h^2 (v.U''v / 12 - |M^-1/2 U'|^2 / 24), from the positions
- * and velocities at a whole step (Hairer, Lubich and Wanner 2006, "Geometric Numerical Integration", IX.3).
+ * and velocities at a whole step [Hairer et al. 2006, IX.3].
  * U''v is a difference of forces over a displacement of 0.1 um. */
 static inline double shadow_second_order(const tl_cloth *cloth, double h)
 {

@@ -2,10 +2,10 @@
  * between plates of 18 cm, hangs over their edge. The drape coefficient is the share of the hanging ring that
  * its shadow keeps: DC = (A_shadow - A_9cm) / (A_15cm - A_9cm).
  *
- * The order silk < cotton < denim must hold. The published bands (Matsudaira and Yang 2003 for silk; Gan, Ly
- * and Steven 1991 for plain cotton; the usual class of denim) come from other samples than our measured
- * fabrics, and real cloth has several stable drapes, so only the mean over seeds is checked against them. The
- * number of folds is printed, not checked. With names of fabrics as arguments the program prints their drape.
+ * The order silk < cotton < denim must hold. The published bands (silk [Matsudaira and Yang 2003], plain
+ * cotton [Gan et al. 1991], the usual class of denim) come from other samples than our measured fabrics, and
+ * real cloth has several stable drapes, so only the mean over seeds is checked against them. The number of
+ * folds is printed, not checked. With names of fabrics as arguments the program prints their drape.
  */
 #include "assets/builtin/cusick.h"
 #include "assets/builtin/specimen.h"

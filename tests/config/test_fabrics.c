@@ -1,5 +1,5 @@
 /* The built-in fabrics: each can be read, names a source for its numbers, and lies within the ranges that
- * garment fabrics have in measurements (KES: Kawabata 1980; FAST: De Boos and Tester 1994), widened to take
+ * garment fabrics have in measurements (KES [Kawabata 1980], FAST [De Boos and Tester 1994]), widened to take
  * coatings and swimwear. */
 #include "tests/testing.h"
 

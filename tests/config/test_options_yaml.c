@@ -261,7 +261,7 @@ static void test_files(void **state)
                         TOILE_SCRATCH_DIR "/yaml/large.yaml: is larger than 1 MiB: make it smaller");
 }
 
-/* xorshift64* (Vigna 2016): the same damage on every run. */
+/* xorshift64* [Vigna 2016]: the same damage on every run. */
 static uint64_t random_state = 0x9E3779B97F4A7C15u;
 static size_t random_below(size_t bound)
 {

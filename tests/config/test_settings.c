@@ -275,7 +275,7 @@ static void test_changes_that_fail_change_nothing(void **state)
     assert_memory_equal(&settings, &before, sizeof settings);
 }
 
-/* The 2014 paper's own figures. */
+/* The figures of [Knuth et al. 2014]. */
 static void test_paper_preset(void **state)
 {
     (void)state;

@@ -123,9 +123,8 @@ static const struct tl_experiment experiments[] = {
      .text =
          "Samples of each model, 12 for each texel along and across, are factored numerically into four "
          "tables: of "
-         "the light, of the viewer, of the half vector, and of its angles to light and normal [McCool, Ang "
-         "and "
-         "Ahmad 2001]. Tables have 64 texels a side unless stated. Phong's model is not reciprocal, as every "
+         "the light, of the viewer, of the half vector, and of its angles to light and normal [McCool et al. "
+         "2001]. Tables have 64 texels a side unless stated. Phong's model is not reciprocal, as every "
          "product of this form is. Measured reflectance, material.samples, is drawn in the same way.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",

@@ -277,8 +277,8 @@ static void keep_cover(const struct comparison *comparison, int tile, const stru
 }
 
 /* How far the image's outlines lie from the reference's, in pixels: the displacement d that explains the
- * difference of coverages best, image - reference = -d . gradient, by least squares over all pixels (Lucas
- * and Kanade 1981). Returns false where outlines do not run in two directions. */
+ * difference of coverages best, image - reference = -d . gradient, by least squares over all pixels [Lucas
+ * and Kanade 1981]. Returns false where outlines do not run in two directions. */
 static bool find_displacement(const struct comparison *comparison, vec2s *out)
 {
     const float *got = tl_image_floats(comparison->image) + 3, *cover = comparison->cover;

@@ -1,9 +1,8 @@
 /* Conjugate gradients of `settle`: (mu + K) d = b, where contact and pins remove degrees of freedom.
  *
- * Removed directions are filtered out of residuals and search directions (Baraff and Witkin 1998, "Large
- * Steps in Cloth Simulation", section 5.3), so that contact and pins hold exactly in every iterate. The
- * quadratic energy of the iterates decreases monotonically: a solve that is cut short still returns a bounded
- * step.
+ * Removed directions are filtered out of residuals and search directions [Baraff and Witkin 1998, 5.3], so
+ * that contact and pins hold exactly in every iterate. The quadratic energy of the iterates decreases
+ * monotonically: a solve that is cut short still returns a bounded step.
  *
  * Sums are taken over fixed runs of vertices and combined in order, so that the result does not depend on the
  * number of threads. Units: d m, b N. Threads: uses all; one solve at a time per workspace. */

@@ -1,8 +1,8 @@
 /* The preconditioner of `settle`: a sparse L D L^T factor of
  *     P = M / h^2 + sum over membranes of A [ (k_weft + k_shear) c c^T + (k_warp + k_shear) d d^T ] + bending
- * + links, the stiffness matrix with every resistance acting in all directions (the global matrix of Bouaziz
- * et al. 2014, "Projective Dynamics"). It is the same for x, y and z and constant while the material and the
- * step are, so it is factorised once, by Eigen (factor_shim.h), and solved in every iteration, here.
+ * + links, the stiffness matrix with every resistance acting in all directions (the global matrix of [Bouaziz
+ * et al. 2014]). It is the same for x, y and z and constant while the material and the step are, so it is
+ * factorised once, by Eigen (factor_shim.h), and solved in every iteration, here.
  *
  * Branches of the elimination tree are solved in parallel. The split into branches is fixed, and so is the
  * order in which their contributions to the common top are summed: results do not depend on the number of

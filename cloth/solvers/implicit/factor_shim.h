@@ -30,7 +30,7 @@ struct tl_sparse_factor {
 };
 
 /* Factorises the symmetric matrix of `count` rows whose lower triangle is the sum of `triplets`, in the order
- * that AMD finds (Amestoy, Davis, Duff 1996), which keeps L sparse. Every pivot that comes out below
+ * that AMD finds [Amestoy et al. 1996], which keeps L sparse. Every pivot that comes out below
  * `min_pivot` is raised to it. False when it does not fit into memory or a pivot is not a finite number;
  * `out` is then empty. */
 bool tl_sparse_factor_create(size_t count, const struct tl_triplet *triplets, size_t triplet_count,

@@ -1,8 +1,7 @@
-/* `settle`: backward Euler with one linearised step (Baraff and Witkin 1998, "Large Steps in Cloth
- * Simulation"): (mu + K) d = mu (y - x) + f(x),   mu = m (1 + drag h) / h^2,   y = x + (h v + h^2 g) / (1 +
- * drag h), for the step d, by preconditioned conjugate gradients (conjugate_gradient.h). What the cloth comes
- * to rest at does not depend on the step: it is the exact equilibrium. The state stays finite for any
- * stiffness and step.
+/* `settle`: backward Euler with one linearised step [Baraff and Witkin 1998]: (mu + K) d = mu (y - x) + f(x),
+ * mu = m (1 + drag h) / h^2,   y = x + (h v + h^2 g) / (1 + drag h), for the step d, by preconditioned
+ * conjugate gradients (conjugate_gradient.h). What the cloth comes to rest at does not depend on the step: it
+ * is the exact equilibrium. The state stays finite for any stiffness and step.
  *
  * The price: the scheme is of first order in h and damps motion, the more the faster it oscillates, so that a
  * swing dies sooner than it should.

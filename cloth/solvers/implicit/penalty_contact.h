@@ -4,9 +4,9 @@
  * A sample is a weighted mean of three vertices, so it cannot be enforced by fixing a particle's step, as
  * contact_constraint.h does. It acts as a stiff spring against its plane instead,
  *     E = k/2 max(min_normal_step + shift - n.d, 0)^2,     d the sample's step, n the plane's normal,
- * where `shift` is the spring's compression at the end of the last step (the method of multipliers, Hestenes
- * 1969): under a steady load the sample then ends on its plane, not below it by load / k. Friction on samples
- * is left to tl_contacts_solve.
+ * where `shift` is the spring's compression at the end of the last step (the method of multipliers [Hestenes
+ * 1969]): under a steady load the sample then ends on its plane, not below it by load / k. Friction on
+ * samples is left to tl_contacts_solve.
  *
  * The active set is found by iteration: a sample that would pass its plane becomes active and the system is
  * solved again, one that would be pulled becomes inactive. Threads: pure. */

@@ -2,9 +2,9 @@
  *
  * Membranes and links give 3 x 3 blocks that depend on the shape. A stretch k/2 (|F| - 1)^2 with n = F/|F|
  * gives k [ n n^T + max(1 - 1/|F|, 0) (I - n n^T) ], exact under tension; in compression the term across n
- * would be negative (real cloth buckles) and make K indefinite, so it is left out (Choi and Ko 2002, "Stable
- * but Responsive Cloth"). Shear gives its Gauss-Newton part k g g^T. Bending is quadratic in the positions:
- * one number per pair of vertices, the same for x, y and z, constant and exact.
+ * would be negative (real cloth buckles) and make K indefinite, so it is left out [Choi and Ko 2002]. Shear
+ * gives its Gauss-Newton part k g g^T. Bending is quadratic in the positions: one number per pair of
+ * vertices, the same for x, y and z, constant and exact.
  *
  * Rows are gathered by vertex, so that sums do not depend on the threads. Units N/m. Lifetime: plain structs
  * that own their arrays. Threads: assembly uses all; one call at a time. */

@@ -1,6 +1,6 @@
 /* Lobes that stand for GGX facets, with Smith's masking, towards one viewer (lobe_fit.h): looked up in a
- * table of fits by least L1 over the hemisphere [after Heitz, Dupuy, Hill and Neubelt 2016, who fit their
- * lobes in this way]. All lie in the plane of incidence, along which a grazing viewer sees light spread.
+ * table of fits by least L1 over the hemisphere [as Heitz et al. 2016]. All lie in the plane of incidence,
+ * along which a grazing viewer sees light spread.
  *
  * Rows are of roughness, the root of the width, and of the viewer's elevation, closer to one another near the
  * horizon. Narrower facets than the first row's have its lobes in proportion to their width.

@@ -1,5 +1,5 @@
-/* Tables factored numerically out of samples of reflectance, by homomorphic factorisation [McCool, Ang and
- * Ahmad 2001, "Homomorphic factorization of BRDFs for high-performance rendering"]:
+/* Tables factored numerically out of samples of reflectance, by homomorphic factorisation [McCool et al.
+ * 2001]:
  *
  *     f_r(l, v) = p(l) p(v) q(h) r(h.l, n.h)
  *

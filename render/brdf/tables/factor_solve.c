@@ -24,7 +24,7 @@ struct linear {
     const struct factor_aim *aim;
     double *weights;  /* of squared errors of logarithms */
     double *diagonal; /* of the matrix, nearly */
-    double damping;   /* share of the diagonal that is added to it [Levenberg and Marquardt] */
+    double damping;   /* share of the diagonal that is added to it (Levenberg and Marquardt) */
     float *slopes;    /* TEXELS a row */
 };
 

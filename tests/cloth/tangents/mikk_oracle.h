@@ -1,6 +1,6 @@
-/* MikkTSpace from its description (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", and the
- * comments of its reference code), as a reference for tests: slow and simple, in double, per corner and
- * triangle. It shares no code and no order of summation with cloth/tangents.
+/* MikkTSpace from its description ([Mikkelsen 2008] and the comments of its reference code), as a reference
+ * for tests: slow and simple, in double, per corner and triangle. It shares no code and no order of summation
+ * with cloth/tangents.
  *
  * Corners with equal position, given normal and UV are one vertex. Triangles with two corners at one position
  * are left out. An edge connects the first two triangles that run along it in opposite directions. A group

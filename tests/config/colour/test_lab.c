@@ -1,4 +1,4 @@
-/* CIELAB and CIEDE2000 against the published pairs of Sharma, Wu and Dalal 2005, table 1, which were chosen
+/* CIELAB and CIEDE2000 against the published pairs of [Sharma et al. 2005, table 1], which were chosen
  * so that each branch of the formula shows; and CIELAB of sRGB's primaries. */
 #include "tests/testing.h"
 

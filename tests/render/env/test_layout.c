@@ -89,8 +89,8 @@ static vec3s reflected(double x, double y, double z, double side)
     return (vec3s){{(float)(side * scale * x), (float)(scale * y), (float)(side * (scale * z - 1))}};
 }
 
-/* A sphere's normal is (x, y, sqrt(1 - x^2 - y^2)), the paraboloid's (x, y, 1): Heidrich and Seidel
- * 1999, 4.1. */
+/* A sphere's normal is (x, y, sqrt(1 - x^2 - y^2)), the paraboloid's (x, y, 1) [Heidrich and Seidel
+ * 1999, 4.1]. */
 static void discs_are_mirrors(void **state)
 {
     (void)state;
@@ -179,9 +179,10 @@ static double spread(enum tl_layout layout)
     return most / least;
 }
 
-/* Heidrich and Seidel 1999, 4.1: 3 sqrt(3) for the cube, 4 for the paraboloid. The ball's texels all have the
- * same solid angle (the paper speaks of its rim, where they are drawn out into slivers). Outermost texels are
- * 1/256 of a face away from where the extremes are: 1.2 % of (1 + u^2 + v^2)^1.5, less of the others. */
+/* Spreads of [Heidrich and Seidel 1999, 4.1]: 3 sqrt(3) for the cube, 4 for the paraboloid. The ball's texels
+ * all have the same solid angle (the paper speaks of its rim, where they are drawn out into slivers).
+ * Outermost texels are 1/256 of a face away from where the extremes are: 1.2 % of (1 + u^2 + v^2)^1.5, less
+ * of the others. */
 static void sampling_spreads(void **state)
 {
     (void)state;

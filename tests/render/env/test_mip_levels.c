@@ -116,8 +116,8 @@ static void a_sun_anywhere_keeps_its_power(void **state)
     }
 }
 
-/* Heidrich and Seidel 1999, eq. 6: dw = dA / |(x, y, f)|^2, f = (1 - x^2 - y^2) / 2. A texel's mean differs
- * from its middle by its curvature: 1 % at 1/32 of the disc. */
+/* Solid angle by [Heidrich and Seidel 1999, eq. 6]: dw = dA / |(x, y, f)|^2, f = (1 - x^2 - y^2) / 2. A
+ * texel's mean differs from its middle by its curvature: 1 % at 1/32 of the disc. */
 static void paraboloids_weigh_as_equation_6(void **state)
 {
     (void)state;

@@ -55,7 +55,7 @@ static inline vec3s refracted_ray(vec3s normal, vec3s viewer, double index, bool
     return glms_vec3_add(straight, glms_vec3_scale(glms_vec3_normalize(along), (float)sine));
 }
 
-/* Born and Wolf, 1.5.2, by angles. */
+/* Fresnel's equations by angles [Born and Wolf 1999, 1.5.2]. */
 static inline double dielectric(double index, double cosine)
 {
     double sine = sqrt(1 - cosine * cosine) / index, inner = sqrt(1 - sine * sine);

@@ -42,8 +42,8 @@ static void strain_scale_is_symmetric(void **state)
     }
 }
 
-/* Colours as those see them who lack a kind of cone: Machado, Oliveira, Fernandes 2009, "A
- * Physiologically-based Model for Simulation of Color Vision Deficiency", table 1, severity 1; linear RGB. */
+/* Colours as those see them who lack a kind of cone [Machado et al. 2009, table 1, severity 1]; linear RGB.
+ */
 static const double deficiencies[2][3][3] = {
     {{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}},
     {{0.367322, 0.860646, -0.227968}, {0.280085, 0.672501, 0.047413}, {-0.011820, 0.042940, 0.968881}}};

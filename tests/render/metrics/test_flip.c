@@ -248,7 +248,7 @@ static void a_small_shift_is_small(void **state)
     assert_true(mean_ldr(shifted, reference) < 0.4 * mean_ldr(negative, reference));
 }
 
-static double tone_mapped(double x) /* Narkowicz 2016 without its pre-exposure */
+static double tone_mapped(double x) /* the curve of [Narkowicz 2016] without its pre-exposure */
 {
     x *= 0.6;
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
