@@ -156,7 +156,7 @@ static double along(const double *table, int count, double octave)
 
 /* Squared error of the regions and of how many are renewed in a frame, by a table of [24, 48, 96, 192
  * regions] x [3, 6 .. 96 renewed]. Entries are the error over that of 192 regions of which 96 are renewed:
- * satin 512 x 512, ratios at vertices, five frames of a flight (docs/measuring.md, "Frame budgets") and two
+ * satin 512 x 512, ratios at vertices, five frames of a flight (docs/notes/budgets.md) and two
  * of `toile trade --axis levels`. 3 renewed of more than 24 was not measured; the entry continues the step
  * before it. Where no difference was measured up to two thousandths are made up: fewer never count as better.
  * So it is of 24 and 48 regions of which 6 are renewed: either is better in one of the two measurements. */

@@ -92,7 +92,7 @@ TL_INLINE float tl_share_above(float cosine, float exponent)
 }
 
 /* The terms show light as a lobe of this exponent would, and so they do a horizon. Where it is cut off as
- * sharply as K_s has it, pleats of metal were 4 to 5 % brighter, and too bright (docs/measuring.md). */
+ * sharply as K_s has it, pleats of metal were 4 to 5 % brighter, and too bright (docs/notes/bounce.md). */
 #define TL_BOUNCED_BLUR 6
 
 TL_INLINE struct tl_bounced_lobe tl_bounced_lobe_of(vec3s normal, vec3s direction, float exponent)
