@@ -1,161 +1,146 @@
 #include "app/report/report.h"
 
+#include "app/report/folder.h"
 #include "config/embedded.h"
+#include "config/memory.h"
 
 #include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
 
-extern const struct tl_embedded tl_embedded_report[]; /* report.css */
+extern const struct tl_embedded tl_embedded_report[]; /* page.html and what it encloses */
 
-void tl_report_begin(FILE *out, const char *title, const char *subtitle)
+struct page {
+    const char *script;
+    const cJSON *data;
+};
+
+/* "</script>" and "<!--" would end the element or change how it is read: no "<" is left in the text. */
+static void print_data(const cJSON *data, FILE *out)
 {
-    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>",
-          out);
-    tl_html_print(out, title);
-    fprintf(out, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<h1>", tl_embedded_report[0].data);
-    tl_html_print(out, title);
-    fputs("</h1>\n<p class=\"subtitle\">", out);
-    tl_html_print(out, subtitle);
-    fputs("</p>\n", out);
+    char *text = cJSON_PrintUnformatted(data);
+    for (const char *at = text; *at; at++)
+        if (*at == '<')
+            fputs("\\u003c", out);
+        else
+            fputc(*at, out);
+    cJSON_free(text);
 }
 
-void tl_report_end(FILE *out)
+static void print_part(const struct page *page, const char *name, FILE *out)
 {
-    fputs("</body>\n</html>\n", out);
+    if (strcmp(name, "data") == 0)
+        print_data(page->data, out);
+    else if (strcmp(name, "report") == 0)
+        fputs(page->script, out);
+    else
+        fputs(tl_embedded_find(tl_embedded_report, name)->data, out);
 }
 
-static void print_element(FILE *out, const char *element, const char *text)
+/* Prints page.html with each {{NAME}} replaced: by the data, the report's script, or the file of that name.
+ */
+static void print_page(const void *what, FILE *out)
 {
-    fprintf(out, "<%s>", element);
-    tl_html_print(out, text);
-    fprintf(out, "</%s>\n", element);
-}
-
-void tl_report_heading(FILE *out, const char *text)
-{
-    print_element(out, "h2", text);
-}
-
-void tl_report_paragraph(FILE *out, const char *text)
-{
-    print_element(out, "p", text);
-}
-
-void tl_report_table(FILE *out, const char *const *cells, size_t rows, size_t columns)
-{
-    fputs("<div class=\"scroll\"><table>\n<thead>\n", out);
-    for (size_t row = 0; row < rows; row++) {
-        fputs("<tr>", out);
-        for (size_t column = 0; column < columns; column++)
-            print_element(out, row == 0 || column == 0 ? "th" : "td", cells[row * columns + column]);
-        fputs(row == 0 ? "</tr>\n</thead>\n<tbody>\n" : "</tr>\n", out);
+    const char *at = tl_embedded_find(tl_embedded_report, "page.html")->data, *mark;
+    while ((mark = strstr(at, "{{"))) {
+        const char *end = strstr(mark, "}}");
+        char *name = tl_format("%.*s", (int)(end - mark - 2), mark + 2);
+        fprintf(out, "%.*s", (int)(mark - at), at);
+        print_part(what, name, out);
+        free(name);
+        at = end + 2;
     }
-    fputs(rows ? "</tbody>\n</table></div>\n" : "</thead>\n</table></div>\n", out);
+    fputs(at, out);
 }
 
-void tl_report_tiles(FILE *out, const char *const *cells, size_t count)
+bool tl_report_write(const char *folder, const char *file, const char *script, cJSON *data, tl_error *error)
 {
-    fputs("<ul class=\"tiles\">\n", out);
-    for (size_t i = 0; i < count; i++) {
-        fputs("<li>", out);
-        print_element(out, "b", cells[2 * i]);
-        tl_html_print(out, cells[2 * i + 1]);
-        fputs("</li>\n", out);
-    }
-    fputs("</ul>\n", out);
+    const struct page page = {script, data};
+    bool written = tl_folder_print(folder, file, &page, print_page, error);
+    cJSON_Delete(data);
+    return written;
 }
 
-void tl_report_fold_begin(FILE *out, const char *title)
+void tl_report_add_text(cJSON *object, const char *key, const void *what,
+                        void (*write)(const void *what, FILE *out))
 {
-    fputs("<details>", out);
-    print_element(out, "summary", title);
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    write(what, out);
+    fclose(out);
+    cJSON_AddStringToObject(object, key, text);
+    free(text);
 }
 
-void tl_report_fold_end(FILE *out)
-{
-    fputs("</details>\n", out);
-}
-
-void tl_report_plot_with(FILE *out, const struct tl_plot *plot, const struct tl_plot_options *options,
-                         const char *caption)
-{
-    fputs("<figure>\n", out);
-    tl_plot_print(out, plot, options);
-    print_element(out, "figcaption", caption);
-    fputs("</figure>\n", out);
-}
-
-void tl_report_plot(FILE *out, const struct tl_plot *plot, const char *caption)
-{
-    tl_report_plot_with(out, plot, &(const struct tl_plot_options){0}, caption);
-}
-
-static void print_base64(FILE *out, const uint8_t *bytes, size_t size)
+cJSON *tl_report_png(const void *png, size_t size)
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char start[] = "data:image/png;base64,";
+    const uint8_t *bytes = png;
+    char *text = tl_alloc(sizeof start + 4 * (size / 3 + 1), 1), *to = text + strlen(start);
+    memcpy(text, start, sizeof start);
     for (size_t i = 0; i < size; i += 3) {
         size_t left = size - i < 3 ? size - i : 3;
         unsigned bits = 0;
         for (size_t k = 0; k < 3; k++)
             bits = bits << 8 | (k < left ? bytes[i + k] : 0u);
         for (size_t k = 0; k < 4; k++)
-            fputc(k <= left ? letters[bits >> (18 - 6 * k) & 63] : '=', out);
+            *to++ = k <= left ? letters[bits >> (18 - 6 * k) & 63] : '=';
     }
+    *to = 0;
+    cJSON *string = cJSON_CreateString(text);
+    free(text);
+    return string;
 }
 
-void tl_report_pictures_begin(FILE *out)
+/* ---- Figures ---- */
+
+cJSON *tl_report_add_plot(cJSON *figures, const struct tl_report_plot *plot)
 {
-    fputs("<div class=\"pictures\">\n", out);
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "x_label", plot->x_label);
+    cJSON_AddStringToObject(object, "y_label", plot->y_label);
+    cJSON_AddBoolToObject(object, "x_log", plot->x_log);
+    cJSON_AddBoolToObject(object, "y_log", plot->y_log);
+    cJSON_AddStringToObject(object, "caption", plot->caption);
+    cJSON_AddItemToArray(figures, object);
+    return cJSON_AddArrayToObject(object, "series");
 }
 
-static void begin_picture(FILE *out, const char *name)
+cJSON *tl_report_add_series(cJSON *series, const char *name, bool is_front)
 {
-    fputs("<figure><img alt=\"", out);
-    tl_html_print(out, name);
-    fputs("\" src=\"", out);
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "name", name);
+    cJSON_AddBoolToObject(object, "line", !is_front);
+    cJSON_AddBoolToObject(object, "front", is_front);
+    cJSON_AddItemToArray(series, object);
+    return cJSON_AddArrayToObject(object, "points");
 }
 
-static void end_picture(FILE *out, const char *name, const char *caption)
+void tl_report_add_point(cJSON *points, double x, double y)
 {
-    fputs("\"/><figcaption><b>", out);
-    tl_html_print(out, name);
-    fputs("</b>", out);
-    tl_html_print(out, caption);
-    fputs("</figcaption></figure>\n", out);
+    cJSON_AddItemToArray(points, cJSON_CreateDoubleArray((const double[]){x, y}, 2));
 }
 
-void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption)
+cJSON *tl_report_add_table(cJSON *figures, const struct tl_report_column *columns, int count)
 {
-    begin_picture(out, name);
-    fputs("data:image/png;base64,", out);
-    print_base64(out, png, size);
-    end_picture(out, name, caption);
+    cJSON *object = cJSON_CreateObject(), *heads = cJSON_AddArrayToObject(object, "columns");
+    for (int i = 0; i < count; i++) {
+        cJSON *column = cJSON_CreateObject();
+        cJSON_AddStringToObject(column, "head", columns[i].head);
+        cJSON_AddNumberToObject(column, "digits", columns[i].digits);
+        cJSON_AddItemToArray(heads, column);
+    }
+    cJSON_AddItemToArray(figures, object);
+    return cJSON_AddArrayToObject(object, "rows");
 }
 
-void tl_report_picture_file(FILE *out, const char *file, const char *name, const char *caption)
+void tl_report_add_row(cJSON *rows, const char *name, const double *values, int count)
 {
-    begin_picture(out, name);
-    tl_html_print(out, file);
-    end_picture(out, name, caption);
-}
-
-void tl_report_pictures_end(FILE *out)
-{
-    fputs("</div>\n", out);
-}
-
-void tl_report_wide_picture(FILE *out, const struct tl_report_file *file, const char *name,
-                            const char *caption)
-{
-    fputs("<figure class=\"wide\"><a href=\"", out);
-    tl_html_print(out, file->name);
-    fprintf(out, "\"><img loading=\"lazy\" width=\"%d\" height=\"%d\" alt=\"", file->width, file->height);
-    tl_html_print(out, name);
-    fputs("\" src=\"", out);
-    tl_html_print(out, file->name);
-    fputs("\"/></a><figcaption><b>", out);
-    tl_html_print(out, name);
-    fputs("</b>", out);
-    tl_html_print(out, caption);
-    fputs("</figcaption></figure>\n", out);
+    cJSON *row = cJSON_CreateArray();
+    cJSON_AddItemToArray(row, cJSON_CreateString(name));
+    for (int i = 0; i < count; i++)
+        cJSON_AddItemToArray(row, cJSON_CreateNumber(values[i]));
+    cJSON_AddItemToArray(rows, row);
 }

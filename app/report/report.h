@@ -1,53 +1,54 @@
-/* Writes a report: one HTML page with text, tables, plots (app/report/plot.h) and pictures, without scripts,
- * in the reader's light or dark colours.
+/* Reports: one page (app/report/page/) that shows the JSON which is written into it. A report's script,
+ * beside the C file that writes its data, builds the page from page.js and plot.js. The page needs no other
+ * file, except pictures that the data names. Measured curves and tables that no file of figures holds are
+ * figures of the data.
  *
- * Texts are UTF-8 and need no escaping; the page declares its encoding. The functions print in the order of
- * the calls, between tl_report_begin and tl_report_end. Errors: the caller opens the stream and finds write
- * errors when it commits it (tl_writer). Lifetime: nothing is kept. Threads: one stream at a time each. */
+ * Texts are UTF-8 and need no escaping. Errors: as of app/report/folder.h. Threads: any, each with data of
+ * its own. */
 #ifndef TOILE_APP_REPORT_REPORT_H
 #define TOILE_APP_REPORT_REPORT_H
 
-#include "app/report/plot.h"
+#include "config/error.h"
 
-/* Begins the page with its title, a line below the title, and the style sheet. */
-void tl_report_begin(FILE *out, const char *title, const char *subtitle);
-void tl_report_end(FILE *out);
+#include <cjson/cJSON.h>
 
-void tl_report_heading(FILE *out, const char *text);
-void tl_report_paragraph(FILE *out, const char *text);
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
 
-/* Prints cells[row * columns + column] as a table. The first row holds the heads of the columns, the first
- * column those of the rows. */
-void tl_report_table(FILE *out, const char *const *cells, size_t rows, size_t columns);
+/* Writes FOLDER/FILE: the page with `data`, which it deletes, and the report's script: the text of a file
+ * that the room of the report embeds (toile_embed). */
+bool tl_report_write(const char *folder, const char *file, const char *script, cJSON *data, tl_error *error);
 
-/* Prints the report's main figures in large type, as many side by side as fit: cells[2 i] is a value, cells[2
- * i + 1] its name. */
-void tl_report_tiles(FILE *out, const char *const *cells, size_t count);
+/* Adds the text that `write` prints of `what`, as a string: the content of a CSV file. */
+void tl_report_add_text(cJSON *object, const char *key, const void *what,
+                        void (*write)(const void *what, FILE *out));
 
-/* Encloses a part of the page that is folded away until its title is clicked. */
-void tl_report_fold_begin(FILE *out, const char *title);
-void tl_report_fold_end(FILE *out);
+/* New string of JSON: a PNG of `size` bytes as the address of a picture ("data:image/png;base64,..."). */
+cJSON *tl_report_png(const void *png, size_t size);
 
-/* Prints a plot and a caption below it; the first with default options. */
-void tl_report_plot(FILE *out, const struct tl_plot *plot, const char *caption);
-void tl_report_plot_with(FILE *out, const struct tl_plot *plot, const struct tl_plot_options *options,
-                         const char *caption);
+/* ---- Figures: appended to an array of the data ---- */
 
-/* Encloses pictures, of which as many are side by side as fit. */
-void tl_report_pictures_begin(FILE *out);
-/* Prints a picture within the page: a PNG of `size` bytes. */
-void tl_report_picture(FILE *out, const void *png, size_t size, const char *name, const char *caption);
-/* Prints a picture by the name of its file, which lies in the page's folder. */
-void tl_report_picture_file(FILE *out, const char *file, const char *name, const char *caption);
-void tl_report_pictures_end(FILE *out);
-
-/* Prints a picture as wide as the page, outside of tl_report_pictures_begin and end: a file in the page's
- * folder, loaded when the reader scrolls to it. A click opens it in full size. */
-struct tl_report_file {
-    const char *name;
-    int width, height; /* pixels: the page keeps its place free */
+struct tl_report_plot {
+    const char *x_label, *y_label;
+    bool x_log, y_log;
+    const char *caption;
 };
-void tl_report_wide_picture(FILE *out, const struct tl_report_file *file, const char *name,
-                            const char *caption);
+/* Returns the plot's series, an array of the data. */
+cJSON *tl_report_add_plot(cJSON *figures, const struct tl_report_plot *plot);
+/* Adds a series whose points are joined; with `is_front` by a dashed line without marks. Returns its points.
+ */
+cJSON *tl_report_add_series(cJSON *series, const char *name, bool is_front);
+/* Adds a point. A value that is not finite becomes null, and the point is not drawn. */
+void tl_report_add_point(cJSON *points, double x, double y);
+
+struct tl_report_column {
+    const char *head;
+    int digits; /* behind the decimal point */
+};
+/* Adds a table of `count` columns; returns its rows. */
+cJSON *tl_report_add_table(cJSON *figures, const struct tl_report_column *columns, int count);
+/* Adds a row: its name, and the values of the other columns. */
+void tl_report_add_row(cJSON *rows, const char *name, const double *values, int count);
 
 #endif

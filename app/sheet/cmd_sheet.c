@@ -1,5 +1,4 @@
 /* toile sheet: renders a contact sheet cell by cell, as a folder of pictures or as one image. */
-#include "app/report/folder.h"
 #include "app/report/report.h"
 #include "app/scene/camera.h"
 #include "app/scene/headless.h"
@@ -9,6 +8,7 @@
 #include "app/sheet/contact_plan.h"
 #include "app/sheet/contact_store.h"
 #include "assets/image/image_file.h"
+#include "config/embedded.h"
 #include "config/file.h"
 #include "config/interrupt.h"
 #include "config/log.h"
@@ -17,6 +17,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+extern const struct tl_embedded tl_embedded_sheet[]; /* sheet.js */
 
 /* The state of one run. */
 struct work {
@@ -260,33 +262,39 @@ static bool compose(const struct work *work, const char *path, tl_error *error)
 
 /* ---- A page ---- */
 
-static void print_row(const struct work *work, size_t row, FILE *out)
+static cJSON *describe_row(const struct work *work, size_t row)
 {
     const struct tl_contact_plan *plan = &work->plan;
-    char *heading = tl_format("%s%s%s", plan->rows[row].garment, plan->rows[row].name[0] ? ": " : "",
-                              plan->rows[row].name);
-    tl_report_heading(out, heading);
-    free(heading);
-    tl_report_pictures_begin(out);
+    cJSON *object = cJSON_CreateObject();
+    char *title = tl_format("%s%s%s", plan->rows[row].garment, plan->rows[row].name[0] ? ": " : "",
+                            plan->rows[row].name);
+    cJSON_AddStringToObject(object, "title", title);
+    free(title);
+    cJSON *pictures = cJSON_AddArrayToObject(object, "pictures");
     for (size_t column = 0; column < plan->column_count; column++) {
         if (work->refused[cell_of(work, row, column)])
             continue;
-        char *name = tl_contact_cell_name(plan, row, column);
-        tl_report_picture_file(out, name, plan->columns[column].view.name, plan->columns[column].group);
-        free(name);
+        char *file = tl_contact_cell_name(plan, row, column);
+        cJSON *picture = cJSON_CreateObject();
+        cJSON_AddStringToObject(picture, "file", file);
+        cJSON_AddStringToObject(picture, "name", plan->columns[column].view.name);
+        cJSON_AddStringToObject(picture, "group", plan->columns[column].group);
+        cJSON_AddItemToArray(pictures, picture);
+        free(file);
     }
-    tl_report_pictures_end(out);
-    if (work->refused[cell_of(work, row, 0)])
-        tl_report_paragraph(out, "Refused: the run's messages say why.");
+    cJSON_AddBoolToObject(object, "refused", cJSON_GetArraySize(pictures) < (int)plan->column_count);
+    return object;
 }
 
-static void write_page(const void *what, FILE *out)
+static bool write_page(const struct work *work, tl_error *error)
 {
-    const struct work *work = what;
-    tl_report_begin(out, work->plan.title, work->plan.note);
+    cJSON *data = cJSON_CreateObject();
+    cJSON_AddStringToObject(data, "title", work->plan.title);
+    cJSON_AddStringToObject(data, "note", work->plan.note);
+    cJSON *rows = cJSON_AddArrayToObject(data, "rows");
     for (size_t row = 0; row < work->plan.row_count; row++)
-        print_row(work, row, out);
-    tl_report_end(out);
+        cJSON_AddItemToArray(rows, describe_row(work, row));
+    return tl_report_write(work->folder, "index.html", tl_embedded_sheet[0].data, data, error);
 }
 
 /* ---- The command ---- */
@@ -334,8 +342,7 @@ static bool finish(struct work *work, tl_error *error)
                tl_fail(error, TL_UNSTABLE, "sheet: %zu cells were refused: repair what is named above",
                        work->refused_count);
     }
-    if (!(work->is_image ? compose(work, output, error)
-                         : tl_folder_print(work->folder, "index.html", work, write_page, error)))
+    if (!(work->is_image ? compose(work, output, error) : write_page(work, error)))
         return false;
     tl_info("sheet: %s: %zu cells drawn, %zu kept, %zu refused", output, work->drawn, work->kept,
             work->refused_count);

@@ -222,18 +222,13 @@ static void write_summary(const void *account, FILE *out)
     tl_flight_write_summary(account, out);
 }
 
-static void write_report(const void *account, FILE *out)
-{
-    tl_flight_write_report(account, out);
-}
-
 static bool write_files(const char *folder, const struct tl_flight_account *account, tl_error *error)
 {
     char *path = tl_format("%s/path.yaml", folder);
     bool written = tl_path_save(path, &account->flight->path, error) &&
                    tl_folder_print(folder, "frames.csv", account, write_csv, error) &&
                    tl_folder_print(folder, "summary.json", account, write_summary, error) &&
-                   tl_folder_print(folder, "report.html", account, write_report, error);
+                   tl_flight_write_report(account, folder, error);
     free(path);
     return written;
 }

@@ -27,7 +27,8 @@ struct tl_flight_account { /* strings are borrowed */
 /* New object. Numbers that are not known are null. */
 cJSON *tl_flight_summary(const struct tl_flight_account *account);
 void tl_flight_write_summary(const struct tl_flight_account *account, FILE *out);
-void tl_flight_write_report(const struct tl_flight_account *account, FILE *out);
+/* FOLDER/report.html. */
+bool tl_flight_write_report(const struct tl_flight_account *account, const char *folder, tl_error *error);
 void tl_flight_print(const struct tl_flight_account *account, FILE *out);
 
 /* A flight's folder: its frames, its path, its budget, and the text of its settings. */

@@ -2,22 +2,22 @@
 #include "app/lab/gallery/commands.h"
 #include "app/lab/gallery/gallery.h"
 #include "app/report/folder.h"
+#include "app/report/report.h"
+#include "config/embedded.h"
 #include "config/file.h"
+
+extern const struct tl_embedded tl_embedded_gallery[]; /* gallery.js */
 
 static void write_csv(const void *gallery, FILE *out)
 {
     tl_gallery_write_csv(gallery, out);
 }
 
-static void write_html(const void *gallery, FILE *out)
-{
-    tl_gallery_write_html(gallery, out);
-}
-
 static bool write_pages(const char *folder, const struct tl_gallery *gallery, tl_error *error)
 {
     return tl_folder_print(folder, "gallery.csv", gallery, write_csv, error) &&
-           tl_folder_print(folder, "gallery.html", gallery, write_html, error);
+           tl_report_write(folder, "gallery.html", tl_embedded_gallery[0].data, tl_gallery_data(gallery),
+                           error);
 }
 
 /* After Ctrl-C the page holds what was drawn until then; the same command continues. */

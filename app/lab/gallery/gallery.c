@@ -5,7 +5,6 @@
 #include "app/lab/gallery/moving_sky.h"
 #include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/store.h"
-#include "app/lab/gallery/words.h"
 #include "app/report/folder.h"
 #include "assets/image/image_file.h"
 #include "config/hash.h"
@@ -87,6 +86,14 @@ static bool measure_error(const struct tl_experiment *experiment, const struct t
     return true;
 }
 
+/* The page has all of the text. */
+char *tl_gallery_exact_head(const struct tl_experiment *experiment)
+{
+    const char *text = experiment->exact_text;
+    return experiment->exact == TL_EXACT_NONE ? tl_copy_string("for comparison")
+                                              : tl_format("exact: %.*s", (int)strcspn(text, ";"), text);
+}
+
 static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry *entry, tl_error *error)
 {
     const struct tl_experiment *experiment = entry->picture.experiment;
@@ -101,7 +108,7 @@ static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry
         entry->figures.time_ms[i] = tested[i].time_ms;
     }
     if (done) {
-        char *exact = tl_words_head(experiment);
+        char *exact = tl_gallery_exact_head(experiment);
         entry->figures.difference_end = tl_panels_end(rows, TL_PICTURE_OBJECTS);
         tl_image picture = tl_panels_make(rows, TL_PICTURE_OBJECTS, tl_shots_side(experiment), exact,
                                           entry->setting, entry->figures.difference_end);
@@ -134,7 +141,7 @@ static bool draw_strip(struct gallery_drawing *drawing, struct tl_gallery_entry 
     if (done) {
         entry->figures.exact_change = measure_change(exact);
         entry->figures.change = measure_change(tested);
-        char *head = tl_words_head(entry->picture.experiment);
+        char *head = tl_gallery_exact_head(entry->picture.experiment);
         tl_image strip = tl_panels_strip(exact, tested, TL_STRIP_FRAMES, TL_STRIP_SIDE, head, entry->setting);
         free(head);
         done = save_picture(drawing, entry->strip, &strip, error);

@@ -9,6 +9,8 @@
 
 #include "app/lab/experiments/picture.h"
 
+#include <cjson/cJSON.h>
+
 #include <stddef.h>
 #include <stdio.h>
 
@@ -43,6 +45,9 @@ struct tl_gallery {
  * counts as that. What errs more never gets the smaller figure. Pure. */
 double tl_gallery_error_less_noise(double rel_rmse, double noise);
 
+/* The head above an experiment's exact pictures: "exact: ray traced". New string. */
+char *tl_gallery_exact_head(const struct tl_experiment *experiment);
+
 /* Whether there is such a section; NULL stands for all. Errors: TL_USAGE names a similar one. */
 bool tl_gallery_has(const char *name, tl_error *error);
 
@@ -57,7 +62,7 @@ void tl_gallery_release(struct tl_gallery *gallery);
 /* gallery.csv: id,technique,setting,error,error_metric,time_ms,image; the larger error and the longer time of
  * the two objects. */
 void tl_gallery_write_csv(const struct tl_gallery *gallery, FILE *out);
-/* The page. */
-void tl_gallery_write_html(const struct tl_gallery *gallery, FILE *out);
+/* The data of gallery.html; new object. */
+cJSON *tl_gallery_data(const struct tl_gallery *gallery);
 
 #endif

@@ -1,7 +1,6 @@
 #include "app/lab/gallery/gallery_figures.h"
 
 #include "app/lab/experiments/experiment.h"
-#include "app/report/cells.h"
 #include "app/report/report.h"
 #include "config/memory.h"
 #include "render/brdf/fresnel.h"
@@ -27,42 +26,38 @@ static struct tl_brdf brdf_of(int model, float glossiness)
     return brdf;
 }
 
-/* ---- A1, A3 to A5 ---- */
+/* ---- A1, A3 to A5: error of tables over size and precision ---- */
 
 enum { MODELS = TL_REFLECT_BANKS + 1 };
 static const int sizes[] = {16, 32, 64, 128, 256, 512};
 
-static void plot_sizes(int precision, const char *caption, FILE *out)
+static void add_sizes(int precision, const char *caption, cJSON *figures)
 {
     const char *const *names = tl_experiment_choices(&tl_material_options, "model");
-    struct tl_plot_point points[MODELS][TL_COUNT(sizes)];
-    struct tl_plot_series series[MODELS];
+    cJSON *series = tl_report_add_plot(
+        figures, &(const struct tl_report_plot){"texels a side", "relative RMSE, %", true, true, caption});
     for (size_t model = 0; model < MODELS; model++) {
         struct tl_brdf brdf = brdf_of((int)model, 0.9f);
+        cJSON *points = tl_report_add_series(series, names[model], false);
         for (size_t i = 0; i < TL_COUNT(sizes); i++) {
             struct tl_brdf_table_params params = {
                 .size = sizes[i], .precision = precision, .range = TL_RANGE_SCALED};
-            points[model][i] = (struct tl_plot_point){
-                sizes[i], 100 * tl_brdf_table_error(&brdf, &params).steep, names[model], false};
+            tl_report_add_point(points, sizes[i], 100 * tl_brdf_table_error(&brdf, &params).steep);
         }
-        series[model] = (struct tl_plot_series){
-            .name = names[model], .points = points[model], .count = TL_COUNT(sizes), .line = true};
     }
-    tl_report_plot(
-        out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
-        caption);
 }
 
-void tl_gallery_table_figures(FILE *out)
+static void add_tables(cJSON *figures)
 {
-    plot_sizes(TL_PRECISION_FLOAT, "Tables in float against the formula, away from grazing, glossiness 0.9.",
-               out);
-    plot_sizes(TL_PRECISION_FIXED8, "The same in 8 bits: what is left are their steps, not their size.", out);
+    add_sizes(TL_PRECISION_FLOAT, "Tables in float against the formula, away from grazing, glossiness 0.9.",
+              figures);
+    add_sizes(TL_PRECISION_FIXED8, "The same in 8 bits: what is left are their steps, not their size.",
+              figures);
 }
 
-/* ---- A2 ---- */
+/* ---- A2: what the singular factor's range darkens ---- */
 
-void tl_gallery_grazing_figures(FILE *out)
+static void add_grazing(cJSON *figures)
 {
     static const struct {
         const char *name;
@@ -70,36 +65,32 @@ void tl_gallery_grazing_figures(FILE *out)
     } kinds[] = {{"8 bits, cut at 1", TL_PRECISION_FIXED8, TL_RANGE_CLAMPED},
                  {"8 bits, by a constant", TL_PRECISION_FIXED8, TL_RANGE_SCALED},
                  {"16 bits, by a constant", TL_PRECISION_FIXED16, TL_RANGE_SCALED}};
-    enum { ANGLES = 45 };
-    struct tl_plot_point points[TL_COUNT(kinds)][ANGLES];
-    struct tl_plot_series series[TL_COUNT(kinds)];
     struct tl_brdf brdf = brdf_of(TL_REFLECT_TORRANCE_SPARROW, 0.9f);
+    cJSON *series = tl_report_add_plot(
+        figures,
+        &(const struct tl_report_plot){
+            .x_label = "degrees of the viewer from the normal",
+            .y_label = "light shown over light due",
+            .caption =
+                "Torrance-Sparrow, glossiness 0.9, from 512 texels a side: cut at 1, the factor G / (pi cos "
+                "b) darkens from 71 degrees on, where 1 / (pi cos b) passes it; divided by its greatest "
+                "value it does not."});
     for (size_t t = 0; t < TL_COUNT(kinds); t++) {
         struct tl_brdf_table_params params = {
             .size = 512, .precision = kinds[t].precision, .range = kinds[t].range};
         struct tl_brdf_tables tables = tl_brdf_tables_make(&brdf, &params);
-        for (int i = 0; i < ANGLES; i++) {
-            double degrees = 2.0 * i + 1;
-            double ratio = tl_brdf_table_ratio(&brdf, &tables, (float)cos(degrees * M_PI / 180));
-            points[t][i] = (struct tl_plot_point){degrees, ratio, kinds[t].name, false};
-        }
+        cJSON *points = tl_report_add_series(series, kinds[t].name, false);
+        for (int degrees = 1; degrees < 90; degrees += 2)
+            tl_report_add_point(points, degrees,
+                                tl_brdf_table_ratio(&brdf, &tables, (float)cos(degrees * M_PI / 180)));
         tl_brdf_tables_release(&tables);
-        series[t] = (struct tl_plot_series){
-            .name = kinds[t].name, .points = points[t], .count = ANGLES, .line = true};
     }
-    tl_report_plot(
-        out,
-        &(struct tl_plot){"degrees of the viewer from the normal", "light shown over light due", false, false,
-                          series, TL_COUNT(series)},
-        "Torrance-Sparrow, glossiness 0.9, from 512 texels a side: cut at 1, the factor G / (pi cos b) "
-        "darkens from 71 degrees on, where 1 / (pi cos b) passes it; divided by its greatest value it does "
-        "not.");
 }
 
-/* ---- A3 ---- */
+/* ---- A3: what folding all terms into one table costs ---- */
 
 /* Measured over the whole light, ambient and diffuse included, so that both kinds of table compare alike. */
-void tl_gallery_folded_figures(FILE *out)
+static void add_folded(cJSON *figures)
 {
     static const struct {
         const char *name;
@@ -108,10 +99,18 @@ void tl_gallery_folded_figures(FILE *out)
                  {"Blinn-Phong, 8 bits", TL_REFLECT_BLINN_PHONG, TL_PRECISION_FIXED8},
                  {"cosine lobe, 8 bits", TL_REFLECT_COSINE_LOBE, TL_PRECISION_FIXED8},
                  {"Phong, float", TL_REFLECT_PHONG, TL_PRECISION_FLOAT}};
-    struct tl_plot_point points[TL_COUNT(kinds)][TL_COUNT(sizes)];
-    struct tl_plot_series series[TL_COUNT(kinds)];
+    cJSON *series = tl_report_add_plot(
+        figures, &(const struct tl_report_plot){"texels a side", "relative RMSE, %", true, true,
+                                                "Ambient, diffuse and gloss folded into one table, one "
+                                                "look-up for all three, against the formula. A "
+                                                "folded table holds one colour: cloth whose yarns and prints "
+                                                "differ from texel to texel would need a "
+                                                "table for each, so the shaders keep the diffuse term out of "
+                                                "the table, where it costs one product, and "
+                                                "no option folds it."});
     for (size_t t = 0; t < TL_COUNT(kinds); t++) {
         struct tl_brdf brdf = brdf_of(kinds[t].model, 0.9f);
+        cJSON *points = tl_report_add_series(series, kinds[t].name, false);
         for (size_t i = 0; i < TL_COUNT(sizes); i++) {
             struct tl_brdf_table_params params = {.size = sizes[i],
                                                   .precision = kinds[t].precision,
@@ -119,54 +118,36 @@ void tl_gallery_folded_figures(FILE *out)
                                                   .folded = true,
                                                   .ambient = {{0.02f, 0.02f, 0.02f}},
                                                   .diffuse = {{0.3f, 0.3f, 0.3f}}};
-            points[t][i] = (struct tl_plot_point){sizes[i], 100 * tl_brdf_table_error(&brdf, &params).steep,
-                                                  kinds[t].name, false};
+            tl_report_add_point(points, sizes[i], 100 * tl_brdf_table_error(&brdf, &params).steep);
         }
-        series[t] = (struct tl_plot_series){
-            .name = kinds[t].name, .points = points[t], .count = TL_COUNT(sizes), .line = true};
     }
-    tl_report_plot(
-        out, &(struct tl_plot){"texels a side", "relative RMSE, %", true, true, series, TL_COUNT(series)},
-        "Ambient, diffuse and gloss folded into one table, one look-up for all three, against the formula. A "
-        "folded table holds one colour: cloth whose yarns and prints differ from texel to texel would need a "
-        "table for each, so the shaders keep the diffuse term out of the table, where it costs one product, "
-        "and "
-        "no option folds it.");
 }
 
-/* ---- A9 ---- */
+/* ---- A9: five normalisations over the angle between vertices ---- */
 
-void tl_gallery_normalise_figures(FILE *out)
+static void add_normalise(cJSON *figures)
 {
     static const int angles[] = {5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 75, 90};
     static const int methods[] = {TL_NORMALISE_NONE, TL_NORMALISE_CUBE8, TL_NORMALISE_CUBE16,
                                   TL_NORMALISE_NEWTON, TL_NORMALISE_NEWTON_FIXED};
-    struct tl_plot_point points[TL_COUNT(methods)][TL_COUNT(angles)];
-    struct tl_plot_series series[TL_COUNT(methods)];
-    for (size_t m = 0; m < TL_COUNT(methods); m++) {
-        const char *name = tl_normalisation_names[methods[m]];
-        for (size_t i = 0; i < TL_COUNT(angles); i++) {
-            double error = tl_normalise_error(methods[m], angles[i] * M_PI / 180).vector;
-            points[m][i] = (struct tl_plot_point){angles[i], error, name, false};
-        }
-        series[m] = (struct tl_plot_series){
-            .name = name, .points = points[m], .count = TL_COUNT(angles), .line = true};
-    }
     const double degree = M_PI / 180;
-    char caption[300];
-    snprintf(
-        caption, sizeof caption,
-        "Newton's one step beats the cube map of 8 bits up to %.0f degrees between vertices, and in 8 bits "
-        "and a sign, as register combiners have them, up to %.0f.",
-        tl_normalise_limit(TL_NORMALISE_NEWTON, TL_NORMALISE_CUBE8) / degree,
-        tl_normalise_limit(TL_NORMALISE_NEWTON_FIXED, TL_NORMALISE_CUBE8) / degree);
-    tl_report_plot(out,
-                   &(struct tl_plot){"degrees between the vectors at two vertices",
-                                     "rms distance from unit vectors", false, true, series, TL_COUNT(series)},
-                   caption);
+    char *caption = tl_format("Newton's one step beats the cube map of 8 bits up to %.0f degrees between "
+                              "vertices, and in 8 bits and a "
+                              "sign, as register combiners have them, up to %.0f.",
+                              tl_normalise_limit(TL_NORMALISE_NEWTON, TL_NORMALISE_CUBE8) / degree,
+                              tl_normalise_limit(TL_NORMALISE_NEWTON_FIXED, TL_NORMALISE_CUBE8) / degree);
+    cJSON *series = tl_report_add_plot(
+        figures, &(const struct tl_report_plot){"degrees between the vectors at two vertices",
+                                                "rms distance from unit vectors", false, true, caption});
+    for (size_t m = 0; m < TL_COUNT(methods); m++) {
+        cJSON *points = tl_report_add_series(series, tl_normalisation_names[methods[m]], false);
+        for (size_t i = 0; i < TL_COUNT(angles); i++)
+            tl_report_add_point(points, angles[i], tl_normalise_error(methods[m], angles[i] * degree).vector);
+    }
+    free(caption);
 }
 
-/* ---- A10 ---- */
+/* ---- A10: a highlight by each power, and their banding ---- */
 
 static double shown_by(int method, int exponent, const uint8_t *table, double cosine)
 {
@@ -177,98 +158,83 @@ static double shown_by(int method, int exponent, const uint8_t *table, double co
     return pow(cosine, exponent);
 }
 
-static void plot_highlight(int exponent, FILE *out)
+static void add_highlight(int exponent, cJSON *figures)
 {
     enum { STEPS = 300 };
     uint8_t table[TL_POWER_TABLE_SIZE];
     tl_power_table_make((float)exponent, TL_POWER_TABLE_SIZE, table);
-    double end = acos(pow(0.01, 1.0 / exponent));
-    struct tl_plot_point(*points)[STEPS] = tl_alloc(TL_POWER_COUNT, sizeof *points);
-    struct tl_plot_series series[TL_POWER_COUNT];
-    for (int method = 0; method < TL_POWER_COUNT; method++) {
-        for (int i = 0; i < STEPS; i++) {
-            double angle = end * i / (STEPS - 1);
-            points[method][i] =
-                (struct tl_plot_point){angle * 180 / M_PI, shown_by(method, exponent, table, cos(angle)),
-                                       tl_power_names[method], false};
-        }
-        series[method] = (struct tl_plot_series){.name = tl_power_names[method],
-                                                 .points = points[method],
-                                                 .count = STEPS,
-                                                 .line = method != TL_POWER_POW,
-                                                 .front = method == TL_POWER_POW};
-    }
     struct tl_power_error fixed = tl_power_error(TL_POWER_FIXED8, exponent, TL_POWER_TABLE_SIZE);
     struct tl_power_error lines = tl_power_error(TL_POWER_TABLE, exponent, TL_POWER_TABLE_SIZE);
-    char caption[300];
-    snprintf(caption, sizeof caption,
-             "A highlight of n = %d. In 8 bits and a sign it has %d levels, the widest step is %.3f; a table "
-             "of 256 "
-             "values errs by %.4f near 1, where the power is steepest, and shows no step.",
-             exponent, fixed.levels, fixed.band, lines.max_near_one);
-    tl_report_plot(out,
-                   &(struct tl_plot){"degrees from the highlight's middle", "shown", false, false, series,
-                                     TL_POWER_COUNT},
-                   caption);
-    free(points);
+    char *caption = tl_format("A highlight of n = %d. In 8 bits and a sign it has %d levels, the widest step "
+                              "is %.3f; a table of 256 "
+                              "values errs by %.4f near 1, where the power is steepest, and shows no step.",
+                              exponent, fixed.levels, fixed.band, lines.max_near_one);
+    cJSON *series = tl_report_add_plot(
+        figures, &(const struct tl_report_plot){.x_label = "degrees from the highlight's middle",
+                                                .y_label = "shown",
+                                                .caption = caption});
+    double end = acos(pow(0.01, 1.0 / exponent));
+    for (int method = 0; method < TL_POWER_COUNT; method++) {
+        cJSON *points = tl_report_add_series(series, tl_power_names[method], method == TL_POWER_POW);
+        for (int i = 0; i < STEPS; i++) {
+            double angle = end * i / (STEPS - 1);
+            tl_report_add_point(points, angle * 180 / M_PI, shown_by(method, exponent, table, cos(angle)));
+        }
+    }
+    free(caption);
 }
 
-void tl_gallery_power_figures(FILE *out)
+static void add_powers(cJSON *figures)
 {
-    plot_highlight(8, out);
-    plot_highlight(64, out);
-    plot_highlight(256, out);
+    add_highlight(8, figures);
+    add_highlight(64, figures);
+    add_highlight(256, figures);
 }
 
-/* ---- B6 ---- */
+/* ---- B6: the two indices of the paper's figure 7 ---- */
 
-void tl_gallery_fresnel_figures(FILE *out)
+static void add_fresnel(cJSON *figures)
 {
     static const float indices[] = {1.5f, 200};
     static const char *const names[] = {"index 1.5", "index 200"};
-    enum { ANGLES = 91 };
-    struct tl_plot_point points[2][ANGLES];
-    struct tl_plot_series series[2];
+    cJSON *series = tl_report_add_plot(
+        figures,
+        &(const struct tl_report_plot){.x_label = "degrees from the normal",
+                                       .y_label = "reflectance",
+                                       .caption = "Fresnel's term for the two indices of the paper's figure "
+                                                  "7: the first is a mirror at grazing "
+                                                  "angles alone, the second nearly everywhere."});
     for (int k = 0; k < 2; k++) {
-        for (int degrees = 0; degrees < ANGLES; degrees++) {
-            float cosine = (float)cos(degrees * M_PI / 180);
-            points[k][degrees] = (struct tl_plot_point){
-                degrees, (double)tl_fresnel_dielectric(indices[k], cosine), names[k], false};
-        }
-        series[k] =
-            (struct tl_plot_series){.name = names[k], .points = points[k], .count = ANGLES, .line = true};
+        cJSON *points = tl_report_add_series(series, names[k], false);
+        for (int degrees = 0; degrees <= 90; degrees++)
+            tl_report_add_point(points, degrees,
+                                (double)tl_fresnel_dielectric(indices[k], (float)cos(degrees * M_PI / 180)));
     }
-    tl_report_plot(
-        out, &(struct tl_plot){"degrees from the normal", "reflectance", false, false, series, 2},
-        "Fresnel's term for the two indices of the paper's figure 7: the first is a mirror at grazing "
-        "angles alone, the second nearly everywhere.");
 }
 
-/* ---- D3, D4 ---- */
+/* ---- D3, D4: levels by exponent, and lobes' errors ---- */
 
 enum { CHAIN_SIDE = 128 }; /* texels */
 
 /* Levels rise as exponents fall: each is narrower by half than the next, and a lobe's volume is
  * 2 pi / (s + 1). */
-static void plot_levels(FILE *out)
+static void add_levels(cJSON *figures)
 {
     enum { STEPS = TL_LOBE_STEPS - 1 }; /* the last is a mirror, s infinite */
     static struct tl_lobe_table table;
-    struct tl_plot_point *points = TL_NEW_ARRAY(struct tl_plot_point, STEPS);
     tl_lobe_calibrate(CHAIN_SIDE, TL_CHAIN_SQRT_COSINE, &table);
+    cJSON *series = tl_report_add_plot(
+        figures,
+        &(const struct tl_report_plot){
+            "exponent s", "level of the chain", true, false,
+            "D3: the level of a chain of 128 texels a face whose response to a texel has the volume of the "
+            "cosine lobe, by the filter of the paper. It falls from the first exponent to the last."});
+    cJSON *points = tl_report_add_series(series, "level of equal volume", false);
     for (int i = 0; i < STEPS; i++)
-        points[i] = (struct tl_plot_point){STEPS / (double)(STEPS - i), (double)table.level[i],
-                                           "level of equal volume", false};
-    const struct tl_plot_series series = {
-        .name = "level of equal volume", .points = points, .count = STEPS, .line = true};
-    tl_report_plot(
-        out, &(struct tl_plot){"exponent s", "level of the chain", true, false, &series, 1},
-        "D3: the level of a chain of 128 texels a face whose response to a texel has the volume of "
-        "the cosine lobe, by the filter of the paper. It falls from the first exponent to the last.");
-    free(points);
+        tl_report_add_point(points, STEPS / (double)(STEPS - i), (double)table.level[i]);
 }
 
-static void plot_lobe_errors(FILE *out)
+static void add_lobes(cJSON *figures)
 {
     static const float exponents[] = {1, 4, 16, 64, 256, 1024};
     static const int methods[] = {TL_CHAIN_SQRT_COSINE, TL_LOBE_SLICES};
@@ -278,95 +244,88 @@ static void plot_lobe_errors(FILE *out)
                                           .region_count = 24,
                                           .exponent_count = COUNT,
                                           .exponents = exponents};
-    struct tl_plot_point points[TL_COUNT(methods)][COUNT];
-    struct tl_plot_series series[TL_COUNT(methods)];
+    add_levels(figures);
+    cJSON *series = tl_report_add_plot(
+        figures,
+        &(const struct tl_report_plot){
+            "exponent s", "mean L1 error of the lobe, %", true, true,
+            "D4: integral |E - K| / integral K over the sphere, E being what is shown of one lit texel and "
+            "K the cosine lobe, mean over 26 texels: the middles, edges and corners of the cube's faces."});
     for (size_t m = 0; m < TL_COUNT(methods); m++) {
-        const char *name = tl_lobe_method_names[methods[m]];
         struct tl_lobe_curve_point curve[COUNT];
+        cJSON *points = tl_report_add_series(series, tl_lobe_method_names[methods[m]], false);
         tl_lobe_curve(&curves, methods[m], curve);
         for (size_t i = 0; i < COUNT; i++)
-            points[m][i] = (struct tl_plot_point){(double)exponents[i], 100 * curve[i].mean, name, false};
-        series[m] = (struct tl_plot_series){.name = name, .points = points[m], .count = COUNT, .line = true};
+            tl_report_add_point(points, (double)exponents[i], 100 * curve[i].mean);
     }
-    tl_report_plot(
-        out,
-        &(struct tl_plot){"exponent s", "mean L1 error of the lobe, %", true, true, series, TL_COUNT(series)},
-        "D4: integral |E - K| / integral K over the sphere, E being what is shown of one lit texel "
-        "and K the cosine lobe, mean over 26 texels: the middles, edges and corners of the cube's "
-        "faces.");
 }
 
-void tl_gallery_lobe_figures(FILE *out)
+/* ---- D8, D16: bytes of PEMs and shadow maps, whole and cropped, by size and number of regions ---- */
+
+#define MEBIBYTE 1048576.0
+
+static void add_side(cJSON *rows, int side, const double *mib, int count)
 {
-    plot_levels(out);
-    plot_lobe_errors(out);
+    char name[16];
+    snprintf(name, sizeof name, "%d", side);
+    tl_report_add_row(rows, name, mib, count);
 }
 
-/* ---- D8 ---- */
-
-void tl_gallery_memory_figures(FILE *out)
+static void add_memory(cJSON *figures)
 {
-    static const char *const heads[] = {"texels a side", "level 0 alone, MiB", "with mip levels, MiB",
-                                        "shadow maps of as many texels, RG32F, MiB",
-                                        "the same in RG16F, MiB"};
+    static const struct tl_report_column columns[] = {{"texels a side", 0},
+                                                      {"level 0 alone, MiB", 3},
+                                                      {"with mip levels, MiB", 3},
+                                                      {"shadow maps of as many texels, RG32F, MiB", 3},
+                                                      {"the same in RG16F, MiB", 3}};
     static const int sides[] = {16, 32, 64, 128, 256};
     const int regions = 24; /* as in the section's pictures */
-    const double mebibyte = 1 << 20;
-    struct tl_cells cells = {0};
-    for (size_t i = 0; i < TL_COUNT(heads); i++)
-        tl_cells_add(&cells, "%s", heads[i]);
+    cJSON *rows = tl_report_add_table(figures, columns, TL_COUNT(columns));
     for (size_t i = 0; i < TL_COUNT(sides); i++) {
-        tl_cells_add(&cells, "%d", sides[i]);
-        tl_cells_add(&cells, "%.3f", (double)tl_memory_cubes(regions, sides[i]) / mebibyte);
-        tl_cells_add(&cells, "%.3f", (double)tl_memory_chains(regions, sides[i]) / mebibyte);
-        tl_cells_add(&cells, "%.3f", (double)tl_memory_shadow_maps(regions, sides[i], 8) / mebibyte);
-        tl_cells_add(&cells, "%.3f", (double)tl_memory_shadow_maps(regions, sides[i], 4) / mebibyte);
+        const double mib[] = {(double)tl_memory_cubes(regions, sides[i]) / MEBIBYTE,
+                              (double)tl_memory_chains(regions, sides[i]) / MEBIBYTE,
+                              (double)tl_memory_shadow_maps(regions, sides[i], 8) / MEBIBYTE,
+                              (double)tl_memory_shadow_maps(regions, sides[i], 4) / MEBIBYTE};
+        add_side(rows, sides[i], mib, TL_COUNT(mib));
     }
-    tl_cells_print(&cells, TL_COUNT(heads), out);
 }
 
-/* ---- D16 ---- */
-
-void tl_gallery_crop_figures(FILE *out)
+static void add_crops(cJSON *figures)
 {
     static const int sides[] = {32, 64, 128}, counts[] = {24, 96};
-    static const char *const heads[] = {"texels a side", "24 regions, cubes, MiB", "paraboloids, MiB",
-                                        "96 regions, cubes, MiB", "paraboloids, MiB"};
-    const double mebibyte = 1 << 20;
-    struct tl_cells cells = {0};
-    for (size_t i = 0; i < TL_COUNT(heads); i++)
-        tl_cells_add(&cells, "%s", heads[i]);
+    static const struct tl_report_column columns[] = {{"texels a side", 0},
+                                                      {"24 regions, cubes, MiB", 3},
+                                                      {"paraboloids, MiB", 3},
+                                                      {"96 regions, cubes, MiB", 3},
+                                                      {"paraboloids, MiB", 3}};
+    cJSON *rows = tl_report_add_table(figures, columns, TL_COUNT(columns));
     for (size_t i = 0; i < TL_COUNT(sides); i++) {
+        double mib[2 * TL_COUNT(counts)];
         tl_cube even = tl_cube_create(sides[i]); /* regions of equal solid angle */
         for (int k = 0; k < 18 * sides[i] * sides[i]; k++)
             even.texels[k] = 1;
-        tl_cells_add(&cells, "%d", sides[i]);
         for (size_t k = 0; k < TL_COUNT(counts); k++) {
             struct tl_regions regions = {0};
             tl_regions_cut(&even, counts[k], &regions);
-            tl_cells_add(&cells, "%.3f", (double)tl_memory_chains(counts[k], sides[i]) / mebibyte);
-            tl_cells_add(&cells, "%.3f",
-                         (double)tl_memory_paraboloids(&even, &regions, TL_CHAIN_SQRT_COSINE, 12) / mebibyte);
+            mib[2 * k] = (double)tl_memory_chains(counts[k], sides[i]) / MEBIBYTE;
+            mib[2 * k + 1] =
+                (double)tl_memory_paraboloids(&even, &regions, TL_CHAIN_SQRT_COSINE, 12) / MEBIBYTE;
             tl_regions_release(&regions);
         }
+        add_side(rows, sides[i], mib, TL_COUNT(mib));
         tl_cube_release(&even);
     }
-    tl_cells_print(&cells, TL_COUNT(heads), out);
 }
 
-/* ---- Which section has which ---- */
-
-void tl_gallery_write_figures(const char *section, FILE *out)
+void tl_gallery_add_figures(const char *section, cJSON *figures)
 {
     static const struct {
         const char *section;
-        void (*write)(FILE *out);
-    } figures[] = {{"a1", tl_gallery_table_figures},  {"a2", tl_gallery_grazing_figures},
-                   {"a3", tl_gallery_folded_figures}, {"a9", tl_gallery_normalise_figures},
-                   {"a10", tl_gallery_power_figures}, {"b6", tl_gallery_fresnel_figures},
-                   {"d4", tl_gallery_lobe_figures},   {"d8", tl_gallery_memory_figures},
-                   {"d16", tl_gallery_crop_figures}};
-    for (size_t i = 0; i < TL_COUNT(figures); i++)
-        if (strcmp(figures[i].section, section) == 0)
-            figures[i].write(out);
+        void (*add)(cJSON *figures);
+    } all[] = {{"a1", add_tables},    {"a2", add_grazing}, {"a3", add_folded},
+               {"a9", add_normalise}, {"a10", add_powers}, {"b6", add_fresnel},
+               {"d4", add_lobes},     {"d8", add_memory},  {"d16", add_crops}};
+    for (size_t i = 0; i < TL_COUNT(all); i++)
+        if (strcmp(all[i].section, section) == 0)
+            all[i].add(figures);
 }

@@ -1,13 +1,10 @@
+/* gallery.csv, and gallery.html, which gallery.js shows. */
 #include "app/lab/gallery/gallery.h"
 #include "app/lab/gallery/gallery_figures.h"
-#include "app/lab/gallery/gallery_times.h"
 #include "app/lab/gallery/shots.h"
-#include "app/lab/gallery/words.h"
 #include "app/report/report.h"
-#include "config/memory.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The section's title after its id. */
@@ -47,98 +44,107 @@ void tl_gallery_write_csv(const struct tl_gallery *gallery, FILE *out)
     }
 }
 
-static void print_caption(const struct tl_gallery_entry *entry, char *text, size_t size)
+static void add_file(cJSON *object, const char *key, const char *name, int width, int height)
 {
-    const struct tl_gallery_figures *figures = &entry->figures;
-    const struct tl_experiment *experiment = entry->picture.experiment;
-    char *solid = tl_words_error(experiment, figures->error[TL_PICTURE_SOLID]),
-         *sheet = tl_words_error(experiment, figures->error[TL_PICTURE_SHEET]);
-    snprintf(text, size, "%s %s on the %s, %s on the sheet; %.1f and %.1f ms CPU%s",
-             experiment->exact == TL_EXACT_NONE ? "difference" : "error", solid, experiment->solid, sheet,
-             figures->time_ms[TL_PICTURE_SOLID], figures->time_ms[TL_PICTURE_SHEET],
-             entry->kept ? " (of an earlier run)" : "");
-    free(solid);
-    free(sheet);
+    cJSON *file = cJSON_AddObjectToObject(object, key);
+    cJSON_AddStringToObject(file, "file", name);
+    cJSON_AddNumberToObject(file, "width", width);
+    cJSON_AddNumberToObject(file, "height", height);
 }
 
-static void print_sentence(FILE *out, char *text)
+static void add_strip(cJSON *object, const struct tl_gallery_entry *entry)
 {
-    if (text)
-        tl_report_paragraph(out, text);
-    free(text);
-}
-
-/* What the exact picture is, or why there is none. */
-static void print_exact(const struct tl_experiment *section, FILE *out)
-{
-    print_sentence(out, section->exact == TL_EXACT_NONE
-                            ? tl_format("No exact picture: %s.", section->exact_text)
-                            : tl_format("Exact picture: %s.", section->exact_text));
-}
-
-static void print_sentences(const struct tl_gallery_entry *first, const struct tl_gallery_entry *end,
-                            FILE *out)
-{
-    const struct tl_experiment *section = first->picture.experiment;
-    int appearances = section->appearance_count ? section->appearance_count : 1;
-    for (int a = 0; a < appearances; a++)
-        for (int object = 0; object < TL_PICTURE_OBJECTS; object++)
-            print_sentence(out, tl_words_order(first, end, (enum tl_picture_object)object,
-                                               section->appearances ? section->appearances + a : NULL));
-    for (int i = 0; i < TL_EXPERIMENT_CLAIMS && section->claims[i].nearer; i++)
-        print_sentence(out, tl_words_claim(first, end, &section->claims[i]));
-}
-
-static void print_entry(const struct tl_gallery_entry *entry, FILE *out)
-{
-    struct tl_report_file file = {.name = entry->image};
-    char caption[200];
-    print_caption(entry, caption, sizeof caption);
-    tl_panels_size(TL_PICTURE_OBJECTS, tl_shots_side(entry->picture.experiment), &file.width, &file.height);
-    tl_report_wide_picture(out, &file, entry->setting, caption);
+    int width, height;
     if (!entry->strip)
         return;
-    char *motion = tl_words_motion(entry);
-    file.name = entry->strip;
-    tl_panels_strip_size(TL_STRIP_FRAMES, TL_STRIP_SIDE, &file.width, &file.height);
-    tl_report_wide_picture(out, &file, "in motion", motion);
-    free(motion);
+    tl_panels_strip_size(TL_STRIP_FRAMES, TL_STRIP_SIDE, &width, &height);
+    add_file(object, "strip", entry->strip, width, height);
+    cJSON_AddNumberToObject(object, "change", entry->figures.change);
+    cJSON_AddNumberToObject(object, "exact_change", entry->figures.exact_change);
 }
 
-static size_t print_section(const struct tl_gallery *gallery, size_t first, FILE *out)
+/* What the plot of times (section D10) is drawn over. */
+static void add_sizes(cJSON *object, const struct tl_gallery_entry *entry)
 {
-    const struct tl_experiment *section = gallery->entries[first].picture.experiment;
-    size_t end = first;
-    while (end < gallery->count && gallery->entries[end].picture.experiment == section)
-        end++;
-    tl_report_heading(out, section->title);
-    tl_report_paragraph(out, section->text);
-    print_exact(section, out);
-    print_sentences(gallery->entries + first, gallery->entries + end, out);
-    for (size_t i = first; i < end; i++)
-        print_entry(&gallery->entries[i], out);
-    if (strcmp(section->name, "d10") == 0)
-        tl_gallery_write_times(gallery->entries + first, gallery->entries + end, out);
-    tl_gallery_write_figures(section->name, out);
-    return end;
+    struct tl_settings settings;
+    tl_error error = {0};
+    int side = tl_shots_side(entry->picture.experiment);
+    if (!tl_picture_settings(&entry->picture, TL_PICTURE_SOLID, side, false, &settings, &error))
+        return;
+    cJSON_AddNumberToObject(object, "regions", settings.light.regions);
+    cJSON_AddNumberToObject(object, "map_size", settings.light.map_size);
 }
 
-void tl_gallery_write_html(const struct tl_gallery *gallery, FILE *out)
+static cJSON *make_entry(const struct tl_gallery_entry *entry, bool shows_times)
 {
-    char subtitle[300];
-    snprintf(subtitle, sizeof subtitle,
-             "toile gallery: %zu settings, each on a solid and on a draped sheet: the exact picture, the "
-             "technique, their difference, and where they differ most%s",
-             gallery->count, gallery->complete ? "" : "; interrupted: what was drawn until then");
-    tl_report_begin(out, "The gallery of techniques", subtitle);
-    tl_report_paragraph(
-        out,
-        "Errors are relative RMSE over covered pixels, or mean FLIP where edges matter, against the exact "
-        "picture that each section names. Each difference has a scale of its own, in linear radiance: the "
-        "largest of the three channels. Times are process CPU time of a whole frame, all threads: compare "
-        "them with one another within one run, not with other machines. Sentences that compare are made "
-        "from the figures.");
-    for (size_t i = 0; i < gallery->count;)
-        i = print_section(gallery, i, out);
-    tl_report_end(out);
+    const struct tl_gallery_figures *figures = &entry->figures;
+    const struct tl_experiment_appearance *look = entry->picture.appearance;
+    int width, height;
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "technique", entry->picture.technique->picture);
+    cJSON_AddItemToObject(object, "look", look ? cJSON_CreateString(look->title) : cJSON_CreateNull());
+    tl_panels_size(TL_PICTURE_OBJECTS, tl_shots_side(entry->picture.experiment), &width, &height);
+    add_file(object, "image", entry->image, width, height);
+    add_strip(object, entry);
+    cJSON_AddItemToObject(object, "error", cJSON_CreateDoubleArray(figures->error, TL_PICTURE_OBJECTS));
+    cJSON_AddItemToObject(object, "time_ms", cJSON_CreateDoubleArray(figures->time_ms, TL_PICTURE_OBJECTS));
+    cJSON_AddBoolToObject(object, "kept", entry->kept);
+    if (shows_times)
+        add_sizes(object, entry);
+    return object;
+}
+
+static void add_claims(cJSON *object, const struct tl_experiment *section)
+{
+    cJSON *claims = cJSON_AddArrayToObject(object, "claims");
+    for (int i = 0; i < TL_EXPERIMENT_CLAIMS && section->claims[i].nearer; i++) {
+        cJSON *claim = cJSON_CreateObject();
+        cJSON_AddStringToObject(claim, "nearer", section->claims[i].nearer);
+        cJSON_AddStringToObject(claim, "farther", section->claims[i].farther);
+        cJSON_AddStringToObject(claim, "source", section->claims[i].source);
+        cJSON_AddItemToArray(claims, claim);
+    }
+}
+
+static void add_section(cJSON *sections, const struct tl_gallery_entry *first,
+                        const struct tl_gallery_entry *end)
+{
+    static const char *const motions[] = {[TL_MOTION_CAMERA] = "camera",
+                                          [TL_MOTION_LAMP] = "lamp",
+                                          [TL_MOTION_SKY] = "sky",
+                                          [TL_MOTION_CLOTH] = "cloth"};
+    const struct tl_experiment *section = first->picture.experiment;
+    bool shows_times = strcmp(section->name, "d10") == 0;
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "title", section->title);
+    cJSON_AddStringToObject(object, "text", section->text);
+    cJSON_AddBoolToObject(object, "is_exact", section->exact != TL_EXACT_NONE);
+    cJSON_AddStringToObject(object, "exact_text", section->exact_text);
+    cJSON_AddStringToObject(object, "solid", section->solid);
+    cJSON_AddBoolToObject(object, "by_flip", section->by_flip);
+    cJSON_AddBoolToObject(object, "shows_times", shows_times);
+    if (section->motion) {
+        cJSON_AddStringToObject(object, "motion", motions[section->motion]);
+        cJSON_AddNumberToObject(object, "motion_step", (double)section->motion_step);
+    }
+    add_claims(object, section);
+    cJSON *entries = cJSON_AddArrayToObject(object, "entries");
+    for (const struct tl_gallery_entry *entry = first; entry < end; entry++)
+        cJSON_AddItemToArray(entries, make_entry(entry, shows_times));
+    tl_gallery_add_figures(section->name, cJSON_AddArrayToObject(object, "figures"));
+    cJSON_AddItemToArray(sections, object);
+}
+
+cJSON *tl_gallery_data(const struct tl_gallery *gallery)
+{
+    cJSON *data = cJSON_CreateObject();
+    cJSON_AddBoolToObject(data, "complete", gallery->complete);
+    cJSON *sections = cJSON_AddArrayToObject(data, "sections");
+    for (size_t first = 0, end; first < gallery->count; first = end) {
+        for (end = first + 1; end < gallery->count && gallery->entries[end].picture.experiment ==
+                                                          gallery->entries[first].picture.experiment;)
+            end++;
+        add_section(sections, gallery->entries + first, gallery->entries + end);
+    }
+    return data;
 }

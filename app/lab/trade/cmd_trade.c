@@ -9,29 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Results that were measured before an interruption are valid and are written; `done` says whether there are
- * all. */
-static bool write_both(const char *folder, const void *trade, void (*write_csv)(const void *, FILE *),
-                       void (*write_html)(const void *, FILE *), bool done, tl_error *error)
-{
-    tl_error failure = {0};
-    if (tl_folder_print(folder, "trade.csv", trade, write_csv, &failure) &&
-        tl_folder_print(folder, "report.html", trade, write_html, &failure))
-        return done;
-    *error = failure;
-    return false;
-}
-
 static void write_frames_csv(const void *trade, FILE *out)
 {
     tl_trade_write_csv(trade, out);
 }
 
-static void write_frames_html(const void *trade, FILE *out)
-{
-    tl_trade_write_html(trade, out);
-}
-
+/* Results that were measured before an interruption are valid and are written. */
 static bool trade_frames(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                          tl_error *error)
 {
@@ -39,9 +22,14 @@ static bool trade_frames(const struct tl_experiment *experiment, const struct tl
     if (!tl_trade_headless(experiment, arguments, &headless, error))
         return false;
     struct tl_trade trade;
+    tl_error failure = {0};
+    const char *folder = arguments->output;
     bool done = tl_trade_measure(experiment, arguments, &headless, &trade, error);
-    if (trade.row_count)
-        done = write_both(arguments->output, &trade, write_frames_csv, write_frames_html, done, error);
+    if (trade.row_count && !(tl_folder_print(folder, "trade.csv", &trade, write_frames_csv, &failure) &&
+                             tl_trade_write_report(&trade, folder, &failure))) {
+        *error = failure;
+        done = false;
+    }
     tl_trade_release(&trade);
     tl_headless_release(&headless);
     return done;
@@ -52,24 +40,27 @@ static void write_cloth_csv(const void *trade, FILE *out)
     tl_trade_cloth_write_csv(trade, out);
 }
 
-static void write_cloth_html(const void *trade, FILE *out)
-{
-    tl_trade_cloth_write_html(trade, out);
-}
-
 static void write_fit_csv(const void *fit, FILE *out)
 {
     tl_trade_fit_write_csv(fit, out);
 }
 
+static bool write_cloth(const char *folder, const struct tl_trade_cloth *trade, tl_error *error)
+{
+    return tl_folder_print(folder, "trade.csv", trade, write_cloth_csv, error) &&
+           (!trade->fit.row_count || tl_folder_print(folder, "fit.csv", &trade->fit, write_fit_csv, error)) &&
+           tl_trade_cloth_write_report(trade, folder, error);
+}
+
 static bool trade_cloth(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_trade_cloth trade;
+    tl_error failure = {0};
     bool done = tl_trade_cloth(arguments->quick, &trade, error);
-    if (trade.row_count)
-        done = write_both(arguments->output, &trade, write_cloth_csv, write_cloth_html, done, error);
-    if (trade.fit.row_count && done)
-        done = tl_folder_print(arguments->output, "fit.csv", &trade.fit, write_fit_csv, error);
+    if (trade.row_count && !write_cloth(arguments->output, &trade, &failure)) {
+        *error = failure;
+        done = false;
+    }
     tl_trade_cloth_release(&trade);
     return done;
 }

@@ -412,13 +412,3 @@ void tl_trade_release(struct tl_trade *trade)
     free(trade->rows);
     *trade = (struct tl_trade){0};
 }
-
-const struct tl_trade_row *tl_trade_next(const struct tl_trade *trade, const struct tl_trade_row *after,
-                                         const char *group, int appearance, bool rest)
-{
-    const struct tl_trade_row *end = trade->rows + trade->row_count;
-    for (const struct tl_trade_row *row = after ? after + 1 : trade->rows; row < end; row++)
-        if (row->appearance == appearance && row->rest == rest && (!group || strcmp(row->group, group) == 0))
-            return row;
-    return NULL;
-}

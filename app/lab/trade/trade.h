@@ -55,13 +55,9 @@ bool tl_trade_measure(const struct tl_experiment *experiment, const struct tl_ar
                       struct tl_headless *headless, struct tl_trade *out, tl_error *error);
 void tl_trade_release(struct tl_trade *trade);
 
-/* The next row of a group (NULL: any); `after` NULL: the first. NULL past the last one. */
-const struct tl_trade_row *tl_trade_next(const struct tl_trade *trade, const struct tl_trade_row *after,
-                                         const char *group, int appearance, bool rest);
-
 /* trade.csv: a row for every technique, appearance and state. */
 void tl_trade_write_csv(const struct tl_trade *trade, FILE *out);
-/* report.html. */
-void tl_trade_write_html(const struct tl_trade *trade, FILE *out);
+/* FOLDER/report.html. */
+bool tl_trade_write_report(const struct tl_trade *trade, const char *folder, tl_error *error);
 
 #endif

@@ -44,6 +44,7 @@ bool tl_trade_cloth(bool quick, struct tl_trade_cloth *out, tl_error *error);
 void tl_trade_cloth_release(struct tl_trade_cloth *trade);
 
 void tl_trade_cloth_write_csv(const struct tl_trade_cloth *trade, FILE *out);
-void tl_trade_cloth_write_html(const struct tl_trade_cloth *trade, FILE *out);
+/* FOLDER/report.html. */
+bool tl_trade_cloth_write_report(const struct tl_trade_cloth *trade, const char *folder, tl_error *error);
 
 #endif

@@ -2,8 +2,6 @@
 
 #include "app/fit/measures.h"
 #include "app/lab/trade/worn.h"
-#include "app/report/cells.h"
-#include "app/report/report.h"
 #include "config/log.h"
 #include "config/memory.h"
 
@@ -12,7 +10,6 @@
 #include <string.h>
 
 #define MM             1e3
-#define PERCENT        100
 #define QUICK_EDGE_M   0.05f
 #define TRUTH_SPEED    1e-3 /* m/s: what the reference settles to; a third of the default */
 #define TRUTH_SETTLE_S 30
@@ -187,52 +184,4 @@ void tl_trade_fit_write_csv(const struct tl_trade_fit *fit, FILE *out)
             print_mm(out, row->figures[k] - truth->figures[k]);
         fputc('\n', out);
     }
-}
-
-/* A figure of the reference itself, and of others how far they are from it. */
-static void add_figure(struct tl_cells *cells, const struct tl_trade_fit_row *row,
-                       const struct tl_trade_fit_row *truth, int figure)
-{
-    double value = row->figures[figure];
-    if (!isfinite(value))
-        tl_cells_add(cells, "-");
-    else if (row == truth)
-        tl_cells_add(cells, "%.1f", MM * value);
-    else
-        tl_cells_add(cells, "%+.1f", MM * (value - truth->figures[figure]));
-}
-
-static void print_garment(const struct tl_trade_fit *fit, size_t first, FILE *out)
-{
-    static const char *const heads[] = {"",     "edges mm", "CPU s to rest", "rms strain", "hem height",
-                                        "neck", "waist",    "bust ease",     "waist ease", "hip ease"};
-    const struct tl_trade_fit_row *truth = &fit->rows[first];
-    struct tl_cells cells = {0};
-    for (size_t i = 0; i < TL_COUNT(heads); i++)
-        tl_cells_add(&cells, "%s", heads[i]);
-    for (size_t i = first; i < fit->row_count && fit->rows[i].compared_with == first; i++) {
-        const struct tl_trade_fit_row *row = &fit->rows[i];
-        tl_cells_add(&cells, "%s", row->name);
-        tl_cells_add(&cells, "%g", MM * row->edge_m);
-        tl_cells_add(&cells, "%.1f%s", 1e-3 * row->taken.cpu_ms, row->settled ? "" : ", not at rest");
-        tl_cells_add(&cells, "%.2f %%", PERCENT * row->rms_strain);
-        for (int k = 0; k < TL_FIT_FIGURES; k++)
-            add_figure(&cells, row, truth, k);
-    }
-    tl_report_paragraph(out, truth->garment);
-    tl_cells_print(&cells, TL_COUNT(heads), out);
-}
-
-void tl_trade_fit_write_html(const struct tl_trade_fit *fit, FILE *out)
-{
-    if (!fit->row_count)
-        return;
-    tl_report_heading(out, "What each setting does to the fit, in millimetres");
-    tl_report_paragraph(
-        out, "Built-in garments at rest on the form: the height of the hem above the ground, the lengths of "
-             "openings as worn, and the ease, which is the girth of the cloth at rest minus the body's. The "
-             "first row has the figures of the reference, all others how far they are from it.");
-    for (size_t i = 0; i < fit->row_count; i++)
-        if (fit->rows[i].compared_with == i)
-            print_garment(fit, i, out);
 }

@@ -44,7 +44,5 @@ bool tl_trade_fit(bool quick, struct tl_trade_fit *out, tl_error *error);
 void tl_trade_fit_release(struct tl_trade_fit *fit);
 
 void tl_trade_fit_write_csv(const struct tl_trade_fit *fit, FILE *out);
-/* Prints a section of a report. */
-void tl_trade_fit_write_html(const struct tl_trade_fit *fit, FILE *out);
 
 #endif

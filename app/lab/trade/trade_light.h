@@ -1,11 +1,18 @@
-/* Further figures of the page of `toile trade --axis light`: the paper's plots over regions and map sizes,
- * the approach to the reference at rest, lobes and memory. */
+/* Figures of the page of `toile trade --axis light` that need no measuring of frames: the paper's figures 4
+ * and 5 (lobes) and 8 (memory) with those of this program, as sections {title, text, items} of figures
+ * (app/report/report.h). Pure. */
 #ifndef TOILE_APP_LAB_TRADE_TRADE_LIGHT_H
 #define TOILE_APP_LAB_TRADE_TRADE_LIGHT_H
 
-#include "app/lab/trade/trade.h"
+#include "assets/environment.h"
 
-/* Writes into an open page (app/report/report.h). */
-void tl_trade_write_light_figures(const struct tl_trade *trade, FILE *out);
+#include <cjson/cJSON.h>
+
+#include <stdbool.h>
+
+/* `quick`: fewer directions and exponents. */
+void tl_trade_add_lobes(bool quick, cJSON *figures);
+/* `environment` is what the regions of the table are cut from. */
+void tl_trade_add_memory(const tl_environment *environment, cJSON *figures);
 
 #endif

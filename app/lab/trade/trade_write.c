@@ -1,14 +1,12 @@
+/* trade.csv, and report.html, which trade.js shows. */
 #include "app/lab/trade/trade.h"
 #include "app/lab/trade/trade_light.h"
-#include "app/report/cells.h"
 #include "app/report/report.h"
-#include "config/memory.h"
+#include "config/embedded.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define MEBIBYTE 1048576.0
+extern const struct tl_embedded tl_embedded_trade[]; /* trade.js, cloth.js */
 
 static const char *choice_name(const char *key, int index)
 {
@@ -48,243 +46,77 @@ void tl_trade_write_csv(const struct tl_trade *trade, FILE *out)
     }
 }
 
-/* The row of the same technique under another appearance, or at rest (after the most draws). */
-static const struct tl_trade_row *sibling(const struct tl_trade *trade, const struct tl_trade_row *of,
-                                          int appearance, bool rest)
+static void write_csv(const void *trade, FILE *out)
 {
-    const struct tl_trade_row *found = NULL;
-    for (const struct tl_trade_row *row = NULL;
-         (row = tl_trade_next(trade, row, of->group, appearance, rest));)
-        if (strcmp(row->name, of->name) == 0)
-            found = row;
-    return found;
+    tl_trade_write_csv(trade, out);
 }
 
-static void add_error_cell(const struct tl_trade *trade, struct tl_cells *cells,
-                           const struct tl_trade_row *row)
+static void add_looks(cJSON *data, const struct tl_experiment *experiment)
 {
-    if (row && trade->experiment->by_flip)
-        tl_cells_add(cells, "%.4f / %.3f", row->error.garment.flip_mean, row->error.garment.flip_worst);
-    else if (row)
-        tl_cells_add(cells, "%.2f %% / %.3f", 100 * row->error.rel_rmse, row->error.flip_mean);
-    else
-        tl_cells_add(cells, "-");
-}
-
-/* One group's names, times under one appearance, and errors under all. */
-static void print_group_table(const struct tl_trade *trade, const char *group, int appearance, FILE *out)
-{
-    static const char *const heads[] = {"", "CPU ms", "wall ms", "at rest", "MiB"};
-    struct tl_cells cells = {0};
-    for (size_t i = 0; i < TL_COUNT(heads); i++)
-        tl_cells_add(&cells, "%s", heads[i]);
-    size_t columns = TL_COUNT(heads);
-    bool shown[TL_EXPERIMENT_APPEARANCES] = {false};
-    for (int l = 0; l < trade->experiment->appearance_count; l++) {
-        shown[l] = tl_trade_next(trade, NULL, group, l, false) != NULL;
-        if (!shown[l])
-            continue;
-        tl_cells_add(&cells, "%s, moving", trade->experiment->appearances[l].title);
-        tl_cells_add(&cells, "at rest");
-        columns += 2;
-    }
-    for (const struct tl_trade_row *row = NULL;
-         (row = tl_trade_next(trade, row, group, appearance, false));) {
-        const struct tl_trade_row *rest = sibling(trade, row, appearance, true);
-        tl_cells_add(&cells, "%s", row->name);
-        tl_cells_add(&cells, "%.1f", row->taken.cpu_ms);
-        tl_cells_add(&cells, "%.1f", row->taken.wall_ms);
-        tl_cells_add(&cells, "%.1f", rest ? rest->taken.cpu_ms : NAN);
-        tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
-        for (int l = 0; l < trade->experiment->appearance_count; l++)
-            if (shown[l]) {
-                add_error_cell(trade, &cells, sibling(trade, row, l, false));
-                add_error_cell(trade, &cells, sibling(trade, row, l, true));
-            }
-    }
-    tl_cells_print(&cells, columns, out);
-}
-
-static double time_of(const struct tl_trade *trade, const struct tl_trade_row *row)
-{
-    return trade->experiment->by_wall ? row->taken.wall_ms : row->taken.cpu_ms;
-}
-
-static double error_of(const struct tl_trade *trade, const struct tl_trade_row *row)
-{
-    return trade->experiment->by_flip ? row->error.garment.flip_mean : 100 * row->error.rel_rmse;
-}
-
-/* Points of a plot by group, with room for the Pareto front. */
-struct scatter {
-    struct tl_plot_point *points; /* all, group after group */
-    const struct tl_trade_row **rows;
-    size_t count;
-    struct tl_plot_series series[TL_PLOT_STYLES + 1];
-    size_t series_count;
-    size_t *front;
-    struct tl_plot_point *front_points;
-    size_t front_count;
-};
-
-/* Error against time of all variants in motion at one appearance. */
-static void make_scatter(const struct tl_trade *trade, int appearance, struct scatter *out)
-{
-    *out = (struct scatter){.points = TL_NEW_ARRAY(struct tl_plot_point, trade->row_count),
-                            .rows = TL_NEW_ARRAY(const struct tl_trade_row *, trade->row_count),
-                            .front = TL_NEW_ARRAY(size_t, trade->row_count),
-                            .front_points = TL_NEW_ARRAY(struct tl_plot_point, trade->row_count)};
-    const char *group = NULL;
-    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, appearance, false));) {
-        if (!group || strcmp(group, row->group) != 0) {
-            group = row->group;
-            out->series[out->series_count++] =
-                (struct tl_plot_series){.name = group, .points = &out->points[out->count]};
-        }
-        out->series[out->series_count - 1].count++;
-        out->rows[out->count] = row;
-        out->points[out->count++] = (struct tl_plot_point){time_of(trade, row), error_of(trade, row),
-                                                           row->name, strcmp(row->group, "presets") == 0};
-    }
-    out->front_count = tl_pareto_front(out->points, out->count, out->front);
-    for (size_t i = 0; i < out->front_count; i++) {
-        out->points[out->front[i]].named = true;
-        out->front_points[i] = out->points[out->front[i]];
-    }
-    out->series[out->series_count++] = (struct tl_plot_series){
-        .name = "Pareto front", .points = out->front_points, .count = out->front_count, .front = true};
-}
-
-static void release_scatter(struct scatter *scatter)
-{
-    free(scatter->points);
-    free(scatter->rows);
-    free(scatter->front);
-    free(scatter->front_points);
-}
-
-static void print_front(const struct tl_trade *trade, const struct scatter *scatter, FILE *out)
-{
-    bool garment = trade->experiment->by_flip;
-    const char *const heads[] = {"on the Pareto front",
-                                 "CPU ms",
-                                 "wall ms",
-                                 garment ? "FLIP of the garment" : "rel. RMSE",
-                                 garment ? "of its worst 5 %" : "mean FLIP",
-                                 "MiB"};
-    struct tl_cells cells = {0};
-    for (size_t i = 0; i < TL_COUNT(heads); i++)
-        tl_cells_add(&cells, "%s", heads[i]);
-    for (size_t i = 0; i < scatter->front_count; i++) {
-        const struct tl_trade_row *row = scatter->rows[scatter->front[i]];
-        tl_cells_add(&cells, "%s", row->name);
-        tl_cells_add(&cells, "%.1f", row->taken.cpu_ms);
-        tl_cells_add(&cells, "%.1f", row->taken.wall_ms);
-        if (garment) {
-            tl_cells_add(&cells, "%.4f", row->error.garment.flip_mean);
-            tl_cells_add(&cells, "%.3f", row->error.garment.flip_worst);
-        } else {
-            tl_cells_add(&cells, "%.2f %%", 100 * row->error.rel_rmse);
-            tl_cells_add(&cells, "%.4f", row->error.flip_mean);
-        }
-        tl_cells_add(&cells, "%.1f", (double)row->memory.total / MEBIBYTE);
-    }
-    tl_cells_print(&cells, TL_COUNT(heads), out);
-}
-
-static void print_scatters(const struct tl_trade *trade, FILE *out)
-{
-    tl_report_heading(out, "Error against time, in motion");
-    tl_report_paragraph(out, trade->experiment->text);
-    bool garment = trade->experiment->by_flip;
-    const char *measure = garment ? "FLIP of the garment" : "relative RMSE, %";
-    for (int appearance = 0; appearance < trade->experiment->appearance_count; appearance++) {
-        const struct tl_trade_row *any = tl_trade_next(trade, NULL, NULL, appearance, false);
-        if (!any)
-            continue;
-        struct scatter scatter;
-        make_scatter(trade, appearance, &scatter);
-        char caption[300];
-        snprintf(caption, sizeof caption,
-                 "%c%s, %d x %d pixels. Errors over %s pixels against the reference.",
-                 trade->experiment->appearances[appearance].title[0] - 'a' + 'A',
-                 trade->experiment->appearances[appearance].title + 1, any->settings.image.width,
-                 any->settings.image.height, garment ? "the garment's" : "covered");
-        tl_report_plot(out,
-                       &(struct tl_plot){trade->experiment->by_wall ? "wall time of a frame, ms"
-                                                                    : "CPU ms a frame, all threads",
-                                         measure, true, true, scatter.series, scatter.series_count},
-                       caption);
-        print_front(trade, &scatter, out);
-        release_scatter(&scatter);
+    cJSON *looks = cJSON_AddArrayToObject(data, "looks");
+    for (int i = 0; i < experiment->appearance_count; i++) {
+        cJSON *look = cJSON_CreateObject();
+        cJSON_AddStringToObject(look, "name", experiment->appearances[i].name);
+        cJSON_AddStringToObject(look, "title", experiment->appearances[i].title);
+        cJSON_AddItemToArray(looks, look);
     }
 }
 
-static void print_pictures(const struct tl_trade *trade, FILE *out)
+/* The reference has no error. */
+static void add_error(cJSON *object, const struct tl_trade_picture *picture)
 {
-    for (int appearance = 0; appearance < trade->experiment->appearance_count; appearance++) {
-        bool begun = false;
-        for (size_t i = 0; i < trade->picture_count; i++) {
-            const struct tl_trade_picture *picture = &trade->pictures[i];
-            char text[120] = "ray traced";
-            if (picture->appearance != appearance)
-                continue;
-            if (!begun) {
-                snprintf(text, sizeof text, "Side by side: %s",
-                         trade->experiment->appearances[appearance].title);
-                tl_report_heading(out, text);
-                tl_report_pictures_begin(out);
-                begun = true;
-            }
-            snprintf(text, sizeof text, "ray traced");
-            if (picture->error.garment.pixels)
-                snprintf(text, sizeof text, "FLIP of the garment %.3f, of its worst 5 %% %.3f",
-                         picture->error.garment.flip_mean, picture->error.garment.flip_worst);
-            else if (picture->error.covered)
-                snprintf(text, sizeof text, "%.1f %% relative RMSE, FLIP %.3f", 100 * picture->error.rel_rmse,
-                         picture->error.flip_mean);
-            tl_report_picture(out, picture->png, picture->size, picture->name, text);
-        }
-        if (begun)
-            tl_report_pictures_end(out);
+    if (!picture->error.covered) {
+        cJSON_AddNullToObject(object, "error");
+        return;
+    }
+    cJSON *error = cJSON_AddObjectToObject(object, "error");
+    cJSON_AddNumberToObject(error, "rel_rmse", picture->error.rel_rmse);
+    cJSON_AddNumberToObject(error, "flip_mean", picture->error.flip_mean);
+    cJSON_AddNumberToObject(error, "garment_flip", picture->error.garment.flip_mean);
+    cJSON_AddNumberToObject(error, "garment_flip_worst", picture->error.garment.flip_worst);
+}
+
+static void add_pictures(cJSON *data, const struct tl_trade *trade)
+{
+    cJSON *pictures = cJSON_AddArrayToObject(data, "pictures");
+    for (size_t i = 0; i < trade->picture_count; i++) {
+        const struct tl_trade_picture *picture = &trade->pictures[i];
+        cJSON *object = cJSON_CreateObject();
+        cJSON_AddStringToObject(object, "name", picture->name);
+        cJSON_AddStringToObject(object, "look", trade->experiment->appearances[picture->appearance].name);
+        cJSON_AddItemToObject(object, "png", tl_report_png(picture->png, picture->size));
+        add_error(object, picture);
+        cJSON_AddItemToArray(pictures, object);
     }
 }
 
-static void print_tables(const struct tl_trade *trade, int appearance, FILE *out)
+bool tl_trade_write_report(const struct tl_trade *trade, const char *folder, tl_error *error)
 {
-    tl_report_heading(out, "All figures");
-    tl_report_paragraph(
-        out, trade->experiment->by_flip
-                 ? "Errors are FLIP of the picture as shown over the garment's pixels, and over the "
-                   "worst 5 % of them, against the reference; times are medians."
-                 : "Errors are relative RMSE and mean FLIP over covered pixels against the "
-                   "reference; times are medians of process CPU time; at rest, of the last frames "
-                   "averaged.");
-    const char *group = NULL;
-    for (const struct tl_trade_row *row = NULL; (row = tl_trade_next(trade, row, NULL, appearance, false));) {
-        if (group && strcmp(group, row->group) == 0)
-            continue;
-        group = row->group;
-        tl_report_paragraph(out, group);
-        print_group_table(trade, group, appearance, out);
+    const struct tl_experiment *experiment = trade->experiment;
+    const struct tl_experiment_appearance *quick = &experiment->appearances[experiment->quick_appearance];
+    bool light = strcmp(experiment->name, "light") == 0;
+    cJSON *data = cJSON_CreateObject();
+    cJSON_AddStringToObject(data, "axis", experiment->name);
+    cJSON_AddStringToObject(data, "title", experiment->title);
+    cJSON_AddStringToObject(data, "text", experiment->text);
+    cJSON_AddBoolToObject(data, "by_wall", experiment->by_wall);
+    cJSON_AddBoolToObject(data, "by_flip", experiment->by_flip);
+    cJSON_AddBoolToObject(data, "complete", trade->complete);
+    cJSON_AddNumberToObject(data, "garment_triangles", (double)trade->recording.garment_triangles);
+    cJSON_AddNumberToObject(data, "mean_step_m", trade->recording.mean_step_m);
+    cJSON_AddStringToObject(data, "environment", trade->environment->name);
+    add_looks(data, experiment);
+    cJSON_AddStringToObject(data, "table_look", trade->quick ? quick->name : experiment->appearances[0].name);
+    cJSON_AddItemToObject(data, "sweep_look", light ? cJSON_CreateString(quick->name) : cJSON_CreateNull());
+    tl_report_add_text(data, "csv", trade, write_csv);
+    add_pictures(data, trade);
+    cJSON *figures = cJSON_AddArrayToObject(data, "figures");
+    if (light && trade->complete) { /* after Ctrl-C these slow figures are left out */
+        tl_trade_add_lobes(trade->quick, figures);
+        tl_trade_add_memory(trade->environment, figures);
     }
-    for (size_t i = 0; i < trade->refusal_count; i++)
-        tl_report_paragraph(out, trade->refusals[i]);
-}
-
-void tl_trade_write_html(const struct tl_trade *trade, FILE *out)
-{
-    char subtitle[400];
-    snprintf(subtitle, sizeof subtitle,
-             "toile trade --axis %s: %zu garment triangles that move %.1f mm a frame on average, environment "
-             "%.120s%s",
-             trade->experiment->name, trade->recording.garment_triangles, 1e3 * trade->recording.mean_step_m,
-             trade->environment->name, trade->complete ? "" : "; interrupted: what was measured until then");
-    tl_report_begin(out, trade->experiment->title, subtitle);
-    print_scatters(trade, out);
-    print_pictures(trade, out);
-    if (strcmp(trade->experiment->name, "light") == 0)
-        tl_trade_write_light_figures(trade, out);
-    print_tables(trade, trade->quick ? trade->experiment->quick_appearance : 0, out);
-    tl_report_end(out);
+    cJSON_AddItemToObject(
+        data, "refusals",
+        cJSON_CreateStringArray((const char *const *)trade->refusals, (int)trade->refusal_count));
+    return tl_report_write(folder, "report.html", tl_embedded_trade[0].data, data, error);
 }

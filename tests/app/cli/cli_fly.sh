@@ -60,7 +60,6 @@ assert [row["frame"] for row in judged] == ["11", "22"]
 mean = sum(float(row["garment_flip"]) for row in judged) / 2
 assert abs(mean - a["oracle"]["garment_flip_mean"]) < 1e-5 * mean, mean
 assert all(float(row["garment_flip_worst"]) > float(row["garment_flip"]) for row in judged)
-assert "FLIP of the garment" in open("a/report.html").read()
 for row in rows:
     assert None not in row and None not in row.values(), row
     jobs = sum(float(row[key]) for key in row if key.startswith("job_"))
@@ -68,13 +67,11 @@ for row in rows:
     assert float(row["memory_bytes"]) > 0 and len(row["image_hash"]) == 16
 assert len({row["image_hash"] for row in rows}) > 20, "images do not change"
 PYTHON
-    for folder in a b c; do
-        check_report $folder/report.html 3
-        check "it shows pictures" grep -q 'src="data:image/png;base64,' $folder/report.html
-    done
 else
     echo "skipped: files are not parsed: python3 is absent"
 fi
+
+for folder in a b c; do check_report $folder/report.html 3; done
 
 mkdir empty
 TOILE="env PATH=$PWD/empty $TOILE" refuse "no ffmpeg: refused before anything is flown" "install the package ffmpeg" \

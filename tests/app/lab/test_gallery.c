@@ -1,5 +1,5 @@
 /* The gallery's parts that need no device: integrals against a furnace and a closed form, the scale of
- * differences, sentences that follow their figures, and the record that a stopped run continues from. */
+ * differences, heads, and the record that a stopped run continues from. */
 #include "tests/testing.h"
 
 #include "app/lab/experiments/experiments.h"
@@ -7,7 +7,6 @@
 #include "app/lab/gallery/panels.h"
 #include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/store.h"
-#include "app/lab/gallery/words.h"
 #include "config/file.h"
 #include "config/memory.h"
 
@@ -186,14 +185,14 @@ static void heads_fit(void **state)
                                           "of 256 pixels, not two"));
     for (size_t i = 0; (section = tl_experiment_at(TL_OUTPUT_PICTURES, i)); i++) {
         struct tl_experiment_picture picture = {.experiment = section};
-        cut += count_cut(section, tl_words_head(section));
+        cut += count_cut(section, tl_gallery_exact_head(section));
         while (tl_picture_next(&picture, TL_OUTPUT_PICTURES))
             cut += count_cut(section, tl_picture_name(&picture, TL_OUTPUT_PICTURES));
     }
     assert_int_equal(cut, 0);
 }
 
-/* ---- Sentences and the record ---- */
+/* ---- The record ---- */
 
 /* The entries of a section, with errors given in order for both objects. */
 static size_t make_entries(const char *section, const double errors[], struct tl_gallery_entry entries[])
@@ -206,31 +205,6 @@ static size_t make_entries(const char *section, const double errors[], struct tl
         count++;
     }
     return count;
-}
-
-/* The same claim about other figures is another sentence. */
-static void sentences_follow_figures(void **state)
-{
-    (void)state;
-    static const struct {
-        double errors[4]; /* none, 8-bit cube map, one Newton step, 16-bit cube map */
-        const char *order, *claim;
-    } all[] = {
-        {{0.3, 0.051, 0.032, 0.001}, "\"16-bit cube map\" is nearest", "3.2 % against 5.1 %, it is;"},
-        {{0.3, 0.032, 0.051, 0.001}, "\"16-bit cube map\" is nearest", "5.1 % against 3.2 %, it is not;"},
-        {{0.001, 0.032, 0.032, 0.3}, "\"none\" is nearest", "3.2 % against 3.2 %, they are equal;"},
-        {{0.1, 0.1, 0.1, 0.1}, "All are equally near", "they are equal;"}};
-    for (size_t i = 0; i < TL_COUNT(all); i++) {
-        struct tl_gallery_entry entries[8];
-        size_t count = make_entries("a9", all[i].errors, entries);
-        assert_int_equal(count, 4);
-        char *order = tl_words_order(entries, entries + count, TL_PICTURE_SHEET, NULL);
-        char *claim = tl_words_claim(entries, entries + count, &entries[0].picture.experiment->claims[0]);
-        assert_non_null(strstr(order, all[i].order));
-        assert_non_null(strstr(claim, all[i].claim));
-        free(order);
-        free(claim);
-    }
 }
 
 static void record_gives_figures_back(void **state)
@@ -273,7 +247,6 @@ int main(void)
         cmocka_unit_test(scale_holds_the_differences),
         cmocka_unit_test(noise_keeps_the_order),
         cmocka_unit_test(heads_fit),
-        cmocka_unit_test(sentences_follow_figures),
         cmocka_unit_test(record_gives_figures_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,52 +1,51 @@
-#include "app/lab/gallery/gallery_figures.h"
-
-#include "app/report/report.h"
-#include "config/memory.h"
-
+/* Every figure of the gallery is a plot or more, of finite numbers, and its caption has what was measured. */
 #include "tests/testing.h"
+
+#include "app/lab/gallery/gallery_figures.h"
+#include "config/memory.h"
 
 #include <string.h>
 
-static size_t count_of(const char *text, const char *what)
+static void expect_finite(const cJSON *item)
 {
-    size_t count = 0;
-    for (const char *at = strstr(text, what); at; at = strstr(at + 1, what))
-        count++;
-    return count;
+    const cJSON *child;
+    assert_false(cJSON_IsNull(item));
+    cJSON_ArrayForEach(child, item) expect_finite(child);
 }
 
-/* Every figure is a plot or more, of finite numbers, and says what it shows. The page stays for a look. */
 static void figures_are_plots(void **state)
 {
     (void)state;
     static const struct {
-        void (*write)(FILE *out);
-        size_t plots;
-        const char *says;
-    } figures[] = {
-        {tl_gallery_table_figures, 2, "Tables in float"},
-        {tl_gallery_grazing_figures, 1, "divided by its greatest value"},
-        {tl_gallery_normalise_figures, 1, "beats the cube map of 8 bits up to 38 degrees"},
-        {tl_gallery_power_figures, 3, "it has 6 levels"},
-        {tl_gallery_fresnel_figures, 1, "index 200"},
-        {tl_gallery_memory_figures, 0, "18.000"}}; /* a table: 24 x 6 x 128^2 x 8 bytes are 18 MiB */
-    FILE *page = fopen(TOILE_SCRATCH_DIR "/gallery_figures.html", "w");
-    assert_non_null(page);
-    tl_report_begin(page, "Figures", "of a test");
-    for (size_t i = 0; i < TL_COUNT(figures); i++) {
-        char *text;
-        size_t size;
-        FILE *out = open_memstream(&text, &size);
-        figures[i].write(out);
-        fclose(out);
-        assert_int_equal(count_of(text, "<figure>"), figures[i].plots);
-        assert_non_null(strstr(text, figures[i].says));
-        assert_int_equal(count_of(text, "nan") + count_of(text, "inf\""), 0);
-        fputs(text, page);
-        free(text);
+        const char *section;
+        int plots, series; /* of the first plot */
+        const char *part;
+    } all[] = {{"a1", 2, 6, "Tables in float"},
+               {"a2", 1, 3, "divided by its greatest value"},
+               {"a9", 1, 5, "beats the cube map of 8 bits up to 38 degrees"},
+               {"a10", 3, 3, "it has 6 levels"},
+               {"b6", 1, 2, "index 200"},
+               {"d8", 0, 0, "[\"128\",18,"}, /* a table: 24 x 6 x 128^2 x 8 bytes are 18 MiB */
+               {"d9", 0, 0, "[]"}};
+    for (size_t i = 0; i < TL_COUNT(all); i++) {
+        cJSON *figures = cJSON_CreateArray();
+        tl_gallery_add_figures(all[i].section, figures);
+        int plots = 0;
+        for (int k = 0; k < cJSON_GetArraySize(figures); k++) {
+            const cJSON *series = cJSON_GetObjectItem(cJSON_GetArrayItem(figures, k), "series"), *one;
+            plots += series != NULL;
+            if (k == 0)
+                assert_int_equal(cJSON_GetArraySize(series), all[i].series);
+            cJSON_ArrayForEach(one, series)
+                assert_true(cJSON_GetArraySize(cJSON_GetObjectItem(one, "points")) > 4);
+        }
+        assert_int_equal(plots, all[i].plots);
+        expect_finite(figures);
+        char *text = cJSON_PrintUnformatted(figures);
+        assert_non_null(strstr(text, all[i].part));
+        cJSON_free(text);
+        cJSON_Delete(figures);
     }
-    tl_report_end(page);
-    fclose(page);
 }
 
 int main(void)
