@@ -24,7 +24,10 @@ function begin(title, subtitle) {
 /* "-" where there is no number. */
 const fixed = (value, digits, unit = "") => (Number.isFinite(value) ? value.toFixed(digits) + unit : "-");
 const percent = (share, digits) => fixed(share === null ? NaN : 100 * share, digits, " %");
-const short = (value, digits = 4) => String(Number(value.toPrecision(digits)));
+const short = (value, digits = 4) => {
+  const rounded = Number(value.toPrecision(digits)), size = Math.abs(rounded);
+  return size && (size < 1e-4 || size >= 1e6) ? rounded.toExponential() : String(rounded);
+};
 const MIB = 1024 * 1024;
 
 /* The rows of a CSV file as objects. Fields without quotes are numbers where they can be; empty ones are NaN. */

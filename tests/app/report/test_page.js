@@ -72,8 +72,9 @@ function ticksAreRound() {
   const labels = (values, options) => page.plot({ x_label: "", y_label: "", caption: "", y_unlabelled: true, ...options,
     series: [{ name: "", points: values.map(x => [x, 1]) }] }).find("text", "tick").map(text => text.textContent);
   assert.deepStrictEqual(labels([0, 10]), ["0", "2", "4", "6", "8", "10"]);
+  assert.deepStrictEqual(labels([1e-6, 1e-3], { x_log: true }), ["1e-6", "1e-5", "0.0001", "0.001"]);
   assert.deepStrictEqual(labels([1, 100], { x_log: true }), ["1", "2", "5", "10", "20", "50", "100"]);
-  assert.deepStrictEqual(labels([1, 1e6], { x_log: true }), ["1", "10", "100", "1000", "10000", "100000", "1000000"]);
+  assert.deepStrictEqual(labels([1, 1e6], { x_log: true }), ["1", "10", "100", "1000", "10000", "100000", "1e+6"]);
 }
 
 function filesAreTables() {
