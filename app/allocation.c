@@ -1,12 +1,12 @@
 /* The C library's functions that give memory, for the whole program, the libraries that it uses included:
- * when one of them fails, the program ends as it does for tl_alloc (config/memory.h). Otherwise a failure
- * would end in whatever each library makes of it: a crash inside the GL driver, an abort, an exit status
- * of 1.
+ * when one of them fails, the program ends as it does for tl_alloc (config/base/memory.h). Otherwise a
+ * failure would end in whatever each library makes of it: a crash inside the GL driver, an abort, an exit
+ * status of 1.
  *
  * The program's definitions take the place of the C library's in every shared library (glibc manual,
  * "Replacing malloc"); the memory is still the C library's own, so free() stays its own too. Sanitizers
  * define these functions themselves. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <dlfcn.h>
 #include <errno.h>

@@ -11,8 +11,8 @@
 #include "app/settings/settings.h"
 #include "app/sheet/commands.h"
 #include "app/view/commands.h"
-#include "config/memory.h"
-#include "config/words.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one
  * line. */
 #include "app/commands.h"
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
 
 #include <locale.h>
 #include <malloc.h>

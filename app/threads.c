@@ -2,7 +2,7 @@
  * when the system refuses a thread, the program ends as it does for memory (app/allocation.c). Otherwise
  * OpenMP would print a message of its own and exit with status 1, Embree would abort, and GL in software
  * would wait for threads that never began. */
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <dlfcn.h>
 #include <pthread.h>

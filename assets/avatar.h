@@ -1,10 +1,10 @@
-/* Avatars by file (here) and the built-in dress form (assets/builtin/form.h). */
+/* Avatars by file (here) and the built-in dress form (assets/body/form.h). */
 #ifndef TOILE_ASSETS_AVATAR_H
 #define TOILE_ASSETS_AVATAR_H
 
 #include "assets/base/avatar.h"
-#include "assets/builtin/form.h"
-#include "config/error.h"
+#include "assets/body/form.h"
+#include "config/base/error.h"
 
 /* Loads a glTF or OBJ file as an avatar.
  *

@@ -4,7 +4,7 @@
 
 #include "assets/base/garment.h"
 #include "assets/cut/garment_cut.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Loads a glTF or OBJ file as a garment, with the pins that the file names.
  *
@@ -16,7 +16,7 @@ bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
  * Errors, Lifetime, Threads: as tl_garment_load. */
 bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error);
 
-/* Whether a file holds panels and the stitches that sew them (assets/stitches/stitches.h): a garment, not a
+/* Whether a file holds panels and the stitches that sew them (assets/sewing/stitches.h): a garment, not a
  * body. False for a file that cannot be read.
  *
  * Errors: none. Lifetime: nothing is kept. Threads: any. */

@@ -3,8 +3,8 @@
 #include "assets/gltf/gltf_model.h"
 #include "assets/obj/wavefront.h"
 #include "assets/scan/scan.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -12,7 +12,7 @@
 #define TOILE_ASSETS_MODEL_H
 
 #include "assets/base/model.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Loads a .gltf, .glb or .obj file; its units are decided as assets/base/units.h describes.
  *

@@ -2,7 +2,7 @@
 
 #include "assets/gltf/gltf_model.h"
 #include "assets/obj/wavefront.h"
-#include "config/file.h"
+#include "config/base/file.h"
 
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 
 #include "assets/base/model.h"
 #include "assets/base/surface.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Writes surfaces as one GLB: positions, normals, tangents, UVs, materials with colours and PNG maps.
  *

@@ -1,7 +1,7 @@
 #include "assets/refine.h"
 
 #include "assets/base/rig.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #define TOILE_ASSETS_REFINE_H
 
 #include "assets/base/garment.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Refines a garment from a file that has neither seams nor a pattern. Old vertices keep their indices. A new
  * vertex takes the mean of the attributes of its edge's ends, and is pinned when both are. If any edge is

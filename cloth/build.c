@@ -2,7 +2,7 @@
 
 #include "cloth/solvers/xpbd.h"
 #include "cloth/timestep.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "cloth/cloth.h"
 
 #include "cloth/build.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -46,14 +46,14 @@ struct tl_cloth_params {
     int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
     char pin_openings[TL_STRING_SIZE]; /* names of openings whose vertices are pinned, with commas between
                                           them */
-    bool self_contact;                 /* the cloth does not pass through itself: cloth/apart/keep_apart.h */
-    double gravity;                    /* m/s^2, along -Y */
+    bool self_contact;    /* the cloth does not pass through itself: cloth/self_contact/keep_apart.h */
+    double gravity;       /* m/s^2, along -Y */
     float wind[3];        /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
     double gust;          /* 0 to 1: amplitude of the wind's speed, relative to it */
     double settle_s;      /* longest simulated time of settling before the first frame */
     double settle_speed;  /* m/s: the cloth is settled when no vertex moves faster over a frame */
-    bool cages;           /* settling begins on coarser versions of a fine cloth: cloth/coarser.h */
-    int caged_above;      /* cloth of more vertices is moved by a cage: cloth/caged.c; 0: none is */
+    bool cages;           /* settling begins on coarser versions of a fine cloth: cloth/cage/coarser.h */
+    int caged_above;      /* cloth of more vertices is moved by a cage: cloth/step/caged.c; 0: none is */
     float edge_m;         /* target edge length of built-in garments */
     int rest;             /* enum tl_rest_choice: of garments from files */
     float longest_edge_m; /* longer edges of garments from files are halved; 0: never */
@@ -64,7 +64,7 @@ extern const struct tl_option_table tl_cloth_options;
 struct tl_cloth_report {
     size_t vertex_count, edge_count, triangle_count; /* physics mesh */
     size_t piece_count;    /* connected components; without self_contact they pass through one another */
-    size_t crossing_count; /* pairs of triangles that cross, as drawn: cloth/apart/crossings.h */
+    size_t crossing_count; /* pairs of triangles that cross, as drawn: cloth/self_contact/crossings.h */
     size_t layer_count;    /* ordered while self_contact untangles what came crossed; 0: not, or off */
     size_t open_seams;     /* seam pairs that are not welded yet */
     double time_s;         /* simulated since creation or reset, without settling */

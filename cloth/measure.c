@@ -1,8 +1,8 @@
 #include "cloth/measure.h"
 
-#include "cloth/apart/crossings.h"
+#include "cloth/self_contact/crossings.h"
 #include "cloth/timestep.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -2,12 +2,12 @@
 #ifndef TOILE_CLOTH_STATE_H
 #define TOILE_CLOTH_STATE_H
 
-#include "cloth/apart/keep_apart.h"
 #include "cloth/cloth.h"
 #include "cloth/contact/contact.h"
 #include "cloth/contact/layers.h"
 #include "cloth/drive/pins.h"
 #include "cloth/drive/seams.h"
+#include "cloth/self_contact/keep_apart.h"
 #include "cloth/solvers/implicit/implicit.h"
 #include "cloth/solvers/strain_limit.h"
 

@@ -1,10 +1,10 @@
 #include "config/options.h"
 
-#include "config/hash.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/hash.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 #include "config/options_value.h"
-#include "config/words.h"
 
 #include <pthread.h>
 #include <stdlib.h>

@@ -32,7 +32,7 @@
 #ifndef TOILE_CONFIG_OPTIONS_H
 #define TOILE_CONFIG_OPTIONS_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -239,8 +239,8 @@ struct tl_option_filter {
 bool tl_option_passes(const struct tl_option *row, struct tl_option_filter filter);
 
 /* The rows that pass a filter, over lists of bindings to the same tables in the same order. `differ` is true
- * when a value differs; `take` copies the values of `from` into `to`; `hash` continues `hash` (config/hash.h)
- * over names and values. Errors: none. Lifetime: keeps nothing. Threads: pure. */
+ * when a value differs; `take` copies the values of `from` into `to`; `hash` continues `hash`
+ * (config/base/hash.h) over names and values. Errors: none. Lifetime: keeps nothing. Threads: pure. */
 bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, size_t count,
                        struct tl_option_filter filter);
 void tl_options_take(const struct tl_binding *from, const struct tl_binding *to, size_t count,

@@ -1,4 +1,4 @@
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "config/options.h"
 #include "config/options_value.h"
 

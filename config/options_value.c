@@ -1,8 +1,8 @@
 #include "config/options_value.h"
 
-#include "config/file.h"
-#include "config/memory.h"
-#include "config/words.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 
 #include <errno.h>
 #include <limits.h>

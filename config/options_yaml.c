@@ -1,7 +1,7 @@
 /* A scene file is a mapping of tables to mappings of options. The reader hands each scalar to tl_options_set
  * as text: YAML's own types (is `on` a boolean? is 1e3?) never matter, the option's row decides. */
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "config/options.h"
 #include "config/options_value.h"
 #include "config/yaml.h"

@@ -6,7 +6,7 @@
 #ifndef TOILE_CONFIG_YAML_H
 #define TOILE_CONFIG_YAML_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <yaml.h>
 

@@ -93,7 +93,7 @@ add_library(toile_light STATIC
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
-  transfer/transfer.c
+  detail/transfer.c
   visibility/fit.c
   visibility/map_order.c
 )

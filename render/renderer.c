@@ -1,7 +1,7 @@
 #include "render/renderer.h"
 
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/frame/facts.h"
 #include "render/frame/jobs.h"
 #include "render/frame/memory.h"

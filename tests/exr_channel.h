@@ -2,7 +2,7 @@
 #ifndef TOILE_TESTS_EXR_CHANNEL_H
 #define TOILE_TESTS_EXR_CHANNEL_H
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <openexr.h>

@@ -8,7 +8,7 @@
 #define TOILE_TESTS_GOLDEN_H
 
 #include "assets/image/exr.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #define GOLDEN_PIXEL_TOLERANCE  (1 / 500.0)

@@ -1,5 +1,5 @@
 #include "app/audit/audit_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -66,7 +66,7 @@ typedef struct tl_audit {
     struct tl_audit_finding *findings;
     size_t counts[TL_AUDIT_CODES]; /* listed or not */
     size_t crossing_count;         /* pairs of triangles */
-    bool crossings_complete;       /* false: at least so many (cloth/apart/crossings.h) */
+    bool crossings_complete;       /* false: at least so many (cloth/self_contact/crossings.h) */
 } tl_audit;
 
 /* Adds the findings of a garment's model, sewn if its file has stitches. */

@@ -1,8 +1,8 @@
 /* Crossing triangles of the garment as it lies in its file. Those that touch one another are one finding. */
 #include "app/audit/audit_internal.h"
-#include "assets/connect/sets.h"
-#include "cloth/apart/crossings.h"
-#include "config/memory.h"
+#include "assets/topology/sets.h"
+#include "cloth/self_contact/crossings.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

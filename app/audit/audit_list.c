@@ -1,6 +1,6 @@
 /* The list of findings, and the table of their codes. */
 #include "app/audit/audit_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -3,9 +3,9 @@
  * that end together, such as a lining at its hem, lie on one side of their borders, and are none. */
 #include "app/audit/audit_internal.h"
 #include "app/fit/sewn.h"
-#include "assets/connect/sets.h"
-#include "cloth/apart/near_tree.h"
-#include "config/memory.h"
+#include "assets/topology/sets.h"
+#include "cloth/self_contact/near_tree.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* Triangles that are no triangles, are there twice, or share an edge with two others. */
 #include "app/audit/audit_internal.h"
-#include "assets/connect/sets.h"
+#include "assets/topology/sets.h"
 #include "cloth/mesh/vec3d.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,9 +2,9 @@
  * directions. Each piece (what edges of two triangles connect) has two ways to face; every triangle gets one
  * of them by walking over these edges, and those of the way that has the smaller area are turned over. */
 #include "app/audit/audit_internal.h"
-#include "assets/charts/charts.h"
-#include "assets/connect/sets.h"
-#include "config/memory.h"
+#include "assets/sewing/charts.h"
+#include "assets/topology/sets.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 /* toile bake: writes normals or heights of a finer mesh as a map of a coarser one. */
 #include "app/batch/commands.h"
-#include "app/pictures/baked_maps.h"
-#include "config/file.h"
-#include "config/log.h"
+#include "app/textures/baked_maps.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
 
 #define SIDE     1024
 #define REACH_MM 20

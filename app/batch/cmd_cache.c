@@ -1,8 +1,8 @@
 /* toile cache: lists the results that are kept for reuse, or removes them. */
 #include "app/batch/commands.h"
 #include "app/cli/json.h"
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

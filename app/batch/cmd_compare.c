@@ -3,9 +3,9 @@
 #include "app/cli/json.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/file.h"
-#include "config/memory.h"
 #include "render/inspect/aovs.h"
 #include "render/metrics/compare.h"
 

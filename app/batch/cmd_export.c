@@ -5,10 +5,10 @@
 #include "app/scene/whole_body.h"
 #include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

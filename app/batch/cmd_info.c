@@ -4,16 +4,16 @@
 #include "app/batch/info_garment.h"
 #include "app/cli/json.h"
 #include "app/settings/settings.h"
-#include "assets/builtin/specimen.h"
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "assets/model.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern_place.h"
-#include "assets/simplify/simplify.h"
+#include "assets/specimen/specimen.h"
+#include "assets/topology/simplify.h"
 #include "cloth/cloth.h"
 #include "cloth/mesh/topology.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,9 +6,9 @@
 #include "app/scene/headless.h"
 #include "assets/model.h"
 #include "cloth/mesh/topology.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

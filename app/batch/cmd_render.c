@@ -2,10 +2,10 @@
 #include "app/batch/commands.h"
 #include "app/batch/save_frame.h"
 #include "app/scene/headless.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,10 +3,10 @@
 #include "app/fit/measures.h"
 #include "app/fit/sewn.h"
 #include "assets/base/placing.h"
-#include "assets/charts/rest.h"
 #include "assets/pattern/pattern_cut.h"
-#include "assets/stitches/stitches.h"
-#include "config/memory.h"
+#include "assets/sewing/rest.h"
+#include "assets/sewing/stitches.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

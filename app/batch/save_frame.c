@@ -3,8 +3,8 @@
 #include "app/report/legend.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
-#include "config/file.h"
-#include "config/log.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
 #include "render/inspect/aovs.h"
 #include "render/inspect/inspect.h"
 

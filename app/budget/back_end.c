@@ -1,8 +1,8 @@
 #include "app/budget/back_end.h"
 
 #include "app/budget/governor.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #include "app/budget/governor.h"
 
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/plan/budget.h"
 
 #include <assert.h>

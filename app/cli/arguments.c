@@ -1,9 +1,9 @@
 #include "app/cli/arguments.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 #include "config/options.h"
-#include "config/words.h"
 
 #include <ctype.h>
 #include <limits.h>

@@ -3,7 +3,7 @@
 #ifndef TOILE_APP_CLI_ARGUMENTS_H
 #define TOILE_APP_CLI_ARGUMENTS_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 #include "app/cli/topic.h"
 
-#include "config/words.h"
+#include "config/base/words.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 #include "app/fabric/bake.h"
 
-#include "app/pictures/height_picture.h"
+#include "app/textures/height_picture.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/detail/bake.h"
 #include "render/detail/cones.h"
 

@@ -1,11 +1,11 @@
 /* The figures of a fabric card: mechanics with their sources, and the colour that the fabric states. */
 #include "app/fabric/card_internal.h"
 #include "app/fabric/fields.h"
-#include "app/pictures/weaves.h"
 #include "app/settings/imported.h"
 #include "app/settings/layers.h"
+#include "app/textures/weaves.h"
 #include "assets/base/image.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -42,7 +42,7 @@ struct tl_card {
     int folds;
     double shimmer;                     /* app/fabric/shimmer.h */
     bool is_at_rest;                    /* the disc */
-    tl_image shadow;                    /* of the disc (assets/builtin/cusick.h) */
+    tl_image shadow;                    /* of the disc (assets/specimen/cusick.h) */
     tl_image swatch, close, ball, disc; /* U8 x3; empty where no page is written */
     char *notes;                        /* what the fabric's own file says at its head; "" */
     char *unused;                       /* the fields that are not used */

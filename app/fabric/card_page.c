@@ -1,6 +1,6 @@
 /* The page of a fabric card. Lengths are millimetres of the page, x to the right and y down. */
 #include "app/fabric/card_internal.h"
-#include "assets/builtin/cusick.h"
+#include "assets/specimen/cusick.h"
 
 #include <pango/pangocairo.h>
 

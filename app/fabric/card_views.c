@@ -2,8 +2,8 @@
 #include "app/fabric/card_internal.h"
 #include "app/fabric/shimmer.h"
 #include "app/scene/headless.h"
-#include "assets/builtin/cusick.h"
-#include "config/interrupt.h"
+#include "assets/specimen/cusick.h"
+#include "config/base/interrupt.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,8 +5,8 @@
 #include "app/fabric/commands.h"
 #include "app/fabric/fabric.h"
 #include "app/fabric/fields.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

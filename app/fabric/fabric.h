@@ -5,8 +5,8 @@
 #ifndef TOILE_APP_FABRIC_FABRIC_H
 #define TOILE_APP_FABRIC_FABRIC_H
 
-#include "assets/builtin/weave.h"
 #include "assets/fabric/fabric_file.h"
+#include "assets/weave/weave.h"
 #include "cloth/energy/fabric.h"
 #include "render/brdf/options.h"
 #include "render/construction/options.h"

@@ -2,9 +2,9 @@
 #include "app/settings/imported.h"
 #include "assets/fabric/fabric_maps.h"
 #include "assets/image/image_file.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

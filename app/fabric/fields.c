@@ -1,6 +1,6 @@
 #include "app/fabric/fields.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

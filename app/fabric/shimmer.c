@@ -1,8 +1,8 @@
 #include "app/fabric/shimmer.h"
 
-#include "assets/builtin/cusick.h"
+#include "assets/specimen/cusick.h"
+#include "config/base/memory.h"
 #include "config/colour/luminance.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "app/fit/girths.h"
 
-#include "assets/connect/sets.h"
-#include "assets/cut/fit.h"
-#include "config/memory.h"
+#include "assets/body/fit.h"
+#include "assets/topology/sets.h"
+#include "config/base/memory.h"
 
 #include <float.h>
 #include <math.h>

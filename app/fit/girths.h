@@ -5,7 +5,7 @@
 #include "app/fit/measures.h"
 #include "cloth/mesh/topology.h"
 
-/* Fills heights and the body's girths: the waist as built-in cuts find it (assets/cut/fit.h), the widest
+/* Fills heights and the body's girths: the waist as built-in cuts find it (assets/body/fit.h), the widest
  * section down to the legs, and the widest up to where arms join. Zero where the body has no waist. */
 void tl_girths_of_body(const tl_mesh *body, struct tl_girth_measures girths[TL_GIRTHS]);
 

@@ -1,10 +1,10 @@
 #include "app/fit/measures.h"
 
 #include "app/fit/girths.h"
-#include "assets/charts/charts.h"
+#include "assets/sewing/charts.h"
 #include "cloth/energy/energy.h"
 #include "cloth/energy/strain.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

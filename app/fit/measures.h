@@ -1,13 +1,13 @@
 /* Measures of a garment as it is worn and as it was cut: strains and areas of its panels, lengths of its
  * openings, and its girths beside the body's.
  *
- * Panels are the charts of a garment that has a pattern (assets/charts), else the parts of its mesh. Metres,
- * world axes with y up. Lifetime: plain structs that own their arrays. Threads: pure. */
+ * Panels are the charts of a garment that has a pattern (assets/sewing/charts.h), else the parts of its mesh.
+ * Metres, world axes with y up. Lifetime: plain structs that own their arrays. Threads: pure. */
 #ifndef TOILE_APP_FIT_MEASURES_H
 #define TOILE_APP_FIT_MEASURES_H
 
 #include "assets/base/garment.h"
-#include "assets/openings/openings.h"
+#include "assets/sewing/openings.h"
 
 /* Borrowed. */
 struct tl_measures_source {

@@ -1,9 +1,9 @@
 #include "app/fit/sewn.h"
 
 #include "assets/base/placing.h"
-#include "assets/connect/sets.h"
+#include "assets/topology/sets.h"
 #include "cloth/mesh/topology.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #define TOILE_APP_FIT_SEWN_H
 
 #include "assets/base/garment.h"
-#include "assets/openings/openings.h"
-#include "config/error.h"
+#include "assets/sewing/openings.h"
+#include "config/base/error.h"
 
 /* Writes the sewn vertex of each render vertex to `weld` [mesh.vertex_count]; returns how many there are. */
 size_t tl_sewn_weld(const tl_garment *garment, uint32_t *weld);

@@ -2,16 +2,17 @@
 
 #include "app/batch/save_frame.h"
 #include "app/scene/headless.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The codes and the message of the two errors are the same; the public one has no name of the inside. */
-_Static_assert((int)TOILE_INTERRUPTED == (int)TL_INTERRUPTED, "codes of toile.h are those of config/error.h");
+_Static_assert((int)TOILE_INTERRUPTED == (int)TL_INTERRUPTED,
+               "codes of toile.h are those of config/base/error.h");
 _Static_assert(sizeof((toile_error){0}.message) == sizeof((tl_error){0}.message), "messages have one size");
 
 struct toile_scene {

@@ -1,8 +1,8 @@
 #include "app/manual/manual.h"
 
+#include "config/base/memory.h"
 #include "config/colour/names.h"
 #include "config/embedded.h"
-#include "config/memory.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "app/manual/manual.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <ctype.h>
 #include <stdlib.h>

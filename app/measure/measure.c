@@ -1,6 +1,6 @@
 #include "app/measure/measure.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 

@@ -1,9 +1,9 @@
 #include "app/measure/motion.h"
 
 #include "app/measure/cost.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "app/report/folder.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

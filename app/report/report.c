@@ -1,8 +1,8 @@
 #include "app/report/report.h"
 
 #include "app/report/folder.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/memory.h"
 
 #include <stdint.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #ifndef TOILE_APP_REPORT_REPORT_H
 #define TOILE_APP_REPORT_REPORT_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <cjson/cJSON.h>
 

@@ -1,6 +1,6 @@
 #include "app/report/text.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 #include <pango/pangocairo.h>
 

@@ -1,9 +1,9 @@
 #include "app/scene/appearance.h"
 
-#include "app/pictures/height_picture.h"
+#include "app/textures/height_picture.h"
 #include "assets/garment.h"
-#include "config/memory.h"
-#include "config/words.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,10 +9,10 @@
 #ifndef TOILE_APP_SCENE_APPEARANCE_H
 #define TOILE_APP_SCENE_APPEARANCE_H
 
-#include "app/drawn/moving.h"
-#include "app/pictures/measured_files.h"
-#include "app/pictures/weaves.h"
+#include "app/display/moving.h"
 #include "app/settings/settings.h"
+#include "app/textures/measured_files.h"
+#include "app/textures/weaves.h"
 
 struct tl_appearance {
     struct tl_dressing garment, avatar; /* empty where there is none */

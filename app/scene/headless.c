@@ -1,8 +1,8 @@
 #include "app/scene/headless.h"
 
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -2,19 +2,19 @@
 
 #include "app/fit/sewn.h"
 #include "assets/base/placing.h"
-#include "assets/builtin/specimen.h"
-#include "assets/charts/rest.h"
-#include "assets/cut/fit.h"
+#include "assets/body/fit.h"
 #include "assets/garment.h"
 #include "assets/pattern/pattern.h"
 #include "assets/pattern/pattern_worn.h"
 #include "assets/refine.h"
-#include "assets/simplify/simplify.h"
-#include "assets/stitches/stitches.h"
+#include "assets/sewing/rest.h"
+#include "assets/sewing/stitches.h"
+#include "assets/specimen/specimen.h"
+#include "assets/topology/simplify.h"
 #include "cloth/contact/collider.h"
 #include "cloth/mesh/topology.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

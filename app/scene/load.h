@@ -24,7 +24,7 @@ bool tl_scene_load_whole_avatar(const struct tl_settings *settings, tl_avatar *o
 struct tl_scene_standing {
     float lifted_m; /* onto the ground */
     char *size;     /* one line about a garment that is of another size than its wearer; NULL: none */
-    char *inside;   /* the same about one that lies inside its wearer (app/drape/drape.h) */
+    char *inside;   /* the same about one that lies inside its wearer (app/scene/drape.h) */
 };
 
 /* `wearer` NULL: nobody wears it. *out is NULL when the scene has no garment.

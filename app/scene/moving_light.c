@@ -1,6 +1,6 @@
 #include "app/scene/moving_light.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef TOILE_APP_SCENE_MOVING_LIGHT_H
 #define TOILE_APP_SCENE_MOVING_LIGHT_H
 
-#include "assets/environment_sequence.h"
+#include "assets/environment/environment_sequence.h"
 
 /* Owns what it holds; may be moved in memory. */
 struct tl_moving_light {

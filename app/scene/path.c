@@ -1,8 +1,8 @@
 #include "app/scene/path.h"
 
 #include "app/scene/camera.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "config/yaml.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 #include "app/scene/playback.h"
 
 #include "assets/motion/point_cache.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

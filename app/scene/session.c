@@ -1,15 +1,15 @@
 #include "app/scene/session.h"
 
-#include "app/drape/drape.h"
-#include "app/drawn/board.h"
+#include "app/display/board.h"
+#include "app/scene/drape.h"
 #include "app/scene/session_internal.h"
 #include "app/scene/tuck.h"
-#include "cloth/apart/crossings.h"
 #include "cloth/mesh/topology.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "cloth/self_contact/crossings.h"
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/inspect/legend.h"
 
 #include <limits.h>

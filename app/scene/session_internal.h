@@ -2,8 +2,8 @@
 #ifndef TOILE_APP_SCENE_SESSION_INTERNAL_H
 #define TOILE_APP_SCENE_SESSION_INTERNAL_H
 
-#include "app/drawn/moving.h"
-#include "app/drawn/smoothed.h"
+#include "app/display/moving.h"
+#include "app/display/smoothed.h"
 #include "app/scene/camera.h"
 #include "app/scene/load.h"
 #include "app/scene/playback.h"

@@ -2,7 +2,7 @@
 
 #include "cloth/contact/collider.h"
 #include "cloth/mesh/topology.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <string.h>

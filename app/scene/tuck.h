@@ -6,7 +6,7 @@
 #define TOILE_APP_SCENE_TUCK_H
 
 #include "assets/base/mesh.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* By how much each vertex of the body, in its rest pose, is to be moved against its normal, so that it lies
  * TL_TUCK_CLEARANCE_M inside the garment: [body->vertex_count], 0 where no cloth covers it or it lies deeper.

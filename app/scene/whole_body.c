@@ -2,7 +2,7 @@
 
 #include "app/scene/session_internal.h"
 #include "app/scene/tuck.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #ifndef TOILE_APP_SCENE_WHOLE_BODY_H
 #define TOILE_APP_SCENE_WHOLE_BODY_H
 
-#include "app/drawn/moving.h"
+#include "app/display/moving.h"
 #include "app/scene/appearance.h"
 #include "app/scene/session.h"
 #include "assets/avatar.h"

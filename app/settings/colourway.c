@@ -1,8 +1,8 @@
 #include "app/settings/colourway.h"
 
 #include "app/settings/layers.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/memory.h"
 
 #include <string.h>
 

@@ -18,7 +18,7 @@
 #ifndef TOILE_APP_SETTINGS_COLOURWAY_H
 #define TOILE_APP_SETTINGS_COLOURWAY_H
 
-#include "assets/builtin/weave.h"
+#include "assets/weave/weave.h"
 #include "config/options.h"
 #include "render/brdf/options.h"
 #include "render/renderer.h"

@@ -1,6 +1,6 @@
 #include "app/settings/settings.h"
 
-#include "config/hash.h"
+#include "config/base/hash.h"
 
 /* Bindings can be written through, so constant settings are bound as a copy. */
 struct bound {

@@ -1,12 +1,12 @@
 #include "app/settings/imported.h"
 
 #include "assets/base/material.h"
-#include "assets/builtin/weave.h"
 #include "assets/fabric/fabric_maps.h"
+#include "assets/weave/weave.h"
 #include "cloth/energy/fabric.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/brdf/options.h"
 #include "render/construction/options.h"
 

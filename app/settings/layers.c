@@ -2,8 +2,8 @@
 
 #include "app/settings/imported.h"
 #include "cloth/energy/fabric.h"
-#include "config/memory.h"
-#include "config/words.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 #include "render/construction/options.h"
 
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #ifndef TOILE_APP_SETTINGS_LAYERS_H
 #define TOILE_APP_SETTINGS_LAYERS_H
 
-#include "assets/builtin/weave.h"
+#include "assets/weave/weave.h"
 #include "config/embedded.h"
 #include "config/options.h"
 #include "render/brdf/options.h"

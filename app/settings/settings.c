@@ -3,22 +3,22 @@
 #include "app/fit/sewn.h"
 #include "app/settings/layers.h"
 #include "assets/base/units.h"
-#include "assets/builtin/studio.h"
+#include "assets/environment/studio.h"
 #include "assets/garment.h"
 #include "assets/model.h"
 #include "assets/motion/motion_mesh.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/log.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Names that stand for built-in assets (assets/garment.h, assets/builtin/specimen.h, assets/avatar.h,
- * assets/builtin/studio.h), and "none". */
+/* Names that stand for built-in assets (assets/garment.h, assets/specimen/specimen.h, assets/avatar.h,
+ * assets/environment/studio.h), and "none". */
 static const char *const garment_names[] = {"dress", "skirt",  "layers", "trousers", "shirt", "sheet",
                                             "disc",  "sphere", "torus",  "none",     NULL};
 static const char *const avatar_names[] = {"auto", "form", "figure", "ball", "none", NULL};

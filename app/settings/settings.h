@@ -5,8 +5,8 @@
 
 #include "app/settings/colourway.h"
 #include "assets/base/placing.h"
-#include "assets/builtin/weave.h"
 #include "assets/cut/options.h"
+#include "assets/weave/weave.h"
 #include "cloth/cloth.h"
 #include "config/options.h"
 #include "render/brdf/options.h"

@@ -8,11 +8,11 @@
 #include "app/sheet/contact_plan.h"
 #include "app/sheet/contact_store.h"
 #include "assets/image/image_file.h"
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 
 #include "app/report/canvas.h"
 #include "app/report/text.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

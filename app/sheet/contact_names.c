@@ -1,7 +1,7 @@
 #include "app/sheet/contact_names.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <ctype.h>
 #include <stdbool.h>

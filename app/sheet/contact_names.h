@@ -3,7 +3,7 @@
 #ifndef TOILE_APP_SHEET_CONTACT_NAMES_H
 #define TOILE_APP_SHEET_CONTACT_NAMES_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 

@@ -4,11 +4,11 @@
 #include "app/sheet/contact_names.h"
 #include "app/sheet/contact_store.h"
 #include "assets/model.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 #include "config/embedded.h"
-#include "config/file.h"
-#include "config/hash.h"
-#include "config/memory.h"
-#include "config/words.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 
 #include "app/report/folder.h"
 #include "assets/image/image_file.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <cjson/cJSON.h>
 

@@ -3,6 +3,9 @@
  * The loop sleeps while nothing happens, so that an idle window uses no processor time. */
 #include "app/budget/back_end.h"
 #include "app/scene/headless.h"
+#include "app/view/command/review_begin.h"
+#include "app/view/command/review_input.h"
+#include "app/view/command/review_panel.h"
 #include "app/view/commands.h"
 #include "app/view/review/review_draw.h"
 #include "app/view/review/review_edit.h"
@@ -12,13 +15,10 @@
 #include "app/view/review/review_move.h"
 #include "app/view/review/review_place.h"
 #include "app/view/review/review_wipe.h"
-#include "app/view/review/rhythm.h"
-#include "app/view/review_begin.h"
-#include "app/view/review_input.h"
-#include "app/view/review_panel.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "app/view/window/rhythm.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -7,7 +7,7 @@
 
 typedef struct tl_avatar {
     tl_model model;
-    bool simplified; /* its file has more vertices (assets/simplify) */
+    bool simplified; /* its file has more vertices (assets/topology/simplify.h) */
 } tl_avatar;
 
 /* Frees what the avatar owns and zeroes it; a zeroed avatar is accepted.

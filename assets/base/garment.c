@@ -1,6 +1,6 @@
 #include "assets/base/garment.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

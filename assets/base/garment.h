@@ -19,7 +19,7 @@ struct tl_hold {
     float level_m;
 };
 
-/* What is the rest shape of a garment from a file (assets/charts/rest.h). */
+/* What is the rest shape of a garment from a file (assets/sewing/rest.h). */
 enum tl_rest_choice { TL_REST_AUTO, TL_REST_UV, TL_REST_MESH };
 extern const char *const tl_rest_names[]; /* "auto", "uv", "mesh"; NULL-terminated */
 
@@ -38,7 +38,7 @@ typedef struct tl_garment {
     uint32_t *pins; /* render vertices held where they start (on the avatar, they follow its nearest point) */
     size_t hold_count;
     struct tl_hold *holds;
-    bool solid; /* rigid, not cloth (assets/builtin/specimen.h) */
+    bool solid; /* rigid, not cloth (assets/specimen/specimen.h) */
 } tl_garment;
 
 /* Replaces the garment's pins by the vertices that its model's file pins; a file without pins changes

@@ -6,7 +6,7 @@
 #ifndef TOILE_ASSETS_BASE_IMAGE_H
 #define TOILE_ASSETS_BASE_IMAGE_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 #include <stdint.h>

@@ -40,7 +40,7 @@ struct tl_yarns {
 };
 
 /* A woven fabric's repeat, in metres: tiles over the surface in metric UV (see tl_mesh_part.uv_metres). Made
- * by assets/builtin/weave.h. All maps have the same size and are periodic. */
+ * by assets/weave/weave.h. All maps have the same size and are periodic. */
 typedef struct tl_weave {
     float size_m[2];        /* metres per repeat along u (weft direction) and v (warp direction) */
     tl_image normal;        /* U8 x3, linear: tangent space, +Y up (0.5 + 0.5 n) */

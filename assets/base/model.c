@@ -1,7 +1,7 @@
 #include "assets/base/model.h"
 
 #include "assets/base/rig.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

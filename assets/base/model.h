@@ -22,7 +22,7 @@ struct tl_material_extension { /* what a material of a glTF file names, and what
     const char *shown; /* "exact", "approximated", "ignored" */
 };
 
-struct tl_stitch { /* of an OBJ file: a point is sewn to one of an edge (assets/stitches/stitches.h) */
+struct tl_stitch { /* of an OBJ file: a point is sewn to one of an edge (assets/sewing/stitches.h) */
     uint32_t point, edge[2]; /* points of the file */
     float at;                /* share of the edge, from its first end */
 };

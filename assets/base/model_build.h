@@ -4,7 +4,7 @@
 #define TOILE_ASSETS_BASE_MODEL_BUILD_H
 
 #include "assets/base/model.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Notes a feature of the file that has no effect; each text once. */
 void model_ignore(tl_model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -1,5 +1,5 @@
 #include "assets/base/model_build.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -38,9 +38,10 @@ typedef struct tl_surface {
     const struct tl_mesh_part *parts;
     const tl_material *materials;
     const struct tl_light_mesh *light_mesh; /* NULL: light is computed at all vertices */
-    const struct tl_borders *borders; /* of its pieces (assets/borders); NULL: no construction is drawn */
-    uint64_t topology_revision;       /* changes when anything but positions, normals and tangents does */
-    uint64_t motion_revision;         /* changes when positions do */
+    const struct tl_borders
+        *borders; /* of its pieces (assets/topology/borders.h); NULL: no construction is drawn */
+    uint64_t topology_revision; /* changes when anything but positions, normals and tangents does */
+    uint64_t motion_revision;   /* changes when positions do */
 } tl_surface;
 
 /* A view of a mesh that does not move: its own parts, no strains, revisions 0. */

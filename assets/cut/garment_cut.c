@@ -1,11 +1,11 @@
 #include "assets/cut/garment_cut.h"
 
-#include "assets/builtin/form.h"
-#include "assets/builtin/version.h"
-#include "assets/cut/fit.h"
+#include "assets/base/version.h"
+#include "assets/body/fit.h"
+#include "assets/body/form.h"
 #include "assets/cut/garment_cut_internal.h"
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/memory.h"
 
 #include <assert.h>
 #include <math.h>

@@ -3,11 +3,11 @@
 #define TOILE_ASSETS_CUT_GARMENT_CUT_H
 
 #include "assets/base/garment.h"
-#include "assets/cut/body.h"
+#include "assets/body/body.h"
 #include "assets/cut/options.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
-/* Built-in garments, cut as flat panels: around the built-in dress form (assets/builtin/form.h) "dress",
+/* Built-in garments, cut as flat panels: around the built-in dress form (assets/body/form.h) "dress",
  * "skirt", and "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY; and drafted
  * from the measures of the figure "trousers" and "shirt". `edge_m` is the target length of an edge. False
  * when the name is unknown (the message lists the names). */
@@ -17,7 +17,7 @@ bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *e
 bool tl_garment_is_for_figure(const char *name);
 
 /* The same for another body, in its rest pose: drafted from its measures, or cut for the form and moved
- * to its waist (assets/cut/fit.h). Fails too when the body lacks what the garment hangs on. */
+ * to its waist (assets/body/fit.h). Fails too when the body lacks what the garment hangs on. */
 struct tl_wearer {
     const char *name; /* for messages */
     const tl_mesh *mesh;

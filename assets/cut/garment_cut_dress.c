@@ -1,7 +1,7 @@
-#include "assets/builtin/form.h"
+#include "assets/body/form.h"
 #include "assets/cut/garment_cut_internal.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 #include "assets/cut/garment_cut_internal.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -9,10 +9,10 @@
 #ifndef TOILE_ASSETS_CUT_GARMENT_CUT_INTERNAL_H
 #define TOILE_ASSETS_CUT_GARMENT_CUT_INTERNAL_H
 
-#include "assets/builtin/panel.h"
-#include "assets/cut/body.h"
+#include "assets/body/body.h"
+#include "assets/body/wrap.h"
 #include "assets/cut/garment_cut.h"
-#include "assets/cut/wrap.h"
+#include "assets/sewing/panel.h"
 
 #include <stdbool.h>
 

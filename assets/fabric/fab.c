@@ -12,7 +12,7 @@
  * relative shortening [Timoshenko and Gere 1961, 2.7, to first order]. The mean over
  * both directions is free of the strip's own curl. */
 #include "assets/fabric/fabric_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

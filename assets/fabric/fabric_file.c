@@ -1,8 +1,8 @@
 #include "assets/fabric/fabric_file.h"
 
 #include "assets/fabric/fabric_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

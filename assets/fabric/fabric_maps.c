@@ -3,8 +3,8 @@
 #include "assets/base/material.h"
 #include "assets/fabric/fabric_internal.h"
 #include "assets/image/image_file.h"
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 #include "assets/fabric/fabric_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

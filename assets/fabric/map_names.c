@@ -2,8 +2,8 @@
  * stands at the end of its name, before its size and its convention. fabric_004_nor_gl_1k.png,
  * Fabric061_2K-JPG_NormalGL.jpg, cloth_baseColor.png. */
 #include "assets/fabric/fabric_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <ctype.h>
 #include <stdlib.h>

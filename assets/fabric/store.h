@@ -9,7 +9,7 @@
 #ifndef TOILE_ASSETS_FABRIC_STORE_H
 #define TOILE_ASSETS_FABRIC_STORE_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 #include <stdint.h>

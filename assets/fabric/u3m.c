@@ -2,7 +2,7 @@
  * Read after its schema and u3m_additional_spec_u3m.txt: a texture takes the place of its constant; value =
  * offset + factor * texture; colours are blended with their factor in linear light. */
 #include "assets/fabric/fabric_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

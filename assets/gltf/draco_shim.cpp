@@ -1,7 +1,7 @@
 extern "C" {
 #include "assets/base/mesh.h"
 #include "assets/gltf/draco_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 }
 
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>

@@ -8,7 +8,7 @@
 
 #include "assets/base/material.h"
 #include "assets/base/rig.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 #include <stdint.h>

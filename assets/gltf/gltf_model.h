@@ -4,7 +4,7 @@
 
 #include "assets/base/model.h"
 #include "assets/base/surface.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Fills a model of which only the name is set. On failure the caller releases it.
  *

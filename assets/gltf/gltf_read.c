@@ -1,6 +1,6 @@
 #include "assets/gltf/gltf_internal.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

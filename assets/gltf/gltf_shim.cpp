@@ -1,7 +1,7 @@
 extern "C" {
 #include "assets/gltf/gltf_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 }
 
 #include <tiny_gltf.h>

@@ -2,7 +2,7 @@
 #include "assets/base/mesh.h"
 #include "assets/gltf/draco_internal.h"
 #include "assets/gltf/gltf_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <cjson/cJSON.h>
 #include <meshoptimizer.h>

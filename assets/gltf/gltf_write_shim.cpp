@@ -2,8 +2,8 @@ extern "C" {
 #include "assets/gltf/gltf_model.h"
 #include "assets/gltf/model_internal.h"
 #include "assets/image/image_file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 }
 
 #include <tiny_gltf.h>

@@ -1,6 +1,6 @@
 /* What becomes of the extensions that a material names. */
 #include "assets/gltf/model_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdarg.h>
 #include <stdio.h>

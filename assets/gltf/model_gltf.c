@@ -1,7 +1,7 @@
 /* A glTF document as a tl_model: its nodes' primitives in one mesh, in the rest pose. */
 #include "assets/gltf/gltf_model.h"
 #include "assets/gltf/model_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

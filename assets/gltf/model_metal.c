@@ -1,7 +1,7 @@
 /* Metalness that varies over a texture: the colours of both lobes become maps of their own. */
 #include "assets/gltf/model_internal.h"
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

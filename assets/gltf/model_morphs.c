@@ -1,6 +1,6 @@
 /* Morph targets [glTF 2.0, 3.7.2.2]: offsets of the vertices that a node draws. */
 #include "assets/gltf/model_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

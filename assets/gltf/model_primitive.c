@@ -1,5 +1,5 @@
 #include "assets/gltf/model_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

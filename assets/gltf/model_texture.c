@@ -1,7 +1,7 @@
 #include "assets/gltf/model_internal.h"
 #include "assets/image/image_file.h"
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdio.h>

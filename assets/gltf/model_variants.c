@@ -1,6 +1,6 @@
 /* KHR_materials_variants: the material of each part in each variant. */
 #include "assets/gltf/model_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "assets/image/exr.h"
 
 #include "assets/image/exr_shim_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

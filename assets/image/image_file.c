@@ -1,8 +1,8 @@
 #include "assets/image/image_file.h"
 
 #include "assets/image/tiff_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stb_image.h>
 #include <stb_image_write.h>

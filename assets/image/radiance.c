@@ -1,6 +1,6 @@
 #include "assets/image/radiance.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

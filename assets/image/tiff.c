@@ -1,6 +1,6 @@
 #include "assets/image/tiff_internal.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <tiffio.h>
 

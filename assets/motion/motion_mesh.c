@@ -1,8 +1,8 @@
 #include "assets/motion/motion_mesh.h"
 
 #include "assets/motion/sequence.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef TOILE_ASSETS_MOTION_MOTION_MESH_H
 #define TOILE_ASSETS_MOTION_MOTION_MESH_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* The mesh file of a point cache that is opened alone: for a .pc2 or .mdd the .obj, .glb or .gltf of the same
  * name beside it, for a sequence of OBJ files its first file. New string; NULL, with a message, when there is

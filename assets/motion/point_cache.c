@@ -1,8 +1,8 @@
 #include "assets/motion/point_cache_internal.h"
 
 #include "assets/motion/sequence.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <float.h>
 #include <math.h>

@@ -16,7 +16,7 @@
 #define TOILE_ASSETS_MOTION_POINT_CACHE_H
 
 #include "assets/base/mesh.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stdbool.h>
 

@@ -1,8 +1,8 @@
 /* PC2 and MDD files: a header, followed by samples of three floats per point. */
 #include "assets/motion/point_cache_internal.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <errno.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "assets/motion/sequence.h"
 #include "assets/obj/wavefront.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

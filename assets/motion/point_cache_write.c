@@ -1,6 +1,6 @@
 #include "assets/motion/point_cache.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdint.h>
 #include <stdlib.h>

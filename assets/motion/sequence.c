@@ -1,7 +1,7 @@
 #include "assets/motion/sequence.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <dirent.h>
 #include <errno.h>

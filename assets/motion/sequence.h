@@ -4,7 +4,7 @@
 #ifndef TOILE_ASSETS_MOTION_SEQUENCE_H
 #define TOILE_ASSETS_MOTION_SEQUENCE_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 

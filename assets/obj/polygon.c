@@ -1,6 +1,6 @@
 #include "assets/obj/polygon.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
 
 #include "assets/base/model.h"
 #include "assets/base/surface.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stdio.h>
 

@@ -1,9 +1,9 @@
 #include "assets/base/model_build.h"
 #include "assets/image/image_file.h"
 #include "assets/obj/wavefront_internal.h"
-#include "assets/text/text.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
+#include "config/base/text.h"
 
 #include <math.h>
 #include <stdio.h>

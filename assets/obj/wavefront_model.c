@@ -1,7 +1,7 @@
 #include "assets/base/model_build.h"
 #include "assets/obj/polygon.h"
 #include "assets/obj/wavefront_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

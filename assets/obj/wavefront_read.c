@@ -1,8 +1,8 @@
 #include "assets/obj/wavefront_internal.h"
-#include "assets/text/text.h"
+#include "config/base/text.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "assets/obj/wavefront.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <locale.h>
 #include <stdlib.h>

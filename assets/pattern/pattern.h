@@ -8,8 +8,8 @@
 #ifndef TOILE_ASSETS_PATTERN_PATTERN_H
 #define TOILE_ASSETS_PATTERN_PATTERN_H
 
-#include "assets/builtin/panel.h"
-#include "config/error.h"
+#include "assets/sewing/panel.h"
+#include "config/base/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 #include "assets/pattern/pattern_cut.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* From the lines of a panel, as a file lists them, to its outline. */
 #include "assets/pattern/pattern_internal.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

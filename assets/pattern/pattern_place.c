@@ -1,8 +1,8 @@
 #include "assets/pattern/pattern_place.h"
 
-#include "assets/cut/fit.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "assets/body/fit.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "config/yaml.h"
 
 #include <math.h>

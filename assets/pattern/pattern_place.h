@@ -24,7 +24,7 @@ bool tl_pattern_measures(const char *body_path, struct tl_pattern_measures *out)
 /* Heights above the ground where things hang. */
 struct tl_pattern_levels {
     double waist; /* height - head - waist_line where the measures are known, else where the body is narrowest
-                     (assets/cut/fit.h); 0: not found */
+                     (assets/body/fit.h); 0: not found */
     double shoulder;  /* the neck's foot: height - head, else as on the average body */
     double under_arm; /* shoulder - armscye; the same */
     double neck;      /* half of the neck's width, not a height; the same */

@@ -1,7 +1,7 @@
 /* GarmentCode's pattern JSON, checked field by field: pattern.panels, pattern.stitches, properties. */
 #include "assets/pattern/pattern_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <cjson/cJSON.h>
 

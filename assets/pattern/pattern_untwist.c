@@ -1,7 +1,7 @@
-#include "assets/connect/sets.h"
 #include "assets/pattern/pattern_internal.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "assets/topology/sets.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 
 #include "assets/pattern/pattern_cut.h"
 #include "assets/pattern/pattern_place.h"
-#include "config/log.h"
+#include "config/base/log.h"
 #include "config/options.h"
 
 /* Panels are raised only where the waist is known. */

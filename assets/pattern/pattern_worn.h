@@ -3,7 +3,7 @@
 #define TOILE_ASSETS_PATTERN_PATTERN_WORN_H
 
 #include "assets/base/garment.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* The mesh in its rest pose, on y = 0. */
 struct tl_pattern_wearer {

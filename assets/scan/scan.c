@@ -4,8 +4,8 @@
 #include "assets/base/model_build.h"
 #include "assets/obj/polygon.h"
 #include "assets/scan/scan_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #define TOILE_ASSETS_SCAN_SCAN_H
 
 #include "assets/base/model.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 /* Whether a path ends in .ply, .stl or .off. */
 bool scan_is_file(const char *path);

@@ -1,8 +1,8 @@
 /* What is wrong with the mesh of a scan. */
 #include "assets/base/model_build.h"
-#include "assets/connect/sets.h"
 #include "assets/scan/scan_internal.h"
-#include "config/memory.h"
+#include "assets/topology/sets.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #define TOILE_ASSETS_SCAN_SCAN_INTERNAL_H
 
 #include "assets/scan/scan.h"
-#include "assets/text/text.h"
+#include "config/base/text.h"
 
 #define SCAN_FACE_CORNERS 1024 /* at most; ear clipping takes their square */
 

@@ -1,7 +1,7 @@
 /* PLY, Greg Turk's polygon file format: text, little-endian and big-endian. */
 #include "assets/scan/scan_internal.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <errno.h>
 #include <math.h>

@@ -2,7 +2,7 @@
 
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <embree3/rtcore.h>
 

@@ -8,7 +8,7 @@
 
 #include "assets/base/mesh.h"
 #include "cloth/mesh/rigid.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 typedef struct tl_collider tl_collider;
 

@@ -1,7 +1,7 @@
 #include "cloth/contact/contact.h"
 
 #include "cloth/mesh/team.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

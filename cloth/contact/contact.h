@@ -16,7 +16,7 @@
 #include "cloth/contact/collider.h"
 #include "cloth/contact/sample.h"
 #include "cloth/mesh/particles.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 struct tl_contact_cache {
     vec3d query_point;  /* position for which the collider was queried */

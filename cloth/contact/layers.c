@@ -1,7 +1,7 @@
 #include "cloth/contact/layers.h"
 
-#include "assets/connect/sets.h"
-#include "config/memory.h"
+#include "assets/topology/sets.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

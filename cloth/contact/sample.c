@@ -1,6 +1,6 @@
 #include "cloth/contact/sample.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 static double rest_length(const vec2s rest[3], int corner)
 {

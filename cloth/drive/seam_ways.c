@@ -1,6 +1,6 @@
 /* Which way round the body a seam closes. */
 #include "cloth/drive/seams.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

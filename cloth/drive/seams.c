@@ -1,8 +1,8 @@
 #include "cloth/drive/seams.h"
 
-#include "assets/connect/sets.h"
+#include "assets/topology/sets.h"
 #include "cloth/solvers/xpbd.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The longest stable step of an explicit solver, by Gershgorin's theorem. */
 #include "cloth/energy/energy.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

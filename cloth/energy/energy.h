@@ -26,7 +26,7 @@
 #include "cloth/mesh/particles.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 /* Triangles are stored in batches (mesh/topology.h), one per lane. An empty lane holds zeros and the vertex
  * one past the last, which is held. */

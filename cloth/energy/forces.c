@@ -2,7 +2,7 @@
 #include "cloth/energy/energy.h"
 #include "cloth/mesh/particles.h"
 #include "cloth/mesh/team.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 #include "cloth/energy/pair_forces.h"
 
 #include "cloth/energy/energy.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -18,7 +18,7 @@
 #include "cloth/mesh/team.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/mesh/vec3d.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stddef.h>
 #include <stdint.h>

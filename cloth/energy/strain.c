@@ -1,7 +1,7 @@
 #include "cloth/energy/strain.h"
 
 #include "cloth/energy/energy.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

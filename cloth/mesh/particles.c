@@ -1,7 +1,7 @@
 #include "cloth/mesh/particles.h"
 
 #include "cloth/mesh/team.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

@@ -7,7 +7,7 @@
 
 #include "cloth/mesh/team.h"
 #include "cloth/mesh/vec3d.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <stddef.h>
 #include <stdint.h>

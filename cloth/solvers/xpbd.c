@@ -1,7 +1,7 @@
 #include "cloth/solvers/xpbd.h"
 
 #include "cloth/mesh/team.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <string.h>
 

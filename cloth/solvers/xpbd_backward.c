@@ -2,7 +2,7 @@
  * loops, since meshes of needles are rare. */
 #include "cloth/mesh/team.h"
 #include "cloth/solvers/xpbd.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #define NO_LENGTH 1e-12
 

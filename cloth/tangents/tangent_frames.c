@@ -1,7 +1,7 @@
 #include "cloth/tangents/tangent_frames.h"
 
 #include "cloth/tangents/tangent_layout.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "cloth/tangents/tangent_layout.h"
 
 #include "cloth/mesh/topology.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

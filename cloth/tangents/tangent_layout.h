@@ -11,7 +11,7 @@
 
 #include "cloth/tangents/tangent_frames.h"
 #include "cloth/tangents/tangent_groups.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 struct tl_tangent_block {
     uint32_t first_row;      /* of `rows`: the vertices themselves, then spoke_count rows of spokes */

@@ -1,9 +1,9 @@
 #include "config/cache/cache.h"
 
-#include "config/file.h"
-#include "config/hash.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <dirent.h>
 #include <fcntl.h>

@@ -15,7 +15,7 @@
 #ifndef TOILE_RENDER_BOUNCE_BOUNCED_H
 #define TOILE_RENDER_BOUNCE_BOUNCED_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <cglm/struct.h>
 #include <math.h>

@@ -16,7 +16,7 @@
 #define TOILE_RENDER_BRDF_FUZZ_H
 
 #include "assets/base/material.h"
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/gpu/glsl.h"
 
 #define TERM TL_INLINE

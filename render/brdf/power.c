@@ -1,6 +1,6 @@
 #include "render/brdf/power.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <math.h>

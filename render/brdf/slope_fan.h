@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_BRDF_SLOPE_FAN_H
 #define TOILE_RENDER_BRDF_SLOPE_FAN_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <math.h>
 #include <stdbool.h>

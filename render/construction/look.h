@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_CONSTRUCTION_LOOK_H
 #define TOILE_RENDER_CONSTRUCTION_LOOK_H
 
-#include "assets/borders/borders.h"
+#include "assets/topology/borders.h"
 #include "render/construction/terms.h"
 #include "render/detail/bump_statistics.h"
 

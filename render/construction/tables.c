@@ -1,6 +1,6 @@
 #include "render/construction/tables.h"
 
-#include "assets/borders/borders.h"
+#include "assets/topology/borders.h"
 #include "render/construction/terms.h"
 
 #include <math.h>

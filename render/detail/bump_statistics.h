@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_DETAIL_BUMP_STATISTICS_H
 #define TOILE_RENDER_DETAIL_BUMP_STATISTICS_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/detail/detail_terms.h"
 #include "render/detail/options.h"
 

@@ -1,6 +1,6 @@
 #include "render/detail/cones.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/detail/detail_terms.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "render/detail/maps.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/detail/bake.h"
 #include "render/detail/cones.h"
 #include "render/detail/detail.h"

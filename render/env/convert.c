@@ -1,8 +1,8 @@
 #include "render/env/convert.h"
 
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <math.h>

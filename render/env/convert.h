@@ -16,7 +16,7 @@ int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to);
  * solid angle. *error (may be NULL) is the largest relative error of that; it bounds the relative error of
  * the total power in any channel. It is below TL_CONVERT_ERROR except for results of a few dozen texels (a
  * cube of size 1: 1e-2). Memory: 12 bytes for each pair of texels that overlap and 24 bytes for each texel.
- * Reports progress. Returns an image without texels when interrupted (config/interrupt.h). */
+ * Reports progress. Returns an image without texels when interrupted (config/base/interrupt.h). */
 #define TL_CONVERT_ERROR 1e-3
 /* Bytes that it takes at most, its result included. */
 uint64_t tl_convert_bytes(const struct tl_sphere_map *from, const struct tl_sphere_map *to);

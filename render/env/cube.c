@@ -1,6 +1,6 @@
 #include "render/env/cube.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "render/env/emitters.h"
 
+#include "config/base/memory.h"
 #include "config/colour/luminance.h"
-#include "config/memory.h"
 
 #include <assert.h>
 #include <math.h>

@@ -11,7 +11,7 @@
 
 #include "render/env/cube.h"
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <math.h>
 

@@ -6,7 +6,7 @@
 #ifndef TOILE_RENDER_ENV_FROM_ENVIRONMENT_H
 #define TOILE_RENDER_ENV_FROM_ENVIRONMENT_H
 
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "render/env/cube.h"
 #include "render/env/resample.h"
 

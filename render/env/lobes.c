@@ -1,7 +1,7 @@
 #include "render/env/lobes.h"
 
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/memory.h"
 #include "render/env/emitters.h"
 #include "render/env/exponent.h"
 #include "render/env/lobes_fetch.h"

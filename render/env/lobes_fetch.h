@@ -1,5 +1,5 @@
 /* tl_lobes_fetch as inline text, for loops over pixels: what is compiled for each instruction set must be
- * inline (config/simd.h). Pure; threads: any. */
+ * inline (config/base/simd.h). Pure; threads: any. */
 #ifndef TOILE_RENDER_ENV_LOBES_FETCH_H
 #define TOILE_RENDER_ENV_LOBES_FETCH_H
 

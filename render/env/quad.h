@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_ENV_QUAD_H
 #define TOILE_RENDER_ENV_QUAD_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 typedef float tl_quad __attribute__((vector_size(4 * sizeof(float)), aligned(4)));
 

@@ -1,6 +1,6 @@
 #include "render/env/resample.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/cube.h"
 
 #include <math.h>

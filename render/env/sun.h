@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_ENV_SUN_H
 #define TOILE_RENDER_ENV_SUN_H
 
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "render/env/cube.h"
 
 #define TL_SUNS_MAX        4

@@ -1,6 +1,6 @@
 #include "render/envmap/envmap.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/brdf.h"
 
 #include <epoxy/gl.h>

@@ -1,8 +1,8 @@
 #include "render/envmap/light_map.h"
 
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/envmap/light_map_bake.h"
 #include "render/gbuffer/gbuffer.h"
 #include "render/gpu/shaders.h"

@@ -1,7 +1,7 @@
 #include "render/envmap/light_map_bake.h"
 
-#include "config/interrupt.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/memory.h"
 #include "render/reference/gather.h"
 
 #include <stdlib.h>

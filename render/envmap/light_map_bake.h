@@ -13,7 +13,7 @@ struct tl_baked_point {
 };
 
 /* Gathers E(normal, 1), the mean of the light about the normal by its cosine, shadowed. light[4 at]: RGB, 1.
- * An interrupt (config/interrupt.h) leaves out the rest. */
+ * An interrupt (config/base/interrupt.h) leaves out the rest. */
 void tl_light_map_gather(const struct tl_reference_scene *scene, int directions,
                          const struct tl_baked_point *points, size_t count, float *light);
 /* Fills texels whose last number is 0 from neighbours that have light, so that bilinear look-ups near the

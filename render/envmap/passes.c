@@ -4,7 +4,7 @@
  * multiplied by that share or by what it leaves. The alpha of a pixel holds one number: a term that differs
  * between colours takes all passes for each of them, under a colour mask. Where paraboloids are looked up by
  * matrices, a term takes two passes, one for each of the two maps. The sum is then added to the light. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/envmap/envmap.h"
 #include "render/gpu/shaders.h"
 #include "render/local/shading.h"

@@ -1,6 +1,6 @@
 #include "render/envmap/prefiltered_map.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "render/frame/facts.h"
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/brdf/fuzz.h"
 #include "render/brdf/lobe_fit.h"
 #include "render/detail/detail.h"

@@ -1,7 +1,7 @@
 #include "render/frame/inputs.h"
 
-#include "config/hash.h"
-#include "config/memory.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 #include "render/env/layout.h"
 #include "render/frame/resources.h"
 #include "render/local/lamp.h"

@@ -1,6 +1,6 @@
 #include "render/frame/jobs.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/frame/job_io.h"
 #include "render/frame/work.h"
 

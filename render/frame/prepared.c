@@ -1,8 +1,8 @@
 #include "render/frame/prepared.h"
 
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "render/frame/facts.h"
 

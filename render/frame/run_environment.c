@@ -1,5 +1,5 @@
 /* Jobs that make light of the environment. */
-#include "assets/adaptation.h"
+#include "assets/environment/adaptation.h"
 #include "render/env/from_environment.h"
 #include "render/frame/facts.h"
 #include "render/frame/job_io.h"

@@ -1,5 +1,5 @@
 /* Jobs of environment maps, of the reference, and of the image. */
-#include "config/log.h"
+#include "config/base/log.h"
 #include "render/env/from_environment.h"
 #include "render/frame/facts.h"
 #include "render/frame/job_io.h"

@@ -1,8 +1,8 @@
 /* Jobs that light what the camera sees. */
-#include "config/hash.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/hash.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/frame/facts.h"
 #include "render/frame/job_io.h"
 #include "render/light/compose.h"

@@ -1,6 +1,6 @@
 #include "render/gbuffer/ids_internal.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <epoxy/gl.h>
 

@@ -1,7 +1,7 @@
 #include "render/gbuffer/raster.h"
 
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 #include "render/gbuffer/clip.h"
 #include "render/gbuffer/samples.h"
 

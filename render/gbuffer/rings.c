@@ -1,6 +1,6 @@
 #include "render/gbuffer/rings.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 

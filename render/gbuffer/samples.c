@@ -1,6 +1,6 @@
 #include "render/gbuffer/samples.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/trace/trace.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "render/gpu/clocks.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 #include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>

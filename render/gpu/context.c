@@ -1,7 +1,7 @@
 #include "render/gpu/context.h"
 
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <dlfcn.h>
 #include <stdio.h>

@@ -6,8 +6,8 @@
 #define TOILE_RENDER_GPU_GPU_H
 
 #include "assets/base/image.h"
+#include "config/base/error.h"
 #include "config/embedded.h"
-#include "config/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

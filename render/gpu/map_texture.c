@@ -1,7 +1,7 @@
 #include "render/gpu/map_texture.h"
 
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "render/inspect/legend.h"
 
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef TOILE_RENDER_INSPECT_SEEN_H
 #define TOILE_RENDER_INSPECT_SEEN_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/pem/regions.h"
 #include "render/visibility/points.h"
 

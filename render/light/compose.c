@@ -1,6 +1,6 @@
 #include "render/light/compose.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/coat.h"
 #include "render/brdf/fuzz.h"
 #include "render/brdf/lobe_fit.h"

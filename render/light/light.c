@@ -1,6 +1,6 @@
 #include "render/light/light.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/gpu/shaders.h"
 
 #include <epoxy/gl.h>

@@ -1,7 +1,7 @@
 #include "render/light/mirrors.h"
 
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 #include "render/env/exponent.h"
 #include "render/light/options.h"
 

@@ -10,7 +10,7 @@
 #ifndef TOILE_RENDER_LIGHT_REGION_LIGHTS_H
 #define TOILE_RENDER_LIGHT_REGION_LIGHTS_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/env/lobes.h"
 #include "render/light/terms.h"
 #include "render/pem/regions.h"

@@ -1,6 +1,6 @@
 #include "render/local/lamp_samples.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/brdf.h"
 #include "render/brdf/coat.h"
 #include "render/brdf/tables/measured.h"

@@ -1,6 +1,6 @@
 #include "render/local/lit_texture.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/surfaces/uv_texels.h"
 
 #include <epoxy/gl.h>

@@ -1,6 +1,6 @@
 #include "render/local/local.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/exponent.h"
 #include "render/gpu/shaders.h"
 

@@ -1,6 +1,6 @@
 #include "render/local/table_textures.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/tables/tables.h"
 
 #include <epoxy/gl.h>

@@ -2,9 +2,9 @@
 
 #include "render/metrics/flip.h"
 
+#include "config/base/memory.h"
 #include "config/colour/luminance.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdio.h>

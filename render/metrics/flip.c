@@ -1,6 +1,6 @@
 #include "render/metrics/flip.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 
 #include "render/pem/regions.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <limits.h>

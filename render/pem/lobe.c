@@ -1,7 +1,7 @@
 #include "render/pem/lobe.h"
 #include "render/env/exponent.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "render/pem/lobe_error.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/exponent.h"
 #include "render/pem/chain.h"
 #include "render/pem/lobe.h"

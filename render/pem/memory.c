@@ -1,6 +1,6 @@
 #include "render/pem/memory.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/pem/paraboloids.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "render/pem/paraboloids.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <math.h>

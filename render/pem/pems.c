@@ -1,6 +1,6 @@
 #include "render/pem/pems.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <epoxy/gl.h>
 

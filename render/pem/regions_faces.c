@@ -1,5 +1,5 @@
+#include "config/base/memory.h"
 #include "config/colour/luminance.h"
-#include "config/memory.h"
 #include "render/pem/regions_internal.h"
 
 #include <assert.h>

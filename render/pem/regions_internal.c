@@ -1,7 +1,7 @@
 #include "render/pem/regions_internal.h"
 
+#include "config/base/memory.h"
 #include "config/colour/luminance.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <string.h>

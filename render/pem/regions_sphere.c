@@ -1,4 +1,4 @@
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/pem/regions_internal.h"
 
 #include <assert.h>

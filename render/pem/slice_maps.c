@@ -1,6 +1,6 @@
 #include "render/pem/slice_maps.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <epoxy/gl.h>
 

@@ -1,6 +1,6 @@
 #include "render/pem/slices.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/emitters.h"
 
 #include <assert.h>

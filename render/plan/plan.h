@@ -6,7 +6,7 @@
 #ifndef TOILE_RENDER_PLAN_PLAN_H
 #define TOILE_RENDER_PLAN_PLAN_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 #include "render/plan/cost.h"
 
 #include <stddef.h>

@@ -1,6 +1,6 @@
 #include "render/present/behind.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 
 #include <stdlib.h>

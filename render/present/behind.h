@@ -5,7 +5,7 @@
 #ifndef TOILE_RENDER_PRESENT_BEHIND_H
 #define TOILE_RENDER_PRESENT_BEHIND_H
 
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "render/env/cube.h"
 #include "render/scene/view.h"
 

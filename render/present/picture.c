@@ -1,6 +1,6 @@
 #include "render/present/picture.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <epoxy/gl.h>
 

@@ -1,6 +1,6 @@
 #include "render/present/present.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/gpu/shaders.h"
 #include "render/present/resolve.h"
 

@@ -1,7 +1,7 @@
 #include "render/present/resample.h"
 
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 #include "render/present/resolve.h"
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 #include <stddef.h>
 #include <string.h>

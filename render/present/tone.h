@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_PRESENT_TONE_H
 #define TOILE_RENDER_PRESENT_TONE_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 
 /* GLSL's names, while the file is read. */
 #define TERM  TL_INLINE

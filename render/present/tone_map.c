@@ -1,7 +1,7 @@
 #include "render/present/tone_map.h"
 
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 #include "render/present/tone.h"
 
 #include <stdlib.h>

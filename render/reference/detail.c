@@ -1,6 +1,6 @@
 #include "render/reference/detail.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/detail/bake.h"
 #include "render/detail/detail_terms.h"
 

@@ -1,6 +1,6 @@
 #include "render/reference/gather.h"
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/brdf/fuzz.h"
 #include "render/reference/lobe_sample.h"
 

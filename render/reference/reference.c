@@ -1,8 +1,8 @@
 #include "render/reference/reference.h"
 
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/reference/lamps.h"
 #include "render/reference/radiance.h"
 #include "render/scene/view.h"

@@ -22,9 +22,9 @@ struct tl_reference_report {
 
 /* Draws the frame. The image has the format of tl_renderer_read; the caller releases it.
  *
- * Errors: false with TL_INTERRUPTED if an interrupt (config/interrupt.h) came before the first replicate was
- * finished; a later one keeps the finished replicates. TL_DEVICE if the BVH cannot be built.
- * Threads: one call at a time; OpenMP inside. */
+ * Errors: false with TL_INTERRUPTED if an interrupt (config/base/interrupt.h) came before the first replicate
+ * was finished; a later one keeps the finished replicates. TL_DEVICE if the BVH cannot be built. Threads: one
+ * call at a time; OpenMP inside. */
 bool tl_reference_draw(const struct tl_reference_request *request, tl_image *out,
                        struct tl_reference_report *report, tl_error *error);
 

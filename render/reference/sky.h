@@ -8,7 +8,7 @@
 #ifndef TOILE_RENDER_REFERENCE_SKY_H
 #define TOILE_RENDER_REFERENCE_SKY_H
 
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "render/env/cube.h"
 
 struct tl_sky {

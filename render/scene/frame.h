@@ -3,7 +3,7 @@
 #define TOILE_RENDER_SCENE_FRAME_H
 
 #include "assets/base/surface.h"
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "render/scene/camera.h"
 #include "render/scene/lamp.h"
 

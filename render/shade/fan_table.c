@@ -1,6 +1,6 @@
 #include "render/shade/fan_table.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_SHADE_LOOK_H
 #define TOILE_RENDER_SHADE_LOOK_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/shade/materials.h"
 
 #include <cglm/struct.h>

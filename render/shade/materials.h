@@ -7,7 +7,7 @@
 #ifndef TOILE_RENDER_SHADE_MATERIALS_H
 #define TOILE_RENDER_SHADE_MATERIALS_H
 
-#include "assets/borders/borders.h"
+#include "assets/topology/borders.h"
 #include "render/construction/tables.h"
 #include "render/detail/options.h"
 #include "render/gbuffer/samples.h"

@@ -1,7 +1,7 @@
 #include "render/shade/outlines.h"
 
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 #include "render/env/quad.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/fuzz.h"
 #include "render/brdf/ward_lanes.h"
 #include "render/env/lobes_fetch.h"

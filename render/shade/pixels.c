@@ -1,6 +1,6 @@
 #include "render/shade/pixels.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/lobes_fetch.h"
 #include "render/shade/pixels_internal.h"
 

@@ -1,6 +1,6 @@
 #include "render/shade/ratios.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/shade/look.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "render/shade/sun_pixels.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/cube.h"
 #include "render/shade/sun_bundle_internal.h"
 #include "render/shade/sun_penumbra_internal.h"

@@ -1,6 +1,6 @@
 #include "render/shade/triangles.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/detail/bumps.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #ifndef TOILE_RENDER_SHADE_TRIANGLES_H
 #define TOILE_RENDER_SHADE_TRIANGLES_H
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/gbuffer/ids.h"
 #include "render/scene/view.h"
 #include "render/shade/materials.h"

@@ -1,7 +1,7 @@
 #include "render/surfaces/surfaces.h"
 
-#include "assets/borders/borders.h"
-#include "config/memory.h"
+#include "assets/topology/borders.h"
+#include "config/base/memory.h"
 #include "render/construction/tables.h"
 
 #include <epoxy/gl.h>

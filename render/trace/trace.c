@@ -1,6 +1,6 @@
 #include "render/trace/trace.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/trace/cutout.h"
 
 #include <embree3/rtcore.h>

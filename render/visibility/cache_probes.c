@@ -1,6 +1,6 @@
 #include "render/visibility/cache_probes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

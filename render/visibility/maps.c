@@ -1,7 +1,7 @@
 #include "render/visibility/maps.h"
 
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/gpu/shaders.h"
 #include "render/visibility/map_order.h"
 

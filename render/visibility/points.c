@@ -1,7 +1,7 @@
 #include "render/visibility/points.h"
 
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 #include "render/visibility/cache_probes.h"
 #include "render/visibility/maps.h"
 #include "render/visibility/ray_origins.h"

@@ -1,6 +1,6 @@
 #include "render/visibility/ray_origins.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

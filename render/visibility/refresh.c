@@ -1,6 +1,6 @@
 #include "render/visibility/refresh.h"
 
-#include "config/simd.h"
+#include "config/base/simd.h"
 #include "render/env/cube.h"
 
 #include <math.h>

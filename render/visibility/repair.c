@@ -1,7 +1,7 @@
 #include "render/visibility/repair.h"
 
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 
 #include <stdlib.h>
 #include <string.h>

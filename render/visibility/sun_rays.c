@@ -1,6 +1,6 @@
 #include "render/visibility/sun_rays.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/visibility/maps.h"
 
 #include <math.h>

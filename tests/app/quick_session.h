@@ -6,7 +6,7 @@
 #include "tests/testing.h"
 
 #include "app/scene/session.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 /* `scene`: NULL is the built-in one. */
 static inline struct tl_settings quick_settings(const char *scene)

@@ -3,8 +3,8 @@
 #ifndef TOILE_TESTS_HOSTILE_H
 #define TOILE_TESTS_HOSTILE_H
 
-#include "config/error.h"
-#include "config/memory.h"
+#include "config/base/error.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

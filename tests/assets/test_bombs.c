@@ -1,10 +1,10 @@
 /* Small files that would cost much: each is read or refused within the memory and the time that a file of its
  * size may take, by a process of its own, whose peak is that of this file alone. */
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "assets/image/image_file.h"
 #include "assets/model.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include "tests/assets/hostile.h"
 #include "tests/testing.h"

@@ -1,9 +1,9 @@
 #include "assets/base/image.h"
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "assets/image/exr.h"
 #include "assets/image/image_file.h"
 #include "assets/model.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/assets/hostile.h"
 #include "tests/assets/small_glb.h"

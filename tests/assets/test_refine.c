@@ -1,7 +1,7 @@
 /* Refinement of coarse garments: edges get shorter and nothing else changes. */
 #include "assets/refine.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <math.h>

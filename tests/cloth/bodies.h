@@ -3,7 +3,7 @@
 #define TOILE_TESTS_CLOTH_BODIES_H
 
 #include "assets/base/mesh.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -10,7 +10,7 @@
 
 #include "cloth/measure.h"
 #include "cloth/state.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #define SHADOW_REACH 8
 #define SHADOW_STEPS (2 * SHADOW_REACH + 1)

@@ -3,9 +3,9 @@
 #ifndef TOILE_TESTS_CLOTH_SHEETS_H
 #define TOILE_TESTS_CLOTH_SHEETS_H
 
-#include "assets/builtin/panel.h"
+#include "assets/sewing/panel.h"
 #include "cloth/cloth.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -8,8 +8,8 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/hash.h"
-#include "config/log.h"
+#include "config/base/hash.h"
+#include "config/base/log.h"
 
 #include <omp.h>
 

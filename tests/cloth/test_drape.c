@@ -7,10 +7,10 @@
  * real cloth has several stable drapes, so only the mean over seeds is checked against them. The number of
  * folds is printed, not checked. With names of fabrics as arguments the program prints their drape.
  */
-#include "assets/builtin/cusick.h"
-#include "assets/builtin/specimen.h"
+#include "assets/specimen/cusick.h"
+#include "assets/specimen/specimen.h"
 #include "cloth/measure.h"
-#include "config/log.h"
+#include "config/base/log.h"
 #include "tests/cloth/fabrics.h"
 #include "tests/cloth/solvers.h"
 

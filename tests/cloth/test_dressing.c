@@ -6,7 +6,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 struct dressed {
     tl_garment garment;

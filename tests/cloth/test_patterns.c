@@ -6,7 +6,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 /* How many particles are in the body, and the highest one's height. */
 static size_t count_inside(const tl_cloth *cloth, const tl_collider *collider, double *top)
@@ -46,7 +46,7 @@ static void wear(const char *pattern)
     assert_int_equal(report.piece_count, 1);
     assert_int_equal(report.crossing_count, 0);
     assert_true(report.settled);
-    assert_true(report.rms_strain < 0.03); /* what app/drape calls stretched */
+    assert_true(report.rms_strain < 0.03); /* what app/scene/drape calls stretched */
     assert_true(top > shoulder_m - 0.05);
     tl_cloth_destroy(&cloth);
     tl_collider_destroy(&collider);

@@ -5,7 +5,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 static bool all_finite(const tl_cloth *cloth)
 {

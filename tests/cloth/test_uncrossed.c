@@ -3,14 +3,14 @@
  * file that comes crossed from its first frame on. The same bits follow at any number of threads.
  * TOILE_FRAMES sets the length of the motion, TOILE_BRUTE=1 counts every frame by brute force too. */
 #include "assets/avatar.h"
-#include "cloth/advance.h"
+#include "cloth/step/advance.h"
 #include "tests/cloth/crossing_oracle.h"
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/twist.h"
 #include "tests/testing.h"
 
-#include "config/hash.h"
-#include "config/log.h"
+#include "config/base/hash.h"
+#include "config/base/log.h"
 
 #include <omp.h>
 

@@ -4,13 +4,13 @@
  * enters the body. TOILE_FRAMES sets the length of the motion, TOILE_BRUTE=1 counts every frame by brute
  * force too. */
 #include "assets/avatar.h"
-#include "cloth/advance.h"
+#include "cloth/step/advance.h"
 #include "tests/cloth/crossing_oracle.h"
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/twist.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 #define SETTLING 20
 #define MOTION   20

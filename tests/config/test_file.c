@@ -1,10 +1,10 @@
 /* Files are read whole or refused in one line, and written whole or not at all, without leftovers. */
 #include "tests/testing.h"
 
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/memory.h"
 
 #include <dirent.h>
 #include <fcntl.h>

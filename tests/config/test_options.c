@@ -1,9 +1,9 @@
 /* One option at a time: what is taken, what is refused and in which words; text and back. */
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 #include "config/options.h"
-#include "config/words.h"
 #include "tests/config/sample_tables.h"
 
 #include <locale.h>

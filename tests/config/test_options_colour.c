@@ -1,8 +1,8 @@
 /* Colours as text: every form gives the same numbers, and what is wrong is refused with what was expected. */
 #include "tests/testing.h"
 
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 #include "config/options.h"
 #include "tests/config/sample_tables.h"
 

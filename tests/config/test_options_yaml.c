@@ -2,8 +2,8 @@
  */
 #include "tests/testing.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "config/options.h"
 #include "tests/config/sample_tables.h"
 

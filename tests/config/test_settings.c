@@ -2,11 +2,11 @@
 #include "tests/testing.h"
 
 #include "app/settings/settings.h"
-#include "assets/builtin/specimen.h"
 #include "assets/garment.h"
+#include "assets/specimen/specimen.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/file.h"
-#include "config/memory.h"
 
 #include <string.h>
 

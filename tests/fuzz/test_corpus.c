@@ -1,8 +1,8 @@
 /* The kept corpus of `./dev fuzz` through every reader, in an ordinary build: an input that once broke a
  * reader does so again when its repair is lost. The seeds, whose names begin with "seed", must be read: a
  * reader that refuses everything would pass all the rest. */
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "tests/fuzz/readers.h"
 #include "tests/testing.h"
 

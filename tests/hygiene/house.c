@@ -1,7 +1,7 @@
 #include "tests/hygiene/house.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <ftw.h>
 #include <limits.h>

@@ -2,8 +2,8 @@
  * key is cited, and every page of docs/ that a text names exists. */
 #include "tests/hygiene/sources.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "tests/hygiene/house.h"
 #include "tests/testing.h"
 

@@ -1,7 +1,7 @@
 #include "tests/render/scenes.h"
 
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/brdf/brdf.h"
 #include "render/reference/shading_point.h"
 #include "render/scene/view.h"

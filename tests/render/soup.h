@@ -4,7 +4,7 @@
 #define TOILE_TESTS_RENDER_SOUP_H
 
 #include "assets/base/surface.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* One scene by every method of light, against the images kept in tests/render/golden/ (tests/golden.h). */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/golden.h"
 

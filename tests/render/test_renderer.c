@@ -1,7 +1,7 @@
 /* The renderer as a whole: what runs again and what does not, memory, refusals, extremes. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/surfaces/ground.h"
 
 #include "tests/testing.h"

@@ -1,7 +1,7 @@
 /* Images that are shifted by parts of a pixel while nothing changes: their mean has smooth edges, whichever
  * way light is composed, and whatever changes ends it. Oracles: the algebra of a pinhole camera, and one
  * image of many samples a pixel. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/scene/view.h"
 #include "tests/render/scenes.h"
 #include "tests/testing.h"

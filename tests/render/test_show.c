@@ -1,8 +1,8 @@
 /* The two ways to show an image, as they are used: on the CPU, where the image was made there, and by
  * show.frag. The oracle of each is the other; both share the text of the tone mapper (present/tone.glsl),
  * whose own oracle is in present/test_tone_map.c. */
-#include "assets/builtin/studio.h"
-#include "config/memory.h"
+#include "assets/environment/studio.h"
+#include "config/base/memory.h"
 #include "render/env/convert.h"
 #include "render/renderer_internal.h"
 #include "tests/render/scenes.h"

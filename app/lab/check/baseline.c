@@ -1,7 +1,7 @@
 #include "app/lab/check/baseline.h"
 
-#include "config/file.h"
-#include "config/hash.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
 
 #include <cjson/cJSON.h>
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 /* The furnace test: in white light from everywhere an unshadowed surface reflects its albedo, whatever its
  * shape. */
 #include "app/lab/check/check_measures.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 
 #include <math.h>

@@ -6,9 +6,9 @@
 #include "assets/image/image_file.h"
 #include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/scene/view.h"
 #include "render/surfaces/ground.h"
 

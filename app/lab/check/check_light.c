@@ -1,6 +1,6 @@
 /* Light is neither lost nor doubled on its way from the environment into regions and lobes. */
 #include "app/lab/check/check_measures.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 #include "render/pem/chain.h"
 
@@ -383,7 +383,8 @@ void tl_measure_pems(const struct tl_checked *checked, struct tl_finding *findin
         tl_renderer_frame_resources(checked->renderer)->pems.count == 0)
         return;
     const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
-    struct tl_chain whole = tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter_options.filter);
+    struct tl_chain whole =
+        tl_chain_build(&inside->cube, (enum tl_chain_filter)inside->filter_options.filter);
     if (whole.level_count >
         1) /* the first level is cut, not filtered, and takes four times as long to read */
         add_pem_level(inside, &whole, 1, finding);

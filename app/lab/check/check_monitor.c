@@ -1,6 +1,6 @@
 #include "app/lab/check/check_monitor.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <float.h>
 #include <math.h>

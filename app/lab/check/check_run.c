@@ -7,10 +7,10 @@
 #include "app/lab/truth/truth.h"
 #include "app/measure/cost.h"
 #include "app/measure/motion.h"
-#include "config/hash.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/hash.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Compares geometry with its definitions. Vertices with equal position, normal and UV are merged, as in
  * MikkTSpace. */
 #include "app/lab/check/check_measures.h"
-#include "config/hash.h"
-#include "config/memory.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "app/lab/check/check_measures.h"
 #include "app/lab/experiments/closed_form.h"
 #include "cloth/cloth.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Visibility of regions: the range of VIS and of its parts, and VIS compared with rays. */
 #include "app/lab/check/check_measures.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 
 #include <math.h>

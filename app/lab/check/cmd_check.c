@@ -3,7 +3,7 @@
 #include "app/lab/check/baseline.h"
 #include "app/lab/check/commands.h"
 #include "app/scene/headless.h"
-#include "config/file.h"
+#include "config/base/file.h"
 
 #include <inttypes.h>
 #include <math.h>

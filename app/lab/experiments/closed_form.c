@@ -1,6 +1,6 @@
 #include "app/lab/experiments/closed_form.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "app/lab/experiments/experiment.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "app/lab/experiments/picture.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 #define TOILE_APP_LAB_EXPERIMENTS_ROWS_INTERNAL_H
 
 #include "app/lab/experiments/experiment.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 /* One family's experiments, in order. */
 struct tl_experiment_list {

@@ -6,9 +6,9 @@
 #include "app/report/folder.h"
 #include "app/scene/camera.h"
 #include "app/scene/orbit.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

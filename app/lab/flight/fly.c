@@ -1,11 +1,11 @@
 #include "app/lab/flight/fly.h"
 
 #include "app/measure/measure.h"
+#include "config/base/hash.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/hash.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "app/lab/flight/fly_account.h"
 
 #include "app/cli/json.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* FOLDER/frames.csv: written, and read again for a replay or a comparison. Columns are found by their names,
  * so that a file of another version is read as far as it goes. */
 #include "app/lab/flight/fly.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "app/lab/flight/fly_figures.h"
 
 #include "app/measure/cost.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

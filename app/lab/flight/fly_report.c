@@ -2,8 +2,8 @@
 #include "app/lab/flight/fly_account.h"
 #include "app/report/report.h"
 #include "assets/image/image_file.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/memory.h"
 
 #include <stdlib.h>
 

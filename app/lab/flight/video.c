@@ -1,8 +1,8 @@
 #include "app/lab/flight/video.h"
 
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 #include "app/lab/gallery/baked.h"
 
-#include "app/pictures/baked_maps.h"
-#include "config/file.h"
+#include "app/textures/baked_maps.h"
+#include "config/base/file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
 #include "app/lab/experiments/picture.h"
 
 /* Writes both objects' meshes into the picture's folder and bakes their maps, as `toile bake` does. Errors:
- * TL_OUTPUT; TL_INPUT as of app/pictures/baked_maps.h. */
+ * TL_OUTPUT; TL_INPUT as of app/textures/baked_maps.h. */
 bool tl_baked_make(const struct tl_experiment_picture *picture, tl_error *error);
 
 #endif

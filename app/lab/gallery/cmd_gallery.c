@@ -3,8 +3,8 @@
 #include "app/lab/gallery/gallery.h"
 #include "app/report/folder.h"
 #include "app/report/report.h"
+#include "config/base/file.h"
 #include "config/embedded.h"
-#include "config/file.h"
 
 extern const struct tl_embedded tl_embedded_gallery[]; /* gallery.js */
 

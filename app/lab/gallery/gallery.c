@@ -7,11 +7,11 @@
 #include "app/lab/gallery/store.h"
 #include "app/report/folder.h"
 #include "assets/image/image_file.h"
-#include "config/hash.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
-#include "config/words.h"
+#include "config/base/hash.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 #include "render/metrics/compare.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 
 #include "app/lab/experiments/experiment.h"
 #include "app/report/report.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/fresnel.h"
 #include "render/brdf/normalise.h"
 #include "render/brdf/power.h"

@@ -1,6 +1,6 @@
 #include "app/lab/gallery/integral.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/fresnel.h"
 #include "render/env/cube.h"
 

@@ -2,7 +2,7 @@
 
 #include "app/lab/gallery/integral.h"
 #include "app/measure/cost.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/present/tone_map.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "app/lab/gallery/store.h"
 
 #include "app/report/folder.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <cjson/cJSON.h>
 

@@ -1,7 +1,7 @@
 #include "app/lab/stability/envelope.h"
 
 #include "app/measure/cost.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <omp.h>

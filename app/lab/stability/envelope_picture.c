@@ -1,6 +1,6 @@
 #include "app/lab/stability/envelope_sweep.h"
 #include "app/report/canvas.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

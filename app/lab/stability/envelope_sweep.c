@@ -1,8 +1,8 @@
 #include "app/lab/stability/envelope_sweep.h"
 
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #define TOILE_APP_LAB_STABILITY_EXTREMES_CLOTH_H
 
 #include "app/lab/stability/outcome.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 extern const size_t tl_cloth_extreme_count;
 

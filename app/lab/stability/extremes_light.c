@@ -2,7 +2,7 @@
 
 #include "app/lab/stability/outcome.h"
 #include "assets/image/exr.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,10 +4,10 @@
 #include "app/lab/stability/stability.h"
 #include "app/measure/cost.h"
 #include "assets/image/image_file.h"
-#include "config/file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,7 +6,7 @@
  * half of it where one step passes dozens of texels. The remedy of all is relief of 1024 steps, which has to
  * keep the stated share. */
 #include "app/lab/stability/stability.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/detail/cones.h"
 #include "render/detail/detail_terms.h"
 #include "render/detail/field.h"

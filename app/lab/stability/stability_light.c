@@ -4,9 +4,9 @@
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/stability/extremes_light.h"
 #include "app/lab/stability/stability.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/metrics/compare.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
  * absolute in 1/sr. Light below a millionth of the peak counts as none. */
 #include "app/lab/experiments/experiment.h"
 #include "app/lab/stability/stability.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/brdf.h"
 
 #include <math.h>

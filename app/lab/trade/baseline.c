@@ -1,7 +1,7 @@
 #include "app/lab/trade/baseline.h"
 
 #include "cloth/mesh/vec3d.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdint.h>
 #include <stdlib.h>

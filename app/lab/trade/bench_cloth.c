@@ -8,9 +8,9 @@
 #include "app/measure/cost.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <omp.h>

@@ -4,9 +4,9 @@
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/trade/bench.h"
 #include "app/measure/measure.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <assert.h>
 #include <math.h>

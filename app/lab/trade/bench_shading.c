@@ -6,9 +6,9 @@
 #include "app/lab/trade/bench.h"
 #include "app/measure/cost.h"
 #include "app/scene/headless.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/local/shading_bench.h"
 
 #include <assert.h>

@@ -4,7 +4,7 @@
 #include "app/lab/trade/trade.h"
 #include "app/lab/trade/trade_cloth.h"
 #include "app/report/folder.h"
-#include "config/file.h"
+#include "config/base/file.h"
 
 #include <stdlib.h>
 #include <string.h>

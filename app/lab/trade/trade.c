@@ -3,9 +3,9 @@
 #include "app/budget/governor.h"
 #include "app/cli/topic.h"
 #include "assets/image/image_file.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 #include "app/lab/trade/trade_cloth.h"
 
 #include "app/lab/experiments/closed_form.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <omp.h>

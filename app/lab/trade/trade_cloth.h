@@ -10,7 +10,7 @@
 
 #include "app/lab/trade/trade_fit.h"
 #include "app/measure/cost.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stdio.h>
 

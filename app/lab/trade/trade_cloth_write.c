@@ -2,8 +2,8 @@
 #include "app/lab/trade/trade_cloth.h"
 #include "app/report/report.h"
 #include "cloth/cloth.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/memory.h"
 
 #include <math.h>
 

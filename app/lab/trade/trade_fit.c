@@ -2,8 +2,8 @@
 
 #include "app/fit/measures.h"
 #include "app/lab/trade/worn.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

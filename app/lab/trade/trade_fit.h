@@ -6,7 +6,7 @@
 #define TOILE_APP_LAB_TRADE_TRADE_FIT_H
 
 #include "app/measure/cost.h"
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stdbool.h>
 #include <stddef.h>

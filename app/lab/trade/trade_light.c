@@ -1,7 +1,7 @@
 #include "app/lab/trade/trade_light.h"
 
 #include "app/report/report.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "render/pem/chain.h"
 #include "render/pem/lobe_error.h"

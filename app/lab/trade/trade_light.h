@@ -4,7 +4,7 @@
 #ifndef TOILE_APP_LAB_TRADE_TRADE_LIGHT_H
 #define TOILE_APP_LAB_TRADE_TRADE_LIGHT_H
 
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 
 #include <cjson/cJSON.h>
 

@@ -1,6 +1,6 @@
 #include "app/lab/truth/truth.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 #include "render/reference/lamps.h"
 #include "render/reference/radiance.h"

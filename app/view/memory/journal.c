@@ -1,9 +1,9 @@
 #include "app/view/memory/journal.h"
 
 #include "app/view/memory/state.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <dirent.h>
 #include <errno.h>

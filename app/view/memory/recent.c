@@ -1,8 +1,8 @@
 #include "app/view/memory/recent.h"
 
 #include "app/view/memory/state.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #ifndef TOILE_APP_VIEW_MEMORY_RECENT_H
 #define TOILE_APP_VIEW_MEMORY_RECENT_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 #include "config/options.h"
 
 #include <stddef.h>

@@ -2,9 +2,9 @@
 
 #include "app/scene/orbit.h"
 #include "app/view/memory/state.h"
-#include "config/file.h"
-#include "config/hash.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 
 #include <ctype.h>
 #include <inttypes.h>

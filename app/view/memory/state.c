@@ -1,7 +1,7 @@
 #include "app/view/memory/state.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "app/view/panel/panel_font_shim.h"
 
 extern "C" {
-#include "config/log.h"
+#include "config/base/log.h"
 }
 
 #include <fontconfig/fontconfig.h>

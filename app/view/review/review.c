@@ -1,6 +1,6 @@
 #include "app/view/review/review.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 #include <stdarg.h>
 #include <stdio.h>

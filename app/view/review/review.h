@@ -2,7 +2,7 @@
  * something moves.
  *
  * The parts of this room change the state; each owns the fields that its header names. The rooms above turn
- * input into calls of the parts (app/view/review_commands.h, review_input.h) and show the state
+ * input into calls of the parts (app/view/command/review_commands.h, review_input.h) and show the state
  * (review_panel.h).
  *
  *     review_edit    edits of the settings: names, dropped files, undo

@@ -4,10 +4,10 @@
 #include "app/view/review/review_keep.h"
 #include "app/view/review/review_load.h"
 #include "app/view/review/review_wipe.h"
-#include "app/view/review/rhythm.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "app/view/window/rhythm.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <epoxy/gl.h>
 

@@ -5,10 +5,10 @@
 #include "assets/motion/motion_mesh.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "config/embedded.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

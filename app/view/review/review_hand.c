@@ -1,7 +1,7 @@
 #include "app/view/review/review_hand.h"
 
 #include "app/scene/orbit.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 static struct tl_ray ray_under(const struct tl_review *review, const struct tl_camera *camera, float x,
                                float y)

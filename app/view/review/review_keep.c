@@ -4,10 +4,10 @@
 #include "app/view/review/review_move.h"
 #include "assets/model.h"
 #include "assets/pattern/pattern.h"
-#include "config/file.h"
-#include "config/hash.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

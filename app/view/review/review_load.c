@@ -4,8 +4,8 @@
 #include "app/view/review/review_move.h"
 #include "app/view/review/review_reading.h"
 #include "app/view/review/review_wipe.h"
-#include "config/interrupt.h"
-#include "config/log.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
 
 #include <omp.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "app/view/review/review_memory.h"
 
 #include "app/view/review/review_draw.h"
-#include "config/log.h"
+#include "config/base/log.h"
 #include "render/renderer.h"
 
 #include <malloc.h>

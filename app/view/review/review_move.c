@@ -2,9 +2,9 @@
 
 #include "app/scene/camera.h"
 #include "app/scene/orbit.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #include "app/view/review/review_read.h"
 
-#include "app/drawn/board.h"
+#include "app/display/board.h"
 #include "app/view/review/review_wipe.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/inspect/inspect.h"
 #include "render/scene/view.h"
 

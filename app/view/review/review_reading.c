@@ -1,8 +1,8 @@
 #include "app/view/review/review_reading.h"
 
 #include "app/view/review/review_edit.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "app/scene/appearance.h"
 #include "app/view/review/review_edit.h"
 #include "app/view/review/review_reading.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,9 +3,9 @@
 #include "app/scene/moving_light.h"
 #include "app/scene/session.h"
 #include "app/settings/settings.h"
+#include "config/base/interrupt.h"
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/interrupt.h"
-#include "config/memory.h"
 #include "render/present/tone_map.h"
 #include "render/reference/reference.h"
 

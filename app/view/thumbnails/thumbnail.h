@@ -4,7 +4,7 @@
  *
  * No GL. Errors: those of tl_session_create and tl_reference_draw; of tl_moving_light_open. Lifetime: the
  * caller releases `out`, U8 x4, sRGB. Threads: any, one at a time; OpenMP inside; it stops with the thread's
- * interrupt (config/interrupt.h). */
+ * interrupt (config/base/interrupt.h). */
 #ifndef TOILE_APP_VIEW_THUMBNAILS_THUMBNAIL_H
 #define TOILE_APP_VIEW_THUMBNAILS_THUMBNAIL_H
 

@@ -1,10 +1,10 @@
 #include "app/view/thumbnails/thumbnails.h"
 
 #include "app/view/thumbnails/thumbnail.h"
-#include "config/interrupt.h"
-#include "config/log.h"
-#include "config/memory.h"
-#include "config/words.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
+#include "config/base/words.h"
 
 #include <omp.h>
 #include <pthread.h>

@@ -1,6 +1,6 @@
 #include "app/view/window/file_chooser.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -3,7 +3,7 @@
 #ifndef TOILE_APP_VIEW_WINDOW_FILE_CHOOSER_H
 #define TOILE_APP_VIEW_WINDOW_FILE_CHOOSER_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stdbool.h>
 

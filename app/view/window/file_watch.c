@@ -1,6 +1,6 @@
 #include "app/view/window/file_watch.h"
 
-#include "config/hash.h"
+#include "config/base/hash.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "app/view/window/window.h"
 
-#include "config/error.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/error.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

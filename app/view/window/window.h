@@ -7,7 +7,7 @@
 #ifndef TOILE_APP_VIEW_WINDOW_WINDOW_H
 #define TOILE_APP_VIEW_WINDOW_WINDOW_H
 
-#include "config/error.h"
+#include "config/base/error.h"
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 #include "cloth/solvers/implicit/conjugate_gradient.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

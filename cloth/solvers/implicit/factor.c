@@ -2,8 +2,8 @@
 
 #include "cloth/mesh/denormals.h"
 #include "cloth/solvers/implicit/factor_shim.h"
-#include "config/memory.h"
-#include "config/simd.h"
+#include "config/base/memory.h"
+#include "config/base/simd.h"
 
 #include <stdlib.h>
 #include <string.h>

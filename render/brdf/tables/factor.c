@@ -1,6 +1,6 @@
 #include "render/brdf/tables/factor.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/tables/factor_internal.h"
 
 #include <assert.h>

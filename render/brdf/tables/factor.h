@@ -20,7 +20,7 @@
 #ifndef TOILE_RENDER_BRDF_TABLES_FACTOR_H
 #define TOILE_RENDER_BRDF_TABLES_FACTOR_H
 
-#include "assets/measured/samples.h"
+#include "assets/fabric/samples.h"
 #include "render/brdf/tables/tables.h"
 
 #define TL_FACTOR_SIZE_MIN 16

@@ -1,7 +1,7 @@
 #include "render/brdf/tables/measured.h"
 
-#include "config/hash.h"
-#include "config/memory.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/tables/factor.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
 #include "app/audit/audit_json.h"
 #include "app/fit/sewn.h"
 #include "assets/model.h"
-#include "assets/stitches/stitches.h"
-#include "config/memory.h"
+#include "assets/sewing/stitches.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <inttypes.h>

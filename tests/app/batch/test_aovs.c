@@ -3,7 +3,7 @@
 #include "tests/testing.h"
 
 #include "app/batch/commands.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 static void render(const char *output, const char *extra)
 {

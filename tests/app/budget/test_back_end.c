@@ -1,7 +1,7 @@
 #include "app/budget/back_end.h"
 
 #include "app/budget/quality.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <string.h>

@@ -2,7 +2,7 @@
 #include "tests/testing.h"
 
 #include "app/fabric/shimmer.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 static double shimmer_of(const char *fabric, const char *filter)
 {

@@ -3,9 +3,9 @@
 #include "app/fit/girths.h"
 #include "app/fit/measures.h"
 #include "assets/avatar.h"
-#include "assets/builtin/form.h"
+#include "assets/body/form.h"
 #include "assets/model.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "assets/garment.h"
 #include "assets/model.h"
 #include "assets/pattern/pattern_worn.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "tests/app/inject/folder.h"
 
-#include "config/file.h"
-#include "config/hash.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 
 #include <cjson/cJSON.h>
 #include <ftw.h>

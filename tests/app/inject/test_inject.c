@@ -13,9 +13,9 @@
 #include "tests/app/inject/folder.h"
 #include "tests/app/inject/supervise.h"
 
-#include "config/file.h"
-#include "config/hash.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <stdlib.h>

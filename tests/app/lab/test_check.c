@@ -4,8 +4,8 @@
 #include "app/lab/stability/extremes_light.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 
 #include <epoxy/gl.h>

@@ -4,7 +4,7 @@
 
 #include "app/lab/check/check_trials.h"
 #include "cloth/state.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 static struct tl_checked check_cloth(tl_session *session, struct tl_checked_cloth *cloth, tl_frame *frame)
 {

@@ -4,7 +4,7 @@
 
 #include "app/lab/stability/envelope.h"
 #include "app/lab/trade/baseline.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

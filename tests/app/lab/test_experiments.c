@@ -4,7 +4,7 @@
 
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/experiments/picture.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -5,8 +5,8 @@
 #include "app/lab/stability/extremes_light.h"
 #include "app/lab/stability/outcome.h"
 #include "cloth/cloth.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 
 #include "app/lab/flight/fly.h"
 #include "app/scene/orbit.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <omp.h>
 

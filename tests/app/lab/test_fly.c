@@ -3,8 +3,8 @@
 #include "tests/testing.h"
 
 #include "app/lab/flight/fly_figures.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 #include <unistd.h>

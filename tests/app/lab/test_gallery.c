@@ -7,8 +7,8 @@
 #include "app/lab/gallery/panels.h"
 #include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/store.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

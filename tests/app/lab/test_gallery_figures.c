@@ -2,7 +2,7 @@
 #include "tests/testing.h"
 
 #include "app/lab/gallery/gallery_figures.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -3,8 +3,8 @@
 
 #include "app/lab/gallery/moving_sky.h"
 #include "app/lab/gallery/shots.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
 
 #include "app/measure/measure.h"
 #include "app/scene/session.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include "tests/testing.h"
 
 #include "app/measure/measure.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 static struct tl_settings applied(const char *bounce)
 {

@@ -4,8 +4,8 @@
 
 #include "app/report/canvas.h"
 #include "app/report/text.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * moves; it starts from rest, and comes back. */
 #include "app/scene/session.h"
 #include "assets/garment.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <string.h>

@@ -1,8 +1,8 @@
 /* A heavy scan is simplified where it wears a garment, and only there; an option keeps it as it is. */
 #include "app/scene/load.h"
 #include "app/scene/whole_body.h"
-#include "assets/simplify/simplify.h"
-#include "config/memory.h"
+#include "assets/topology/simplify.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <string.h>

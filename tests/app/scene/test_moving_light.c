@@ -3,11 +3,11 @@
 #include "tests/testing.h"
 
 #include "app/scene/session.h"
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
 #include "assets/image/exr.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 #include "tests/testing.h"
 
 #include "app/scene/path.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 #include <unistd.h>

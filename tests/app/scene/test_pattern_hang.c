@@ -2,7 +2,7 @@
  * which it cannot where its triangles are too large. */
 #include "app/scene/session.h"
 #include "app/settings/settings.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <stdlib.h>

@@ -6,8 +6,8 @@
 #include "assets/model.h"
 #include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 #include <sys/stat.h>

@@ -3,7 +3,7 @@
 #include "app/scene/session.h"
 #include "assets/model_export.h"
 #include "cloth/energy/strain.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <string.h>

@@ -2,8 +2,8 @@
 #include "tests/app/quick_session.h"
 
 #include "app/scene/camera.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

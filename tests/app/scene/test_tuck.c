@@ -7,7 +7,7 @@
 #include "assets/avatar.h"
 #include "assets/garment.h"
 #include "cloth/contact/collider.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 
 #include "app/lab/flight/fly_account.h"
 #include "app/scene/session.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/frame/resources.h"
 #include "render/plan/affects.h"
 

@@ -4,8 +4,8 @@
 #include "app/scene/appearance.h"
 #include "app/settings/layers.h"
 #include "assets/garment.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

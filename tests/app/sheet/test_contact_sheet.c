@@ -5,9 +5,9 @@
 #include "app/sheet/contact_names.h"
 #include "app/sheet/contact_plan.h"
 #include "app/sheet/contact_store.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

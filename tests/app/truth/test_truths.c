@@ -11,8 +11,8 @@
 
 #include "app/batch/commands.h"
 #include "assets/image/exr.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* The journal of a window against the window's own history: what comes back after any end of the process. */
 #include "app/view/memory/journal.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

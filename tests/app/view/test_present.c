@@ -3,7 +3,7 @@
  * renderer and the clock are replaced at link time. */
 #include "app/view/review/review.h"
 #include "app/view/review/review_draw.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

@@ -2,8 +2,8 @@
  * action, and every key and every button leads to its row. */
 #include "tests/testing.h"
 
-#include "app/view/review_commands.h"
-#include "config/memory.h"
+#include "app/view/command/review_commands.h"
+#include "config/base/memory.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,6 +1,6 @@
 /* The rhythm of a review in motion against what happened in a simulated second: how fast the cloth played,
  * how often the panel was built. */
-#include "app/view/review/rhythm.h"
+#include "app/view/window/rhythm.h"
 
 #include "tests/testing.h"
 

@@ -2,8 +2,8 @@
 #include "app/view/memory/recent.h"
 #include "app/view/memory/saved_views.h"
 #include "app/view/memory/state.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

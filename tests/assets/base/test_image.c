@@ -1,7 +1,7 @@
 #include "assets/base/image.h"
 #include "assets/image/image_file.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

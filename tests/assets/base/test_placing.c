@@ -2,7 +2,7 @@
 #include "assets/base/placing.h"
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 static void place(const struct tl_placing *placing, vec3s *position, vec3s *normal)
 {

@@ -2,7 +2,7 @@
 
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -2,10 +2,10 @@
  * cloth and clear of the form. Every check runs over coarse and fine cuts. */
 #include "tests/testing.h"
 
-#include "assets/builtin/form.h"
+#include "assets/body/form.h"
 #include "assets/garment.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -2,13 +2,13 @@
  * Oracle: the same without a cache, to the bit. */
 #include "tests/testing.h"
 
-#include "assets/builtin/form.h"
-#include "assets/builtin/studio.h"
+#include "assets/body/form.h"
 #include "assets/cut/garment_cut.h"
 #include "assets/cut/options.h"
-#include "assets/environment.h"
+#include "assets/environment/environment.h"
+#include "assets/environment/studio.h"
+#include "config/base/hash.h"
 #include "config/cache/cache.h"
-#include "config/hash.h"
 
 #include <fcntl.h>
 #include <string.h>

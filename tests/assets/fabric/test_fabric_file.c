@@ -4,8 +4,8 @@
 #include "assets/base/material.h"
 #include "assets/fabric/fabric_maps.h"
 #include "assets/image/image_file.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include "config/colour/srgb.h"
 #include "tests/testing.h"

@@ -3,7 +3,7 @@
 #include "assets/avatar.h"
 #include "assets/garment.h"
 #include "assets/model_export.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "config/colour/srgb.h"
 #include "tests/assets/small_glb.h"

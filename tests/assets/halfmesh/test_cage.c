@@ -4,7 +4,7 @@
 
 #include "assets/halfmesh/halfmesh.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

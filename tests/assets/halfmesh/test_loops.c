@@ -3,7 +3,7 @@
 
 #include "assets/halfmesh/loops.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "assets/image/exr.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

@@ -2,8 +2,8 @@
  * are refused. */
 #include "assets/image/image_file.h"
 #include "assets/image/tiff_internal.h"
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

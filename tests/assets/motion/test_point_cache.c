@@ -1,7 +1,7 @@
 /* Point caches: what was written is read back, formats agree, times are right. */
 #include "assets/model.h"
 #include "assets/motion/point_cache.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

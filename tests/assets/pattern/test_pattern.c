@@ -1,7 +1,7 @@
 /* Reading sewing patterns: geometry against closed forms, refusals by their text. */
 #include "assets/pattern/pattern_cut.h"
 #include "assets/pattern/pattern_place.h"
-#include "config/file.h"
+#include "config/base/file.h"
 #include "tests/assets/hostile.h"
 
 #include <string.h>

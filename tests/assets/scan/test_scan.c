@@ -1,5 +1,5 @@
 #include "assets/model.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/assets/hostile.h"
 #include "tests/testing.h"

@@ -5,7 +5,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 static const double thickness_m = 0.003;
 

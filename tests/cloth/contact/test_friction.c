@@ -3,7 +3,7 @@
 #include "tests/cloth/solvers.h"
 
 #include "cloth/measure.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 static const double thickness_m = 0.003;
 

@@ -1,16 +1,16 @@
 /* Layers: the order of pieces; a belt that must not show through a shirt; folds that keep their distance.
  * Contact of the cloth with itself does not cross and keeps apart what lies on each other. */
 #include "assets/avatar.h"
-#include "cloth/apart/crossings.h"
 #include "cloth/measure.h"
-#include "cloth/snapshot.h"
+#include "cloth/self_contact/crossings.h"
 #include "cloth/state.h"
+#include "cloth/step/snapshot.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/hash.h"
-#include "config/log.h"
+#include "config/base/hash.h"
+#include "config/base/log.h"
 
 /* ---- Folds ---- */
 

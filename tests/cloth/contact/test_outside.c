@@ -3,7 +3,7 @@
  * passes through the hip below them. TOILE_FRAMES=300 runs the full length: 90 s of CPU for the
  * reference on the man, 30 s for settle. The default is 1.5 s of motion, and less for the slow solvers. */
 #include "assets/avatar.h"
-#include "assets/cut/fit.h"
+#include "assets/body/fit.h"
 #include "cloth/state.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/crossing_oracle.h"
@@ -11,7 +11,7 @@
 #include "tests/cloth/twist.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 #define FRAME_RATE 30.0
 #define POSE_IN    30 /* frames from the rest pose to the clip's first */

@@ -6,7 +6,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 /* Turns p about an axis and translates it. */
 static vec3d moved_by(vec3d p, double angle, vec3d by)

@@ -4,7 +4,7 @@
 
 #include "cloth/drive/hand.h"
 #include "cloth/measure.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #include "cloth/drive/holds.h"
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #define H 0.01 /* s: a hold moves 5 mm */
 

@@ -5,7 +5,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 #include <stdio.h>
 #include <unistd.h>

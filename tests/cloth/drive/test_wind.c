@@ -6,7 +6,7 @@
 #include "tests/cloth/solvers.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 static vec3s lying(double u, double v)
 {

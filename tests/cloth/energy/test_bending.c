@@ -6,8 +6,8 @@
  * side. */
 #include "tests/cloth/solvers.h"
 
-#include "assets/builtin/panel.h"
-#include "config/log.h"
+#include "assets/sewing/panel.h"
+#include "config/base/log.h"
 
 struct tip {
     double along, below; /* in lengths of the strip */
@@ -106,7 +106,7 @@ static tl_garment grid_strip(const struct strip *strip)
     return garment;
 }
 
-/* Cut as garments are (assets/builtin/panel.h), except for the first column of cells, which is regular so
+/* Cut as garments are (assets/sewing/panel.h), except for the first column of cells, which is regular so
  * that the clamp is at the same position as in a grid. */
 static tl_garment panel_strip(const struct strip *strip)
 {

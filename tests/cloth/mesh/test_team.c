@@ -1,6 +1,6 @@
 /* The team: every element once, barriers in order, work after sleep, and callers that come at once. */
 #include "cloth/mesh/team.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <omp.h>

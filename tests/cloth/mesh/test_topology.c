@@ -1,5 +1,5 @@
 /* Welding and connectivity, on meshes small enough to check by hand. */
-#include "assets/connect/sets.h"
+#include "assets/topology/sets.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "tests/testing.h"

@@ -7,7 +7,7 @@
 #include "tests/cloth/solvers.h"
 
 #include "cloth/timestep.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 static const struct sheet_shape chain_shape = {1, 32, 1.0 / 32, 1};
 

@@ -2,7 +2,7 @@
  * and energy to rounding or to the order of the step. The implicit methods must never gain energy. */
 #include "tests/cloth/solvers.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 static const struct sheet_shape shape = {8, 8, 0.25, 0.25};
 

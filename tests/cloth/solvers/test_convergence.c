@@ -7,7 +7,7 @@
 #include "tests/cloth/solvers.h"
 
 #include "cloth/timestep.h"
-#include "config/log.h"
+#include "config/base/log.h"
 
 /* ---- In the step ---- */
 

@@ -8,7 +8,7 @@
 #include "tests/cloth/solvers.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 /* In [-1, 1], from a fixed hash. */
 static double noise(uint32_t vertex, uint32_t channel)

@@ -6,7 +6,7 @@
 #include "tests/cloth/sheets.h"
 #include "tests/testing.h"
 
-#include "config/log.h"
+#include "config/base/log.h"
 
 static void predict(struct tl_particles *particles, double h)
 {

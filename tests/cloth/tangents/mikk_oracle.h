@@ -13,7 +13,7 @@
 
 #include "assets/base/mesh.h"
 #include "cloth/mesh/vec3d.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <float.h>
 #include <stdbool.h>

@@ -2,10 +2,10 @@
  * one another; the least recently used files go first; a folder that cannot be written is no error. */
 #include "tests/testing.h"
 
+#include "config/base/file.h"
+#include "config/base/log.h"
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/file.h"
-#include "config/log.h"
-#include "config/memory.h"
 
 #include <string.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
  * by a sky at samples and at vertices; and by a wall that shines, by a lamp, over the ground. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/reference/reference.h"
 
 #include "tests/testing.h"

@@ -2,7 +2,7 @@
  * a sky of which a part is seen. */
 #include "render/bounce/bounced.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/exponent.h"
 
 #include "tests/testing.h"

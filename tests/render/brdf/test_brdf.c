@@ -2,7 +2,7 @@
 #include "render/brdf/fresnel.h"
 #include "render/reference/random.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

@@ -2,7 +2,7 @@
  * and samples that no tables can have. Row A13. */
 #include "render/brdf/tables/factor.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

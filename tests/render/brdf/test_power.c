@@ -1,6 +1,6 @@
 #include "render/brdf/power.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

@@ -3,7 +3,7 @@
 #include "render/brdf/fresnel.h"
 #include "render/brdf/lobe_fit.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/exponent.h"
 
 #include "tests/testing.h"

@@ -1,7 +1,7 @@
 /* Seams, hems and stitches: as drawn against explicit heights; the shader against its counterpart in C; far
  * against the mean of near; and every path that draws them. */
-#include "assets/borders/borders.h"
-#include "config/memory.h"
+#include "assets/topology/borders.h"
+#include "config/base/memory.h"
 #include "render/construction/look.h"
 #include "render/construction/options.h"
 #include "render/inside.h"

@@ -1,7 +1,7 @@
 /* Maps baked from heights, against analytic slopes, the cylinder of the lecture [Wimmer n.d.], walls, and
  * rays cast in the field. */
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/detail/bake.h"
 #include "render/detail/bumps.h"
 #include "render/reference/random.h"

@@ -4,8 +4,8 @@
 #include "tests/render/height_oracle.h"
 #include "tests/render/scenes.h"
 
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/detail/detail.h"
 
 #include "tests/testing.h"

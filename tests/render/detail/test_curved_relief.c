@@ -2,7 +2,7 @@
  * which pixels it covers, and which of its points they show. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/reference/shading_point.h"
 #include "render/scene/view.h"
 

@@ -2,7 +2,7 @@
  * nothing. A square whose colour is its u, in uniform light of 1, shows where its maps are read. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/detail/cones.h"
 #include "render/detail/field.h"
 #include "render/metrics/compare.h"

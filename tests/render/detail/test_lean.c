@@ -4,8 +4,8 @@
  * or drawn from so near that each normal fills a pixel. */
 #include "tests/render/paths.h"
 
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/brdf/brdf.h"
 #include "render/detail/bake.h"
 #include "render/detail/bump_statistics.h"

@@ -2,9 +2,9 @@
  * finer than its texels, octave by octave; and how much it shimmers while the camera backs away. */
 #include "tests/render/scenes.h"
 
-#include "assets/builtin/studio.h"
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/environment/studio.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

@@ -1,8 +1,8 @@
 /* Parallax and relief in height fields, against closed forms and a fine march. */
 #include "tests/render/height_oracle.h"
 
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/detail/cones.h"
 #include "render/detail/field.h"
 #include "render/reference/random.h"

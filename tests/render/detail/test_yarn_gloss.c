@@ -2,7 +2,7 @@
  * by every path that evaluates a gloss: what yarns and unresolved bumps do to anisotropic lobes. */
 #include "tests/render/paths.h"
 
-#include "assets/builtin/weave.h"
+#include "assets/weave/weave.h"
 
 #include "tests/testing.h"
 

@@ -1,7 +1,7 @@
 #include "render/env/convert.h"
 
-#include "assets/environment.h"
-#include "config/memory.h"
+#include "assets/environment/environment.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

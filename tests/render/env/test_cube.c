@@ -166,7 +166,7 @@ static void cubes_are_averaged_exactly(void **state)
     release_environment(&environment);
 }
 
-/* The lat-long convention of assets/environment.h, texel by texel. */
+/* The lat-long convention of assets/environment/environment.h, texel by texel. */
 static void latlong_is_turned_the_right_way(void **state)
 {
     (void)state;

@@ -3,8 +3,8 @@
 #include "render/pem/lobe.h"
 #include "render/pem/lobe_error.h"
 
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/memory.h"
 #include "tests/testing.h"
 
 #include <fcntl.h>

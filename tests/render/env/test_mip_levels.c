@@ -1,7 +1,7 @@
 /* Mip levels weighted by solid angle, and prefiltered maps in every layout. */
 #include "render/env/mip_levels.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/envmap/prefiltered_map.h"
 
 #include "tests/testing.h"

@@ -1,7 +1,7 @@
 /* Suns: found wherever they stand, measured as they are, taken out without losing light; area lights stay. */
 #include "render/env/sun.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "render/env/resample.h"
 

@@ -4,7 +4,7 @@
 
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
 #include "render/env/lobes.h"

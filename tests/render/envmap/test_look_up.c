@@ -2,7 +2,7 @@
  * as a G-buffer of mirrors, in floats. */
 #include "render/envmap/envmap.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/light/light.h"
 
 #include "tests/testing.h"

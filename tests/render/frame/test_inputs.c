@@ -1,7 +1,7 @@
 /* An option is one row: its value reaches the input that its column `affects` names, and the input's hash
  * changes with it. Every row of every table of the renderer is set to another value in turn. The table of
  * this file names the place where a job finds the options of each bit. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/frame/inputs.h"
 #include "render/frame/resources.h"
 #include "render/plan/affects.h"

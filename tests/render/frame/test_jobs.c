@@ -1,7 +1,7 @@
 /* The promises of render/frame/job_io.h, checked for every job of the frame: its bits are those of its list,
  * each field has the type and the address that its kind calls for, and what it reads exists by then. The run
  * functions of this file take the place of the renderer's; no GL is needed. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/frame/job_io.h"
 #include "render/frame/jobs.h"
 #include "tests/testing.h"

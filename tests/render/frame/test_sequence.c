@@ -2,7 +2,7 @@
  * renderer draws that knows that frame only. No region, PEM or map is left over from an earlier one. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/pem/pems.h"
 
 #include "tests/testing.h"

@@ -2,7 +2,7 @@
  * what surely is not is left out, and the GPU draws the same picture from what is kept. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/gbuffer/samples.h"
 #include "render/scene/view.h"
 

@@ -5,9 +5,9 @@
 #include "tests/render/scenes.h"
 #include "tests/render/soup.h"
 
-#include "assets/builtin/form.h"
+#include "assets/body/form.h"
 #include "assets/cut/garment_cut.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/gbuffer/ids_internal.h"
 
 #include "tests/testing.h"

@@ -5,7 +5,7 @@
 
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 /* Whether two vertices of a surface are corners of one triangle, or lend a third their light together. */
 static bool are_neighbours(const tl_surface *surface, uint32_t a, uint32_t b)

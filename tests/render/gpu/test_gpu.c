@@ -1,8 +1,8 @@
 /* The thin GL floor: contexts, texture bytes, programs with includes and true lines. */
 #include "render/gpu/gpu.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 
 #include <epoxy/gl.h>
 

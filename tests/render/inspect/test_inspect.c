@@ -2,7 +2,7 @@
  * they do not need. The read-out under a pixel, and the layers of an image. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 #include "render/inspect/aovs.h"
 #include "render/inspect/inspect.h"

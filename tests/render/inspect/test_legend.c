@@ -2,8 +2,8 @@
  */
 #include "tests/testing.h"
 
+#include "config/base/memory.h"
 #include "config/colour/srgb.h"
-#include "config/memory.h"
 #include "render/inspect/legend.h"
 #include "render/inspect/paint.h"
 #include "render/inspect/seen.h"

@@ -1,7 +1,7 @@
 /* Light composed from visibility at points, against the integral that it stands for. */
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/light/compose.h"
 #include "render/light/terms.h"
 

@@ -2,9 +2,9 @@
  * without a cache, to the bit, of lights that differ in one texel or in the number of regions. */
 #include "tests/testing.h"
 
+#include "config/base/hash.h"
+#include "config/base/memory.h"
 #include "config/cache/cache.h"
-#include "config/hash.h"
-#include "config/memory.h"
 #include "render/env/from_environment.h"
 #include "render/light/region_lights.h"
 

@@ -2,7 +2,7 @@
  * gloss; what a scene without them is spared; and their extremes. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/metrics/compare.h"
 
 #include "tests/testing.h"

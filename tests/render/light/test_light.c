@@ -1,7 +1,7 @@
 /* The light passes against the CPU's chain look-up, closed forms, and equivalent scenes. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "render/pem/chain.h"
 #include "render/pem/lobe.h"

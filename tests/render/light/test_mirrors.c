@@ -1,7 +1,7 @@
 /* Reflections in near mirrors: a coloured wall in a mirror on the floor, with the sky beside it. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "render/light/compose.h"
 

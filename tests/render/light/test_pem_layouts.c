@@ -7,7 +7,7 @@
  * came out. They are enough to name a lost or misplaced map, which is wrong by all of its light. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/pem/lobe.h"
 #include "render/pem/pems.h"
 

@@ -3,7 +3,7 @@
  * pixels. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/local/lit_texture.h"
 
 #include "tests/testing.h"

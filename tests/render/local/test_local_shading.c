@@ -2,7 +2,7 @@
  * CPU. Rows A6, A8 to A12 of the technique set. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/tables/tables.h"
 #include "render/scene/view.h"
 #include "render/trace/trace.h"

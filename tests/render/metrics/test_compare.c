@@ -1,6 +1,6 @@
 #include "render/metrics/compare.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/metrics/flip.h"
 
 #include "tests/testing.h"

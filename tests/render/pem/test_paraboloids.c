@@ -2,7 +2,7 @@
  * from. */
 #include "render/pem/paraboloids.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/pem/regions.h"
 
 #include "tests/testing.h"

@@ -3,8 +3,8 @@
 #include "render/env/from_environment.h"
 #include "render/pem/regions.h"
 
-#include "assets/environment.h"
-#include "config/memory.h"
+#include "assets/environment/environment.h"
+#include "config/base/memory.h"
 
 #include "tests/testing.h"
 

@@ -1,5 +1,5 @@
 /* The governor's first second on machines whose speed it does not know, with made-up costs: no clock. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/plan/budget.h"
 #include "render/plan/cost.h"
 

@@ -1,6 +1,6 @@
 /* The linear image on either side, by numbers that name their texel: what is read is what the side that made
  * the image holds, whatever the other one held before. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/present/linear_image.h"
 #include "tests/testing.h"
 

@@ -1,6 +1,6 @@
 #include "render/present/resample.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #include <stdbool.h>

@@ -2,7 +2,7 @@
  * at sizes that are no multiple of a tile's. */
 #include "render/present/tone_map.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "tests/testing.h"
 

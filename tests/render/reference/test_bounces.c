@@ -3,7 +3,7 @@
  * standard errors must be less than that. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/reference/reference.h"
 
 #include "tests/testing.h"

@@ -3,8 +3,8 @@
  * smaller: rays start 1e-5 of the half diagonal of the scene off their surface, and discs have 256 sides. */
 #include "tests/render/scenes.h"
 
-#include "config/interrupt.h"
-#include "config/memory.h"
+#include "config/base/interrupt.h"
+#include "config/base/memory.h"
 #include "render/env/exponent.h"
 #include "render/reference/reference.h"
 #include "render/reference/scene.h"

@@ -2,8 +2,8 @@
  * points, normals and materials. The two share no code except the shapes. */
 #include "tests/render/scenes.h"
 
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/inside.h"
 #include "render/reference/shading_point.h"
 

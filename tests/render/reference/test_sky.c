@@ -1,5 +1,5 @@
 /* Directions sampled from an environment, in both layouts, with a yaw. */
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/reference/sky.h"
 
 #include "tests/testing.h"

@@ -9,8 +9,8 @@
 
 #include "tests/testing.h"
 
-#include "assets/builtin/weave.h"
-#include "config/memory.h"
+#include "assets/weave/weave.h"
+#include "config/base/memory.h"
 #include "render/env/lobes.h"
 #include "render/light/options.h"
 #include "render/light/terms.h"

@@ -3,14 +3,14 @@
  * the same bits at any number of threads, and the same bits as without where the scene needs samples. */
 #include "tests/render/scenes.h"
 
-#include "assets/builtin/weave.h"
+#include "assets/weave/weave.h"
 #include "render/metrics/compare.h"
 #include "render/present/resample.h"
 #include "render/reference/random.h"
 
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <omp.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #define WIDTH  240
 #define HEIGHT 200

@@ -4,7 +4,7 @@
 
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/reference/random.h"
 
 #include <math.h>

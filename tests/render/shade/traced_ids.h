@@ -3,7 +3,7 @@
 #ifndef TOILE_TESTS_RENDER_SHADE_TRACED_IDS_H
 #define TOILE_TESTS_RENDER_SHADE_TRACED_IDS_H
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/gbuffer/ids.h"
 #include "render/reference/shading_point.h"
 #include "render/trace/trace.h"

@@ -5,7 +5,7 @@
 
 #include "render/visibility/points.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include "tests/render/scenes.h"
 #include "tests/testing.h"

@@ -3,7 +3,7 @@
  * of 2 pi / 3 sr, so its cone has cos = 1 - 1/3 and tan = sqrt(5) / 2. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/from_environment.h"
 #include "render/visibility/maps.h"
 

@@ -1,6 +1,6 @@
 #include "render/visibility/points.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/visibility/maps.h"
 
 #include "tests/render/visibility/points_stage.h"

@@ -4,7 +4,7 @@
  * which are 2e-7 m each at these distances; those of a drag along a slanted axis are a few times that. */
 #include "app/scene/camera.h"
 #include "app/view/gizmo/gizmo.h"
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "tests/testing.h"
 
 #define METRES  2e-5

@@ -1,7 +1,7 @@
 /* The list of keys stays within the view, whatever the window's size: neither its first letters nor its last
  * ones are cut off, and it does not cover the panel. */
-#include "app/view/review_commands.h"
-#include "config/memory.h"
+#include "app/view/command/review_commands.h"
+#include "config/base/memory.h"
 #include "tests/app/view/panel/overlay_shim.h"
 #include "tests/testing.h"
 

@@ -1,6 +1,6 @@
 #include "tests/render/brdf/ggx/ggx_fitter.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

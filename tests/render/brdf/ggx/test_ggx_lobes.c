@@ -12,7 +12,7 @@
 #include "tests/render/brdf/ggx/ggx_fitter.h"
 #include "tests/testing.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,29 @@
+/* Sequences of environments: one file per frame, named by a pattern (assets/motion/sequence.h). The numbers
+ * may start anywhere and have no gaps.
+ *
+ * Errors: a pattern without files and a gap are refused when the sequence is opened, a damaged frame when it
+ * is loaded. Lifetime: tl_environment_sequence owns its pattern; nothing stays open. Threads: any. */
+#ifndef TOILE_ASSETS_ENVIRONMENT_ENVIRONMENT_SEQUENCE_H
+#define TOILE_ASSETS_ENVIRONMENT_ENVIRONMENT_SEQUENCE_H
+
+#include "assets/environment/environment.h"
+
+typedef struct tl_environment_sequence {
+    char *pattern;
+    int first; /* number of frame 0 */
+    int count; /* frames; 0 only in a zeroed struct */
+} tl_environment_sequence;
+
+/* Whether `name` is a pattern and no file of that very name exists. */
+bool tl_environment_is_sequence(const char *name);
+
+/* Lists the files of a pattern; none is read yet. */
+bool tl_environment_sequence_open(const char *pattern, tl_environment_sequence *out, tl_error *error);
+/* Frees and zeroes; a zeroed sequence is accepted. */
+void tl_environment_sequence_release(tl_environment_sequence *sequence);
+
+/* Loads frame `index`, 0 to count - 1, as tl_environment_load does. */
+bool tl_environment_sequence_load(const tl_environment_sequence *sequence, int index, tl_environment *out,
+                                  tl_error *error);
+
+#endif
