@@ -206,11 +206,13 @@ static bool measure(size_t number, const struct tl_checked *checked, struct tl_v
     return ok;
 }
 
-static struct tl_truth compare(const struct tl_checked *checked, const tl_image *image)
+static struct tl_truth compare(const struct tl_checked *checked)
 {
+    const tl_image *const images[] = {checked->image, checked->in_motion};
     struct tl_truth truth;
     tl_error error = {0};
-    if (!tl_truth_compare(checked->frame, checked->settings, checked->renderer, image, &truth, &error))
+    if (!tl_truth_compare(checked->frame, checked->settings, checked->renderer, images,
+                          checked->in_motion ? 2 : 1, &truth, &error))
         truth = (struct tl_truth){
             .error = NAN, .mean_error = NAN, .garment_error = NAN, .tile_error = NAN, .patch_error = NAN};
     return truth;
@@ -219,15 +221,11 @@ static struct tl_truth compare(const struct tl_checked *checked, const tl_image 
 int tl_check_frame(const struct tl_checked *frame, struct tl_verdicts *verdicts, struct tl_finding *broken)
 {
     struct tl_checked checked = *frame;
-    struct tl_truth truth, in_motion;
+    struct tl_truth truth;
     int first_broken = -1;
     if (checked.image && checked.is_sampled && !checked.is_reduced &&
         tl_truth_is_comparable(checked.settings)) {
-        truth = compare(&checked, checked.image);
-        if (checked.in_motion) {
-            in_motion = compare(&checked, checked.in_motion);
-            tl_truth_worst(&truth, &in_motion);
-        }
+        truth = compare(&checked);
         checked.truth = &truth;
     }
     for (size_t i = 0; i < tl_invariant_count; i++) {

@@ -23,7 +23,6 @@ static const struct effort quick = {.strata = 8, .lobe_samples = 1},
 enum { STRATA_MAX = 48 };
 
 struct comparison {
-    const tl_image *image;
     struct tl_reference_scene scene;
     struct tl_view view;
     int width, height, side; /* pixels; samples along one of them */
@@ -32,6 +31,7 @@ struct comparison {
     float *cover;               /* [height][width] the reference's, by quick rays */
     const tl_material *garment; /* materials of the last surface */
     size_t garment_materials;
+    struct tile_light **thorough; /* of each tile that was traced with many rays so far; else NULL */
 };
 
 /* The light of a tile, by pixel, replicate and channel. */
@@ -229,10 +229,9 @@ static void add_channels(const struct channel_sums *from, struct channel_sums *t
 }
 
 /* Pixels of a tile share the rays' directions, so that the noise of their sum is that of whole replicates. */
-static struct tile_sums compare_tile(const struct comparison *comparison, int tile,
+static struct tile_sums compare_tile(const struct comparison *comparison, const tl_image *image, int tile,
                                      const struct tile_light *light)
 {
-    const tl_image *image = comparison->image;
     int left = tile % comparison->tiles_x * TILE, top = tile / comparison->tiles_x * TILE;
     struct tile_sums sums = {.worst = -1};
     double whole[2][REPLICATES][3] = {{{0}}}; /* without and with the garment */
@@ -258,10 +257,20 @@ static struct tile_sums compare_tile(const struct comparison *comparison, int ti
     return sums;
 }
 
-static struct tile_sums trace_and_compare(const struct comparison *comparison, int tile, struct effort effort)
+/* The tiles' light of many rays. It is the same for every image and each list of suspects, which share most
+ * tiles. */
+static void trace_thoroughly(const struct comparison *comparison, const int *tiles, int count)
 {
-    struct tile_light light = trace_tile(comparison, tile, effort);
-    return compare_tile(comparison, tile, &light);
+    int needed[SUSPECTS], needed_count = 0;
+    assert(count <= SUSPECTS);
+    for (int i = 0; i < count; i++)
+        if (!comparison->thorough[tiles[i]]) {
+            comparison->thorough[tiles[i]] = TL_NEW(struct tile_light);
+            needed[needed_count++] = tiles[i];
+        }
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < needed_count; i++)
+        *comparison->thorough[needed[i]] = trace_tile(comparison, needed[i], thorough);
 }
 
 /* ---- All tiles ---- */
@@ -279,9 +288,9 @@ static void keep_cover(const struct comparison *comparison, int tile, const stru
 /* How far the image's outlines lie from the reference's, in pixels: the displacement d that explains the
  * difference of coverages best, image - reference = -d . gradient, by least squares over all pixels [Lucas
  * and Kanade 1981]. Returns false where outlines do not run in two directions. */
-static bool find_displacement(const struct comparison *comparison, vec2s *out)
+static bool find_displacement(const struct comparison *comparison, const tl_image *image, vec2s *out)
 {
-    const float *got = tl_image_floats(comparison->image) + 3, *cover = comparison->cover;
+    const float *got = tl_image_floats(image) + 3, *cover = comparison->cover;
     double xx = 0, xy = 0, yy = 0, x_off = 0, y_off = 0;
     int width = comparison->width;
     for (int y = 1; y + 1 < comparison->height; y++)
@@ -364,35 +373,43 @@ static int tile_of_block(const struct comparison *comparison, int block, int i)
     return block + i % 2 + i / 2 * comparison->tiles_x;
 }
 
-/* Few rays are too noisy to tell which tile or block is the worst: those that seem to be are traced again. */
-static void find_worst_tile(const struct comparison *comparison, struct suspect *suspects, int count,
-                            const struct tile_sums *whole, struct tl_truth *out)
+static double thorough_error(const struct comparison *comparison, const tl_image *image, int tile,
+                             const struct tile_sums *whole)
 {
-    int again = count < SUSPECTS ? count : SUSPECTS;
+    struct tile_sums sums = compare_tile(comparison, image, tile, comparison->thorough[tile]);
+    return tile_error(&sums, whole, 3);
+}
+
+/* Few rays are too noisy to tell which tile or block is the worst: those that seem to be are traced again. */
+static void find_worst_tile(const struct comparison *comparison, const tl_image *image,
+                            struct suspect *suspects, int count, const struct tile_sums *whole,
+                            struct tl_truth *out)
+{
+    int again = count < SUSPECTS ? count : SUSPECTS, tiles[SUSPECTS];
     qsort(suspects, (size_t)count, sizeof *suspects, by_error);
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < again; i++) {
-        struct tile_sums sums = trace_and_compare(comparison, suspects[i].tile, thorough);
-        suspects[i].error = tile_error(&sums, whole, 3);
-    }
+    for (int i = 0; i < again; i++)
+        tiles[i] = suspects[i].tile;
+    trace_thoroughly(comparison, tiles, again);
+    for (int i = 0; i < again; i++)
+        suspects[i].error = thorough_error(comparison, image, tiles[i], whole);
     qsort(suspects, (size_t)again, sizeof *suspects, by_error);
     out->tile_error = suspects[0].error;
     out->tile_x = suspects[0].tile % comparison->tiles_x * TILE + TILE / 2;
     out->tile_y = suspects[0].tile / comparison->tiles_x * TILE + TILE / 2;
 }
 
-static void find_worst_block(const struct comparison *comparison, struct suspect *suspects, int count,
-                             const struct tile_sums *whole, struct tl_truth *out)
+static void find_worst_block(const struct comparison *comparison, const tl_image *image,
+                             struct suspect *suspects, int count, const struct tile_sums *whole,
+                             struct tl_truth *out)
 {
-    int again = count < SUSPECTS / 4 ? count : SUSPECTS / 4;
+    int again = count < SUSPECTS / 4 ? count : SUSPECTS / 4, tiles[SUSPECTS];
     double errors[SUSPECTS];
     qsort(suspects, (size_t)count, sizeof *suspects, by_error);
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < 4 * again; i++) {
-        struct tile_sums sums =
-            trace_and_compare(comparison, tile_of_block(comparison, suspects[i / 4].tile, i % 4), thorough);
-        errors[i] = tile_error(&sums, whole, 3);
-    }
+    for (int i = 0; i < 4 * again; i++)
+        tiles[i] = tile_of_block(comparison, suspects[i / 4].tile, i % 4);
+    trace_thoroughly(comparison, tiles, 4 * again);
+    for (int i = 0; i < 4 * again; i++)
+        errors[i] = thorough_error(comparison, image, tiles[i], whole);
     for (int i = 0; i < again; i++)
         suspects[i].error = least_of(&errors[4 * i]);
     qsort(suspects, (size_t)again, sizeof *suspects, by_error);
@@ -401,14 +418,14 @@ static void find_worst_block(const struct comparison *comparison, struct suspect
     out->patch_y = again > 0 ? (suspects[0].tile / comparison->tiles_x + 1) * TILE : 0;
 }
 
-static void find_worst(const struct comparison *comparison, const struct tile_sums *tiles,
-                       const struct tile_sums *whole, struct tl_truth *out)
+static void find_worst(const struct comparison *comparison, const tl_image *image,
+                       const struct tile_sums *tiles, const struct tile_sums *whole, struct tl_truth *out)
 {
     int count = comparison->tiles_x * comparison->tiles_y, blocks = 0;
     struct suspect *suspects = TL_NEW_ARRAY(struct suspect, (size_t)count);
     for (int i = 0; i < count; i++)
         suspects[i] = (struct suspect){tile_error(&tiles[i], whole, 1), i};
-    find_worst_tile(comparison, suspects, count, whole, out);
+    find_worst_tile(comparison, image, suspects, count, whole, out);
     for (int y = 0; y + 1 < comparison->tiles_y; y++)
         for (int x = 0; x + 1 < comparison->tiles_x; x++) {
             int block = y * comparison->tiles_x + x;
@@ -417,75 +434,28 @@ static void find_worst(const struct comparison *comparison, const struct tile_su
                 errors[i] = tile_error(&tiles[tile_of_block(comparison, block, i)], whole, 1);
             suspects[blocks++] = (struct suspect){least_of(errors), block};
         }
-    find_worst_block(comparison, suspects, blocks, whole, out);
+    find_worst_block(comparison, image, suspects, blocks, whole, out);
     free(suspects);
 }
 
-static void compare(const struct comparison *comparison, struct tl_truth *out)
+static struct tl_truth judge(const struct comparison *comparison, const tl_image *image,
+                             const struct tile_sums *tiles)
 {
-    int count = comparison->tiles_x * comparison->tiles_y;
-    struct tile_sums *tiles = TL_NEW_ARRAY(struct tile_sums, (size_t)count), whole;
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < count; i++) {
-        struct tile_light light = trace_tile(comparison, i, quick);
-        tiles[i] = compare_tile(comparison, i, &light);
-        keep_cover(comparison, i, &light);
-    }
-    add_all(tiles, count, &whole);
-    out->has_outlines = find_displacement(comparison, &out->displacement);
+    struct tl_truth out = {0};
+    struct tile_sums whole;
+    add_all(tiles, comparison->tiles_x * comparison->tiles_y, &whole);
+    out.has_outlines = find_displacement(comparison, image, &out.displacement);
     if (whole.count > 0) {
         double values = 3.0 * whole.count, square = (whole.square - whole.variance) / values;
         double mean = (whole.all.light[0] + whole.all.light[1] + whole.all.light[2]) / values;
-        out->error = square <= 0 ? 0 : sqrt(square) / mean;
-        out->mean_error = worst_channel(&whole.all, whole.all.light, 3);
-        out->garment_error = worst_channel(&whole.garment, whole.garment.light, 3);
-        out->worst_x = whole.worst_pixel % comparison->width;
-        out->worst_y = whole.worst_pixel / comparison->width;
-        find_worst(comparison, tiles, &whole, out);
+        out.error = square <= 0 ? 0 : sqrt(square) / mean;
+        out.mean_error = worst_channel(&whole.all, whole.all.light, 3);
+        out.garment_error = worst_channel(&whole.garment, whole.garment.light, 3);
+        out.worst_x = whole.worst_pixel % comparison->width;
+        out.worst_y = whole.worst_pixel / comparison->width;
+        find_worst(comparison, image, tiles, &whole, &out);
     }
-    free(tiles);
-}
-
-bool tl_truth_is_comparable(const struct tl_render_settings *settings)
-{
-    return settings->light.method == TL_METHOD_PEM && settings->image.view == TL_VIEW_LIGHT;
-}
-
-/* The materials of the frame's last surface. */
-static void find_garment(const tl_frame *frame, struct comparison *comparison)
-{
-    const tl_surface *garment = &frame->surfaces[frame->surface_count - 1];
-    comparison->garment = garment->materials;
-    for (size_t p = 0; p < garment->part_count; p++) {
-        size_t needed = (size_t)garment->parts[p].material + 1;
-        if (needed > comparison->garment_materials)
-            comparison->garment_materials = needed;
-    }
-}
-
-bool tl_truth_compare(const tl_frame *frame, const struct tl_render_settings *settings,
-                      const tl_renderer *renderer, const tl_image *image, struct tl_truth *out,
-                      tl_error *error)
-{
-    const struct tl_ground *ground = tl_ground_drawn(tl_renderer_frame_resources(renderer));
-    const struct tl_reference_request request = tl_frame_reference_request(frame, settings, ground);
-    struct comparison comparison = {.image = image,
-                                    .view = tl_view_make(&frame->camera, image->width, image->height),
-                                    .width = image->width,
-                                    .height = image->height,
-                                    .side = settings->image.supersample,
-                                    .tiles_x = (image->width + TILE - 1) / TILE,
-                                    .tiles_y = (image->height + TILE - 1) / TILE,
-                                    .bounces = request.bounces};
-    *out = (struct tl_truth){0};
-    find_garment(frame, &comparison);
-    if (!tl_reference_scene_make(&request, &comparison.scene, error))
-        return false;
-    comparison.cover = TL_NEW_ARRAY(float, (size_t)image->width *(size_t)image->height);
-    compare(&comparison, out);
-    free(comparison.cover);
-    tl_reference_scene_release(&comparison.scene);
-    return true;
+    return out;
 }
 
 /* A NaN is worse than any number. */
@@ -494,7 +464,8 @@ static bool is_worse(double a, double b)
     return isnan(a) || a > b;
 }
 
-void tl_truth_worst(struct tl_truth *a, const struct tl_truth *b)
+/* Keeps the worse of both in `a`, figure by figure. */
+static void keep_worse(struct tl_truth *a, const struct tl_truth *b)
 {
     if (is_worse(b->error, a->error)) {
         a->error = b->error;
@@ -518,4 +489,72 @@ void tl_truth_worst(struct tl_truth *a, const struct tl_truth *b)
     }
     a->mean_error = is_worse(b->mean_error, a->mean_error) ? b->mean_error : a->mean_error;
     a->garment_error = is_worse(b->garment_error, a->garment_error) ? b->garment_error : a->garment_error;
+}
+
+static void compare(const struct comparison *comparison, const tl_image *const *images, int image_count,
+                    struct tl_truth *out)
+{
+    int count = comparison->tiles_x * comparison->tiles_y;
+    struct tile_sums *tiles = TL_NEW_ARRAY(struct tile_sums, (size_t)count * (size_t)image_count);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < count; i++) {
+        struct tile_light light = trace_tile(comparison, i, quick);
+        for (int k = 0; k < image_count; k++)
+            tiles[k * count + i] = compare_tile(comparison, images[k], i, &light);
+        keep_cover(comparison, i, &light);
+    }
+    for (int k = 0; k < image_count; k++) {
+        struct tl_truth one = judge(comparison, images[k], tiles + (ptrdiff_t)k * count);
+        if (k == 0)
+            *out = one;
+        else
+            keep_worse(out, &one);
+    }
+    free(tiles);
+}
+
+bool tl_truth_is_comparable(const struct tl_render_settings *settings)
+{
+    return settings->light.method == TL_METHOD_PEM && settings->image.view == TL_VIEW_LIGHT;
+}
+
+/* The materials of the frame's last surface. */
+static void find_garment(const tl_frame *frame, struct comparison *comparison)
+{
+    const tl_surface *garment = &frame->surfaces[frame->surface_count - 1];
+    comparison->garment = garment->materials;
+    for (size_t p = 0; p < garment->part_count; p++) {
+        size_t needed = (size_t)garment->parts[p].material + 1;
+        if (needed > comparison->garment_materials)
+            comparison->garment_materials = needed;
+    }
+}
+
+bool tl_truth_compare(const tl_frame *frame, const struct tl_render_settings *settings,
+                      const tl_renderer *renderer, const tl_image *const *images, int image_count,
+                      struct tl_truth *out, tl_error *error)
+{
+    const struct tl_ground *ground = tl_ground_drawn(tl_renderer_frame_resources(renderer));
+    const struct tl_reference_request request = tl_frame_reference_request(frame, settings, ground);
+    int width = images[0]->width, height = images[0]->height;
+    struct comparison comparison = {.view = tl_view_make(&frame->camera, width, height),
+                                    .width = width,
+                                    .height = height,
+                                    .side = settings->image.supersample,
+                                    .tiles_x = (width + TILE - 1) / TILE,
+                                    .tiles_y = (height + TILE - 1) / TILE,
+                                    .bounces = request.bounces};
+    size_t tile_count = (size_t)comparison.tiles_x * (size_t)comparison.tiles_y;
+    find_garment(frame, &comparison);
+    if (!tl_reference_scene_make(&request, &comparison.scene, error))
+        return false;
+    comparison.cover = TL_NEW_ARRAY(float, (size_t)width *(size_t)height);
+    comparison.thorough = TL_NEW_ARRAY(struct tile_light *, tile_count);
+    compare(&comparison, images, image_count, out);
+    for (size_t i = 0; i < tile_count; i++)
+        free(comparison.thorough[i]);
+    free(comparison.thorough);
+    free(comparison.cover);
+    tl_reference_scene_release(&comparison.scene);
+    return true;
 }

@@ -33,12 +33,11 @@ struct tl_truth {
  * shadows out or replace them by one number. */
 bool tl_truth_is_comparable(const struct tl_render_settings *settings);
 
-/* Compares an image of a frame that `renderer` has drawn with these settings, or with others that only draw
- * it another way. Errors: false with TL_DEVICE if the reference's BVH cannot be built. */
+/* Compares images of one size and of one frame that `renderer` has drawn with these settings, or with others
+ * that only draw it another way. The reference is traced once for all. `out`: each figure of the image that
+ * has it worst. Errors: false with TL_DEVICE if the reference's BVH cannot be built. */
 bool tl_truth_compare(const tl_frame *frame, const struct tl_render_settings *settings,
-                      const tl_renderer *renderer, const tl_image *image, struct tl_truth *out,
-                      tl_error *error);
-/* Keeps the worse of both in `a`, figure by figure. */
-void tl_truth_worst(struct tl_truth *a, const struct tl_truth *b);
+                      const tl_renderer *renderer, const tl_image *const *images, int image_count,
+                      struct tl_truth *out, tl_error *error);
 
 #endif
