@@ -5,7 +5,7 @@ set -eu
 . "$(dirname "$0")/cli.sh"
 export XDG_CACHE_HOME=$room/cache
 
-render() { "$TOILE" render --preset draft --size 24x32 --set cloth.edge_m=0.05 -o "$1.exr" "${@:2}" 2>"$1.log"; }
+render() { "$TOILE" render --preset draft --size 24x32 --set cloth.edge_m=0.08 --set cloth.settle_s=0.1 $cheap_light -o "$1.exr" "${@:2}" 2>"$1.log"; }
 count() { "$TOILE" cache --json | grep -c '"used_unix_s"' || true; }
 check "nothing is kept at first" [ "$(count)" = 0 ]
 render first
