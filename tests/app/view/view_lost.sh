@@ -4,7 +4,7 @@
 set -eu
 . "$(dirname "$0")/view_room.sh"
 
-small="--preset draft --garment sheet --avatar ball --fabric none --set cloth.settle_s=0.2 --set light.regions=24 --set light.pem_size=16"
+small="--preset draft --garment sheet --avatar ball --fabric none --set cloth.settle_s=0.2 $cheap_light"
 start() {
     : >log
     $TOILE view $small --verbose --screenshots shots >out 2>log &
@@ -19,17 +19,18 @@ ended() {
     viewer=
 }
 
+small_window
 open_display
 start
 ! grep -q recovered log || fail "recovered without a reason"
 steps=0
 for way in KILL HUP TERM INT display; do
-    for i in 1 2 3; do # each is a step, once its gesture is over
+    for i in 1 2; do # each is a step, once its gesture is over
         press v "view: shows"
         sleep 1.5
     done
-    steps=$((steps + 3))
-    drag 1 450 300 $((500 + steps)) 320 # the camera: no step, but kept
+    steps=$((steps + 2))
+    drag 1 200 200 $((250 + steps)) 220 # the camera: no step, but kept
     sleep 1.5
     if [ $way = display ]; then
         kill -9 $display
