@@ -5,12 +5,12 @@ set -eu
 . "$(dirname "$0")/view_room.sh"
 [ -n "${DROP:-}" ] || { echo "skipped: built without X11's headers (libx11-dev), there is nothing to drop with"; exit 77; }
 
-fast="--preset draft --set cloth.edge_m=0.08 --set light.regions=24 --set light.pem_size=16"
+fast="--preset draft --set cloth.edge_m=0.08 $cheap_light"
 $TOILE render $fast --size 64x32 --quiet -o light.exr # any picture is an environment
 $TOILE export $fast --set image.ground=false --avatar none --garment skirt --quiet -o skirt.obj
 $TOILE export $fast --set image.ground=false --avatar none --garment skirt.obj --set cloth.substeps=4 --set cloth.longest_edge_m=0 --frames 0:1 --quiet -o skirt.pc2
 printf 'material: {diffuse: [0.1, 0.2, 0.3], glossiness: 0.4}\n' >"bleu é 100%.yaml"
-printf 'scene: {garment: dress, preset: draft}\ncloth: {edge_m: 0.08}\nlight: {regions: 24, pem_size: 16}\n' >scene.yaml
+printf 'scene: {garment: dress, preset: draft}\ncloth: {edge_m: 0.08}\nlight: {regions: 24, pem_size: 16, rounds: 4, bounce: off}\n' >scene.yaml
 echo "material: [" >broken.yaml
 echo "no light" >broken.exr
 echo "no model" >broken.glb
@@ -25,9 +25,10 @@ printf '{"schema": "1.1"' >cut.u3m
 echo '{"pattern": {"panels": {}}}' >panels.json # is read as a pattern, not as measurements
 $TOILE fabric satin -o own/ --quiet
 
+small_window
 open_display
 : >log
-PATH=$PWD/bin:/nonexistent $(command -v "$TOILE" || echo "$TOILE") view $fast --fresh >out 2>log &
+PATH=$PWD/bin:/nonexistent $(command -v "$TOILE" || echo "$TOILE") view $fast >out 2>log &
 viewer=$!
 logged "view: ready"
 window=$(xdotool search --pid "$viewer" | tail -n 1)
