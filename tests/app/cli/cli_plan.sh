@@ -30,7 +30,7 @@ without() { # NAME "JOBS" "WITH" "WITHOUT"
 }
 without gloss "" "--fabric satin" \
     "--fabric satin --set material.model=phong --set material.glossiness=0 --set material.specular=0,0,0"
-without detail "detail" "--fabric denim --set detail.shadow=horizon" "--fabric none"
+without detail "detail" "--fabric denim --set detail.mode=parallax" "--fabric none"
 without lamps "lamps lamp_rays" "--set lamp.kind=point" "--set lamp.kind=none"
 without ground "" "--set image.ground=true" "--set image.ground=false"
 without shadows "points lights" "--method pem" "--method unshadowed"
