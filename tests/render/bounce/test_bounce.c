@@ -1,5 +1,7 @@
 /* Bounced light as drawn against the reference's: a waved sheet before a red wall, of several materials, lit
- * by a sky at samples and at vertices; and by a wall that shines, by a lamp, over the ground. */
+ * by a sky at samples and at vertices; and by a wall that shines, by a lamp, over the ground. References are
+ * kept: TOILE_MAKE_REFERENCES=1 build/release/tests/render/test_bounce traces them again. */
+#include "tests/render/kept_reference.h"
 #include "tests/render/scenes.h"
 
 #include "config/base/memory.h"
@@ -7,15 +9,16 @@
 
 #include "tests/testing.h"
 
-#define SIZE 40
+#define SIZE   40
+#define CELLS  32 /* a side of the sheet: eight a wave and more */
+#define ROUNDS 16
 
-static tl_image reference_of(struct test_scene *scene)
+static tl_image trace_reference(struct test_scene *scene)
 {
     tl_error error = {0};
     struct tl_reference_report report;
     tl_image image;
     struct tl_ground ground;
-    test_scene_refresh(scene);
     scene->settings.reference.strata = 512;
     scene->settings.reference.replicates = 8;
     if (scene->settings.image.ground) {
@@ -79,25 +82,37 @@ static struct test_scene *fold_scene(test_radiance *sky, void (*make)(tl_materia
     struct test_scene *scene = TL_NEW(struct test_scene);
     test_scene_open(scene, test_environment(64, 32, sky), (vec3s){{0.7f, 1.2f, 1.3f}}, (vec3s){{0, 0.2f, 0}},
                     40, SIZE, SIZE);
-    test_scene_use_rays(scene, 192, 32);
+    test_scene_use_rays(scene, 192, ROUNDS);
     scene->settings.reference.bounce_samples = 32;
     scene->frame.still = true;
-    make(test_scene_add(scene, test_sheet(0.2f, 0.5f, 0.12f, 2, 48)));
-    tl_material *wall = test_scene_add(
-        scene, test_square((vec3s){{0, 0.55f, -0.5f}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.5f, 24));
+    make(test_scene_add(scene, test_sheet(0.2f, 0.5f, 0.12f, 2, CELLS)));
+    tl_material *wall = test_scene_add(scene, test_square((vec3s){{0, 0.55f, -0.5f}}, (vec3s){{1, 0, 0}},
+                                                          (vec3s){{0, 0, 1}}, 0.5f, CELLS / 2));
     make_matt(wall);
     wall->diffuse = (vec3s){{0.8f, 0.05f, 0.05f}};
     return scene;
 }
 
+enum {
+    AT_SAMPLES_ONLY = 1 << TL_RATIO_AT_SAMPLES,
+    AT_VERTICES_ONLY = 1 << TL_RATIO_AT_VERTICES,
+    AT_BOTH = 3
+};
+
 /* What is missing of the mean, by channel, without bounces, and what is wrong with them: at most a share
  * `bound` of it; and of the image's error. Frees the scene. */
 static void check(struct test_device *device, struct test_scene *scene, const char *name, int bounce,
-                  bool at_vertices, double bound)
+                  int places, double bound)
 {
+    char reference[64];
+    snprintf(reference, sizeof reference, "bounce_%s%s", name, bounce == TL_BOUNCE_ONE ? "_one" : "");
+    test_scene_refresh(scene);
     scene->settings.light.bounce = bounce;
-    tl_image exact = reference_of(scene);
-    for (int ratio_at = TL_RATIO_AT_SAMPLES; ratio_at <= (int)at_vertices; ratio_at++) {
+    tl_image exact =
+        kept_reference(reference, scene, scene->shapes[0].light_mesh.from ? NULL : trace_reference);
+    for (int ratio_at = TL_RATIO_AT_SAMPLES; ratio_at <= TL_RATIO_AT_VERTICES; ratio_at++) {
+        if (!(places & 1 << ratio_at))
+            continue;
         scene->settings.light.ratio_at = ratio_at;
         scene->settings.light.bounce = TL_BOUNCE_OFF;
         tl_image off = test_scene_draw(scene, device->renderer);
@@ -105,8 +120,8 @@ static void check(struct test_device *device, struct test_scene *scene, const ch
         tl_image on = test_scene_draw(scene, device->renderer);
         double without = test_compare(&off, &exact).rel_rmse, with = test_compare(&on, &exact).rel_rmse;
         printf("%-8s %s, at %s: relative RMSE %.2f %% without, %.2f %% with; means", name,
-               bounce == TL_BOUNCE_ONE ? "one" : "all", ratio_at ? "vertices" : "samples", 100 * without,
-               100 * with);
+               bounce == TL_BOUNCE_ONE ? "one" : "all",
+               ratio_at == TL_RATIO_AT_VERTICES ? "vertices" : "samples", 100 * without, 100 * with);
         bool good = with < 2 * bound * without; /* it holds the noise of both */
         for (int c = 0; c < 3; c++) {
             double truth = mean_of(&exact, c), lacking = truth - mean_of(&off, c);
@@ -131,29 +146,30 @@ static void check(struct test_device *device, struct test_scene *scene, const ch
 
 static void test_sky(void **state)
 {
-    check(*state, fold_scene(test_daylight, make_matt), "matt", TL_BOUNCE_ONE, true, MATT);
-    check(*state, fold_scene(test_daylight, make_matt), "matt", TL_BOUNCE_ALL, true, MATT);
-    check(*state, fold_scene(test_daylight, make_glossy), "glossy", TL_BOUNCE_ALL, true, GLOSSY);
-    check(*state, fold_scene(test_daylight, make_ward), "ward", TL_BOUNCE_ALL, true, GLOSSY);
-    check(*state, fold_scene(test_daylight, make_fuzzy), "fuzz", TL_BOUNCE_ALL, true, GLOSSY);
+    check(*state, fold_scene(test_daylight, make_matt), "matt", TL_BOUNCE_ONE, AT_BOTH, MATT);
+    check(*state, fold_scene(test_daylight, make_matt), "matt", TL_BOUNCE_ALL, AT_BOTH, MATT);
+    check(*state, fold_scene(test_daylight, make_glossy), "glossy", TL_BOUNCE_ALL, AT_BOTH, GLOSSY);
+    check(*state, fold_scene(test_daylight, make_ward), "ward", TL_BOUNCE_ALL, AT_BOTH, GLOSSY);
+    check(*state, fold_scene(test_daylight, make_fuzzy), "fuzz", TL_BOUNCE_ALL, AT_BOTH, GLOSSY);
 }
 
 /* Light passes the sheet's holes and its threads, both ways. When it did neither, voile was a fifth too dark.
  */
 static void test_sheer(void **state)
 {
-    check(*state, fold_scene(test_daylight, make_sheer), "sheer", TL_BOUNCE_ALL, true, MATT);
+    check(*state, fold_scene(test_daylight, make_sheer), "sheer", TL_BOUNCE_ALL, AT_BOTH, MATT);
 }
 
-/* Cloth that is drawn smoothly keeps its light at its own vertices; the others have the mean of theirs. */
+/* Cloth that is drawn smoothly keeps its light at its own vertices; the others have the mean of theirs. The
+ * references are those of the same cloth unsplit. */
 static void test_split(void **state)
 {
     struct test_scene *scene = fold_scene(test_daylight, make_matt);
-    test_shape_split(&scene->shapes[0], 48);
-    check(*state, scene, "split", TL_BOUNCE_ALL, true, MATT);
+    test_shape_split(&scene->shapes[0], CELLS);
+    check(*state, scene, "matt", TL_BOUNCE_ALL, AT_VERTICES_ONLY, MATT);
     scene = fold_scene(test_daylight, make_sheer);
-    test_shape_split(&scene->shapes[0], 48);
-    check(*state, scene, "split", TL_BOUNCE_ALL, true, MATT);
+    test_shape_split(&scene->shapes[0], CELLS);
+    check(*state, scene, "sheer", TL_BOUNCE_ALL, AT_BOTH, MATT);
 }
 
 static void test_shining_wall(void **state)
@@ -161,7 +177,7 @@ static void test_shining_wall(void **state)
     struct test_scene *scene = fold_scene(test_black, make_matt);
     scene->settings.reference.bounce_samples = 128;
     scene->shapes[1].material.emission = (vec3s){{1, 0.5f, 0.25f}};
-    check(*state, scene, "emission", TL_BOUNCE_ALL, false, MATT);
+    check(*state, scene, "emission", TL_BOUNCE_ALL, AT_SAMPLES_ONLY, MATT);
 }
 
 static void test_lamp(void **state)
@@ -169,7 +185,7 @@ static void test_lamp(void **state)
     struct test_scene *scene = fold_scene(test_black, make_matt);
     scene->lamps[0] = test_lamp_at((vec3s){{0.2f, 0.9f, 0.1f}}, 2);
     scene->frame.lamp_count = 1;
-    check(*state, scene, "lamp", TL_BOUNCE_ALL, false, MATT);
+    check(*state, scene, "lamp", TL_BOUNCE_ALL, AT_SAMPLES_ONLY, MATT);
 }
 
 static double mean_in(struct test_device *device, struct test_scene *scene, int bounce)
@@ -300,12 +316,12 @@ static void test_ground(void **state)
     struct test_scene *scene = TL_NEW(struct test_scene);
     test_scene_open(scene, test_environment(64, 32, test_daylight), (vec3s){{0.3f, 0.35f, 1.6f}},
                     (vec3s){{0, 0.35f, 0}}, 25, SIZE, SIZE);
-    test_scene_use_rays(scene, 192, 32);
+    test_scene_use_rays(scene, 192, ROUNDS);
     scene->settings.reference.bounce_samples = 32;
     scene->frame.still = true;
     scene->settings.image.ground = true;
     make_matt(test_scene_add(scene, test_sphere((vec3s){{0, 0.4f, 0}}, 0.3f, 32)));
-    check(*state, scene, "ground", TL_BOUNCE_ALL, true, MATT);
+    check(*state, scene, "ground", TL_BOUNCE_ALL, AT_BOTH, MATT);
 }
 
 int main(void)
