@@ -8,14 +8,14 @@
 
 #include <stdio.h>
 
-/* The hand moves a sixth of a sheet with edges of 0.5 mm per frame: six edges. It yields if it strains an
+/* The hand moves a quarter of a sheet with edges of 0.5 mm per frame: six edges. It yields if it strains an
  * edge by more than TL_HAND_STRAIN; the next edges may strain as much. The cloth has to follow all the same:
  * at once if a step is solved exactly, else as fast as one sweep per substep passes the pull on (measured: 31
  * to 45 mm of 50 during the motion, then oscillating about the hand). */
 static void fine_cloth_follows_the_hand(void **state)
 {
     (void)state;
-    const struct sheet_shape shape = {40, 40, 0.02, 0.02};
+    const struct sheet_shape shape = {24, 24, 0.012, 0.012};
     const int solvers[] = {TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE}, moving = 15, waiting = 45;
     const float way_m = 0.05f;
     for (size_t s = 0; s < TL_COUNT(solvers); s++) {
