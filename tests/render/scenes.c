@@ -2,6 +2,7 @@
 
 #include "assets/weave/weave.h"
 #include "config/base/memory.h"
+#include "config/cache/cache.h"
 #include "render/brdf/brdf.h"
 #include "render/reference/shading_point.h"
 #include "render/scene/view.h"
@@ -244,6 +245,8 @@ int test_device_open(void **state)
     tl_error error = {0};
     struct test_device *device = TL_NEW(struct test_device);
     *state = device;
+    device->cache = tl_format("%s/maps_%ld", TOILE_SCRATCH_DIR, (long)getpid());
+    tl_cache_use(device->cache, TL_CACHE_LIMIT_BYTES);
     device->gpu = tl_gpu_create_headless(&error);
     if (device->gpu)
         device->renderer = tl_renderer_create(device->gpu, &error);
@@ -258,6 +261,10 @@ int test_device_close(void **state)
     tl_renderer_destroy(&device->renderer);
     size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_texture_bytes(device->gpu);
     tl_gpu_destroy(&device->gpu);
+    tl_cache_use(NULL, 0);
+    tl_cache_clear(device->cache);
+    rmdir(device->cache);
+    free(device->cache);
     free(device);
     if (messages || bytes)
         print_error("%zu GL messages, %zu bytes of textures left\n", messages, bytes);

@@ -49,10 +49,12 @@ const float *test_pixel(const tl_image *image, int x, int y);
 double test_brightest(const tl_image *image);
 
 /* cmocka group setup and teardown: one headless context and renderer; teardown fails when GL logged a
- * message. */
+ * message. Maps of environments are kept in a folder of this process, so that cases that share an environment
+ * compute them once. */
 struct test_device {
     tl_gpu *gpu;
     tl_renderer *renderer;
+    char *cache; /* the folder */
 };
 int test_device_open(void **state);
 int test_device_close(void **state);

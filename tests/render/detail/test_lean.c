@@ -214,7 +214,7 @@ static double highlight_error(tl_renderer *renderer, enum test_path path, const 
     lit_behind = pose->is_back;
     for (lit_diagonal = 0; lit_diagonal < 2; lit_diagonal++) {
         struct test_scene scene;
-        test_scene_open(&scene, test_environment(512, 256, path >= BY_LAMP ? test_black : wide_lamp),
+        test_scene_open(&scene, test_environment(256, 128, path >= BY_LAMP ? test_black : wide_lamp),
                         (vec3s){{0, 0, 1}}, (vec3s){{0, 0, 0}}, 30, NEAR_SIZE, NEAR_SIZE);
         be_grooved(&scene, pose);
         test_path_set(&scene, path, posed(lit_from(lit_diagonal, LIGHT_DEG)));
