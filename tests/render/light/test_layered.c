@@ -251,23 +251,24 @@ static void test_extremes(void **state)
     };
     const float glossinesses[] = {0, 0.5f, 1};
     for (size_t i = 0; i < TL_COUNT(extremes); i++)
-        for (size_t g = 0; g < TL_COUNT(glossinesses); g++)
+        for (size_t g = 0; g < TL_COUNT(glossinesses); g++) {
+            const int methods[] = {TL_METHOD_PEM, TL_METHOD_UNSHADOWED, TL_METHOD_REFERENCE};
+            struct test_scene scene;
+            scene_open(&scene, daylight);
+            set_feature(&extremes[i], &scene.shapes[0].material);
+            scene.shapes[0].material.glossiness = glossinesses[g];
+            scene.shapes[0].material.coat_glossiness = glossinesses[g];
+            scene.shapes[0].material.coat = 1;
+            scene.settings.light.rounds = 1;
+            scene.settings.reference.strata = 16;
+            scene.settings.reference.replicates = 1;
             for (int m = 0; m < 3; m++) {
-                const int methods[] = {TL_METHOD_PEM, TL_METHOD_UNSHADOWED, TL_METHOD_REFERENCE};
-                struct test_scene scene;
-                scene_open(&scene, daylight);
-                set_feature(&extremes[i], &scene.shapes[0].material);
-                scene.shapes[0].material.glossiness = glossinesses[g];
-                scene.shapes[0].material.coat_glossiness = glossinesses[g];
-                scene.shapes[0].material.coat = 1;
-                scene.settings.light.rounds = 1;
-                scene.settings.reference.strata = 16;
-                scene.settings.reference.replicates = 1;
                 tl_image image = draw(device->renderer, &scene, methods[m]);
                 check_sane(&image, extremes[i].name);
                 tl_image_release(&image);
-                test_scene_close(&scene);
             }
+            test_scene_close(&scene);
+        }
 }
 
 int main(void)
