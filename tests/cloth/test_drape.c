@@ -72,7 +72,7 @@ static double drape_coefficient(const char *name)
     struct tl_cloth_fabric fabric = fabric_read(name);
     double sum = 0;
     for (int seed = 0; seed < seeds; seed++)
-        sum += drape_once(&fabric, 0.008, seed).coefficient / seeds;
+        sum += drape_once(&fabric, 0.010, seed).coefficient / seeds;
     printf("%s: DC %.1f %%\n", name, sum);
     return sum;
 }
