@@ -61,7 +61,7 @@ static float true_value(const struct stage *stage, size_t sample, int corner, in
 static double measure_error(const struct stage *stage, int ray_count)
 {
     double sum = 0, all = 0;
-    for (size_t s = 0; s < stage->samples.count; s += 23)
+    for (size_t s = 0; s < stage->samples.count; s += 47)
         for (int corner = 0; corner < 3; corner++)
             for (int i = 0; i < stage->regions.count; i++) {
                 float arriving, truth = true_value(stage, s, corner, i, ray_count, &arriving);
