@@ -6,15 +6,21 @@
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/experiments/picture.h"
 #include "app/scene/session.h"
+#include "config/cache/cache.h"
 
 #include <string.h>
 
 #define SIDE 64
+#define CACHE                                                                                                \
+    TOILE_SCRATCH_DIR "/golden_cache" /* of this run: many pictures show one drape, under one sky            \
+                                       */
 
 static int open_device(void **state)
 {
     tl_error error = {0};
     tl_gpu *gpu = tl_gpu_create_headless(&error);
+    tl_cache_clear(CACHE);
+    tl_cache_use(CACHE, TL_CACHE_LIMIT_BYTES);
     *state = gpu;
     return gpu ? 0 : -1;
 }
@@ -23,6 +29,8 @@ static int close_device(void **state)
 {
     tl_gpu *gpu = *state;
     tl_gpu_destroy(&gpu);
+    tl_cache_use(NULL, 0);
+    tl_cache_clear(CACHE);
     return 0;
 }
 
