@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define SIDE 0.8 /* m */
-enum { SQUARES = 100, CORNERS = SQUARES + 1, COUNT = CORNERS * CORNERS, FRAMES = 20 };
+enum { SQUARES = 100, CORNERS = SQUARES + 1, COUNT = CORNERS * CORNERS, FRAMES = 12, PULLED = 20 };
 
 /* Bent about an axis along v, without strain. */
 static vec3s bent(double u, double v)
@@ -201,7 +201,7 @@ static void it_is_pulled(void **state)
     tl_cloth *cloth = make_cloth(&garment, &params, true);
     const vec3d from = cloth->particles.x[COUNT - 2];
     const vec3s target = {{(float)from.x, (float)from.y + 0.05f, (float)from.z}};
-    for (int i = 0; i < FRAMES; i++) {
+    for (int i = 0; i < PULLED; i++) {
         tl_cloth_grab(cloth, COUNT - 2, target);
         step(cloth, NULL, 1);
     }
@@ -319,7 +319,7 @@ static void wind_does_not_cross_it(void **state)
     tl_collider *ground = tl_collider_create(NULL, true, &error);
     assert_ok(ground != NULL, error);
     tl_cloth_pin(cloth, 0);
-    for (int frame = 0; frame < FRAMES / 2; frame++) {
+    for (int frame = 0; frame < PULLED / 2; frame++) {
         step(cloth, ground, 1);
         const struct tl_cloth_report report = tl_cloth_measure(cloth, ground);
         assert_int_equal(report.crossing_count, 0);
