@@ -24,13 +24,14 @@ struct extreme {
     double stiffness, bending, density, dt;
     int substeps;
     int solver;
+    int cells; /* a side of the sheet */
 };
 
 /* A sheet held at one corner falls on a sphere. Returns whether the solver refused. */
 static bool run_refuses(const struct extreme *extreme)
 {
     tl_error error = {0};
-    const struct sheet_shape shape = {12, 12, 0.4, 0.4};
+    const struct sheet_shape shape = {extreme->cells, extreme->cells, 0.4, 0.4};
     tl_garment garment = sheet_make(&shape, above);
     sheet_pin(&garment, 0);
     tl_mesh sphere = body_sphere((vec3s){{0, 0.5f, 0}}, 0.2, 12);
@@ -62,7 +63,8 @@ static bool run_refuses(const struct extreme *extreme)
 }
 
 /* The hanging sheet weighs 0.2 N. Below 0.1 N/m it physically stretches by more than 10 and must be refused;
- * from 1 N/m on it does not, and must be solved. */
+ * from 1 N/m on it does not, and must be solved. What stretches far has the finer sheet: its strain decides.
+ */
 static void test_stiffness_and_step(void **state)
 {
     (void)state;
@@ -70,8 +72,9 @@ static void test_stiffness_and_step(void **state)
     for (size_t k = 0; k < TL_COUNT(stiffnesses); k++)
         for (size_t d = 0; d < TL_COUNT(steps); d++) {
             for (int solver = TL_CLOTH_PREVIEW; solver <= TL_CLOTH_SETTLE; solver++) {
+                const int cells = stiffnesses[k] < 1e3 ? 12 : 8;
                 bool refused =
-                    run_refuses(&(struct extreme){stiffnesses[k], 1e-5, 0.15, steps[d], 10, solver});
+                    run_refuses(&(struct extreme){stiffnesses[k], 1e-5, 0.15, steps[d], 10, solver, cells});
                 bool long_enough = steps[d] > 1e-4; /* 12 ms of fall cause no stretch yet */
                 bool expected = stiffnesses[k] < 0.1 && long_enough;
                 if (expected && solver == TL_CLOTH_SETTLE && steps[d] > 0.05)
@@ -85,12 +88,12 @@ static void test_stiffness_and_step(void **state)
 static void test_bending_and_mass(void **state)
 {
     (void)state;
-    const double bendings[] = {0, 1e-9, 1e-3, 1e3}, densities[] = {1e-4, 1e-2, 1, 100};
+    const double bendings[] = {0, 1e-9, 1e-3, 1e3}, densities[] = {1e-4, 1, 100};
     for (size_t b = 0; b < TL_COUNT(bendings); b++)
         for (size_t m = 0; m < TL_COUNT(densities); m++)
             for (int solver = TL_CLOTH_PREVIEW; solver <= TL_CLOTH_SETTLE; solver++)
                 assert_false(
-                    run_refuses(&(struct extreme){1e3, bendings[b], densities[m], 1.0 / 60, 10, solver}));
+                    run_refuses(&(struct extreme){1e3, bendings[b], densities[m], 1.0 / 60, 10, solver, 8}));
 }
 
 /* Every vertex at random in a cube of 1 m, or all at one point: the sheet recovers to strain below 1. */
@@ -99,7 +102,7 @@ static void test_scrambled_and_collapsed(void **state)
     (void)state;
     tl_error error = {0};
     for (int collapsed = 0; collapsed < 2; collapsed++) {
-        const struct sheet_shape shape = {12, 12, 0.4, 0.4};
+        const struct sheet_shape shape = {8, 8, 0.4, 0.4};
         tl_garment garment = sheet_make(&shape, above);
         struct tl_cloth_fabric fabric = fabric_defaults();
         struct tl_cloth_params params = params_defaults();
