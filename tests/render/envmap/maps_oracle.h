@@ -5,6 +5,7 @@
 
 #include "tests/render/scenes.h"
 
+#include "config/memory.h"
 #include "render/env/layout.h"
 
 #include <math.h>
@@ -19,18 +20,42 @@ static inline vec3s lights(vec3s d)
 }
 #define BRIGHTEST 3.2
 
+/* The directions and solid angles of an environment's texels, made for the last size. */
+struct oracle_texels {
+    int width, height;
+    vec3s *directions;
+    double *solid_angles;
+};
+
+static inline const struct oracle_texels *oracle_texels_of(const tl_image *image)
+{
+    static struct oracle_texels texels;
+    const struct tl_sphere_map map = {TL_LAYOUT_LATLONG, image->width, image->height};
+    const int count = image->width * image->height;
+    if (texels.width == image->width && texels.height == image->height)
+        return &texels;
+    free(texels.directions);
+    free(texels.solid_angles);
+    texels = (struct oracle_texels){image->width, image->height, TL_NEW_ARRAY(vec3s, (size_t)count),
+                                    TL_NEW_ARRAY(double, (size_t)count)};
+    for (int i = 0; i < count; i++) {
+        texels.directions[i] = tl_layout_direction(&map, i % map.width + 0.5, (double)(i / map.width) + 0.5);
+        texels.solid_angles[i] = tl_layout_solid_angle(&map, i % map.width, i / map.width);
+    }
+    return &texels;
+}
+
 /* K_s integrated over the environment's texels. */
 static inline vec3s integrate(const tl_environment *environment, vec3s direction, double s)
 {
     const tl_image *image = &environment->image;
-    const struct tl_sphere_map map = {TL_LAYOUT_LATLONG, image->width, image->height};
+    const struct oracle_texels *texels = oracle_texels_of(image);
     double sum[3] = {0, 0, 0};
     for (int i = 0; i < image->width * image->height; i++) {
-        int x = i % image->width, y = i / image->width;
-        double cosine = (double)glms_vec3_dot(tl_layout_direction(&map, x + 0.5, y + 0.5), direction);
+        double cosine = (double)glms_vec3_dot(texels->directions[i], direction);
         if (cosine <= 0)
             continue;
-        double weight = (s + 1) / (2 * M_PI) * pow(cosine, s) * tl_layout_solid_angle(&map, x, y);
+        double weight = (s + 1) / (2 * M_PI) * pow(cosine, s) * texels->solid_angles[i];
         for (int c = 0; c < 3; c++)
             sum[c] += weight * (double)tl_image_floats(image)[3 * i + c];
     }
