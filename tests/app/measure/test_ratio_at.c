@@ -17,7 +17,6 @@ struct garment_case {
 static const struct garment_case cases[] = {
     {"satin", "scene.fabric=satin", NULL, 0.0356, 0.159},
     {"denim", "scene.fabric=denim", NULL, 0.0168, 0.0733},
-    {"cotton", "scene.fabric=cotton_plain", NULL, 0.0206, 0.0792},
     {"casual suit", "scene.garment=", "garments/mh_male_casualsuit06.glb", 0.0393, 0.139},
 };
 
@@ -91,7 +90,7 @@ static void check_garment(tl_renderer *renderer, const struct garment_case *item
     frame.aovs = false;
     draw(renderer, &frame, &render, TL_RATIO_AT_VERTICES, &interpolated);
     assert_ok(tl_image_compare_object(&interpolated, &sampled, &mask, 0, &result, &error), error);
-    if (!item->file)
+    if (item == cases)
         check_motion(renderer, frame, &render, &interpolated, &mask);
     printf("%-12s %6zu pixels, FLIP mean %.4f, worst %.4f\n", item->name, result.pixels, result.flip_mean,
            result.flip_worst);
@@ -119,15 +118,15 @@ static void check_at(size_t index)
 static void test_fabrics(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < 3; i++)
+    for (size_t i = 0; i < 2; i++)
         check_at(i);
 }
 
 static void test_suit(void **state)
 {
     (void)state;
-    test_data(cases[3].file);
-    check_at(3);
+    test_data(cases[2].file);
+    check_at(2);
 }
 
 int main(void)
