@@ -5,7 +5,7 @@
 
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/env/layout.h"
 
 #include <math.h>

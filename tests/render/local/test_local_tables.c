@@ -2,7 +2,7 @@
  * several. Rows A1 to A5 and A7. */
 #include "tests/render/scenes.h"
 
-#include "config/memory.h"
+#include "config/base/memory.h"
 #include "render/brdf/tables/tables.h"
 
 #include "tests/testing.h"
