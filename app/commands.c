@@ -35,8 +35,9 @@ static const struct tl_command commands[] = {
      "Prints what would run for a frame, why, at what cost and in how much memory.",
      TL_FLAGS_SCENE | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_BUDGET | TL_FLAGS_PLAN, tl_command_plan},
     {"bench", "bench light|cloth|shading [--json] [--quick|--full] [SCENE] [OPTIONS]",
-     "Compares methods in one run. light: CPU time and error of the presets in motion; cloth: steps per "
-     "second of the solvers and of a plain loop, normals and tangents, a dress that comes to rest.",
+     "Compares methods in one run. light: CPU time and error of the presets in motion and at rest, frame by "
+     "frame in turn; shading: those of the ways to shade under a lamp; cloth: steps per second of the "
+     "solvers and of a plain loop, normals and tangents, a dress that comes to rest.",
      TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK | TL_FLAGS_FULL, tl_command_bench},
     {"check", "check [SCENE] [--frames N] [--budget MS] [--keep FOLDER] [--json] [OPTIONS]",
      "Plays a scene and checks every frame against a table of invariants: geometry, pixels, shadow maps, "

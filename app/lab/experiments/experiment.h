@@ -4,11 +4,10 @@
  * evaluation. A technique is a set of option values. It is registered by one row of its family's list
  * (shading.c, maps.c, detail.c, light.c), which names it in every output that takes it:
  *
- *   table     `toile bench`: the times of all techniques in one run, printed or as JSON
- *   page      `toile trade`: error against time in recorded motion, as HTML and CSV
- *   pictures  `toile gallery`: each technique beside its reference, as PNG, HTML and CSV
- *   bounds    `toile stability`: each technique in extreme scenes, passed or failed
- *   golden    tests/app/lab/test_golden.c: each technique against the image that it drew when it was accepted
+ *   page      `toile trade`: error against time in recorded motion, as a report and CSV; `toile bench`:
+ * printed pictures  `toile gallery`: each technique beside its reference, as PNG, HTML and CSV bounds `toile
+ * stability`: each technique in extreme scenes, passed or failed golden    tests/app/lab/test_golden.c: each
+ * technique against the image that it drew when it was accepted
  *
  * Everything is const data with static lifetime; functions are pure unless stated otherwise. */
 #ifndef TOILE_APP_LAB_EXPERIMENTS_EXPERIMENT_H
@@ -16,14 +15,7 @@
 
 #include "app/measure/measure.h"
 
-enum tl_output {
-    TL_OUTPUT_TABLE,
-    TL_OUTPUT_PAGE,
-    TL_OUTPUT_PICTURES,
-    TL_OUTPUT_BOUNDS,
-    TL_OUTPUT_GOLDEN,
-    TL_OUTPUTS
-};
+enum tl_output { TL_OUTPUT_PAGE, TL_OUTPUT_PICTURES, TL_OUTPUT_BOUNDS, TL_OUTPUT_GOLDEN, TL_OUTPUTS };
 
 #define TL_EXPERIMENT_ASSIGNMENTS 16
 #define TL_EXPERIMENT_APPEARANCES 5
@@ -35,7 +27,7 @@ struct tl_technique {
     union { /* its name in each output; NULL: the output leaves it out */
         const char *names[TL_OUTPUTS];
         struct {
-            const char *table, *page, *picture, *bound, *golden; /* golden: its file's name */
+            const char *page, *picture, *bound, *golden; /* golden: its file's name */
         };
     };
     const char *group; /* page: its curve and its table */

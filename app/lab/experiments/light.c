@@ -9,21 +9,20 @@
 static const struct tl_technique techniques[] = {
     /* The paper's single lobe is another material than the reference's two lobes, so that its error is mostly
      * that of the material. It is compared with two lobes; with one it is measured for information. */
-    {.table = "paper",
-     .page = "paper",
+    {.page = "paper",
      .picture = "the 2014 algorithm, two lobes",
      .group = "presets",
      .id = "D9",
      PAPER("light.regions=96"),
      .quick = true,
      .shown = true},
-    {.table = "paper, its single lobe",
+    {.page = "paper, its single lobe",
      .picture = "the 2014 algorithm",
+     .group = "presets",
      .id = "D9",
      PRESET("paper", "light.regions=96")},
-    {.table = "draft", .page = "draft", .group = "presets", PRESET("draft"), .quick = true},
-    {.table = "review",
-     .page = "review",
+    {.page = "draft", .group = "presets", PRESET("draft"), .quick = true},
+    {.page = "review",
      .picture = "PEMs by rays (review)",
      .bound = "review",
      .group = "presets",
@@ -31,7 +30,8 @@ static const struct tl_technique techniques[] = {
      PRESET("review"),
      .quick = true,
      .shown = true},
-    {.table = "review by GL maps",
+    {.page = "review by GL maps",
+     .group = "back-end",
      SET("light.visibility=depth", "light.prefilter=slices", "light.composition=difference",
          "light.jitter=true", "light.refresh=0")},
 
@@ -129,11 +129,6 @@ static const struct tl_experiment_appearance materials[] = {
 };
 
 static const struct tl_experiment experiments[] = {
-    {.output = TL_OUTPUT_TABLE,
-     .name = "light",
-     .scene = "review",
-     .reference = {.assignments = {TRACED}},
-     METHODS(techniques)},
     {.output = TL_OUTPUT_PAGE,
      .name = "light",
      .title = "The trade of light: error against time",

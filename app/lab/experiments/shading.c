@@ -11,8 +11,7 @@
 
 static const struct tl_technique techniques[] = {
     /* How often light is evaluated. */
-    {.table = "gouraud",
-     .page = "Gouraud",
+    {.page = "Gouraud",
      .picture = "Gouraud",
      .golden = "local_gouraud",
      .group = "frequency",
@@ -20,12 +19,7 @@ static const struct tl_technique techniques[] = {
      SET("shading.frequency=gouraud"),
      .quick = true,
      .shown = true},
-    {.table = "fast_phong, cosines by matrix",
-     SET("shading.frequency=fast_phong", "shading.coordinates=matrix")},
-    {.table = "fast_phong, cosines from vertices",
-     SET("shading.frequency=fast_phong", "shading.coordinates=vertex")},
-    {.table = "fast_phong, vectors at pixels",
-     .page = "fast Phong",
+    {.page = "fast Phong",
      .picture = "fast Phong",
      .group = "frequency",
      .id = "A8",
@@ -38,7 +32,6 @@ static const struct tl_technique techniques[] = {
      .once = true},
 
     /* Origin of the tables' coordinates. */
-    {.table = "phong, cosines by matrix", SET("shading.coordinates=matrix")},
     {.page = "cosines by matrix",
      .picture = "matrix",
      .group = "coordinates",
@@ -61,27 +54,23 @@ static const struct tl_technique techniques[] = {
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=none")},
-    {.table = "phong, normalised by cube8",
-     .page = "8-bit cube",
+    {.page = "8-bit cube",
      .picture = "8-bit cube map",
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=cube8"),
      .quick = true,
      .shown = true},
-    {.table = "phong, normalised by newton",
-     .page = "Newton step",
+    {.page = "Newton step",
      .picture = "one Newton step",
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=newton")},
-    {.table = "phong, normalised by cube16",
-     .page = "16-bit cube",
+    {.page = "16-bit cube",
      .picture = "16-bit cube map",
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=cube16")},
-    {.table = "phong, exact", SET("shading.normalisation=exact")},
 
     /* Powers. */
     {.page = "power by squaring, 8 bit",
@@ -90,23 +79,18 @@ static const struct tl_technique techniques[] = {
      .id = "A10",
      SET("shading.power=fixed8")},
     {.page = "power by table", .picture = "table", .group = "power", .id = "A10", SET("shading.power=table")},
-    {.table = "phong, power fixed8", SET("shading.normalisation=newton", "shading.power=fixed8")},
-    {.table = "phong, power table", SET("shading.normalisation=cube16", "shading.power=table")},
 
     /* The space of vectors, and a bumped surface's own shadow. */
-    {.table = "phong, tangent space",
-     .page = "tangent space",
+    {.page = "tangent space",
      .picture = "tangent space",
      .group = "space",
      .id = "A11",
      SET("shading.space=tangent")},
-    {.table = "phong, tangent space, newton", SET("shading.space=tangent", "shading.normalisation=newton")},
-    {.table = "phong, self-shadow by step", SET("shading.self_shadow=step")},
     {.picture = "ramp", .id = "A12", SET("shading.self_shadow=ramp")},
 
     /* Tables of reflectance. */
     {.golden = "brdf_torrance_sparrow", .id = "A1"},
-    {.table = "blinn_phong table", .picture = "tables 256, float", .id = "A1", SET(TABLE)},
+    {.picture = "tables 256, float", .id = "A1", SET(TABLE)},
     {.picture = "tables 256, 16 bit", .id = "A1", SET(TABLE, "shading.table_precision=fixed16")},
     {.picture = "tables 256, 8 bit", .golden = "brdf_tables", .id = "A1", SET(TABLE, FIXED8)},
     {.page = "table 32, fixed8",
@@ -139,48 +123,30 @@ static const struct tl_technique techniques[] = {
     {.picture = "float", .id = "A2", SET("shading.table_precision=float")},
 
     /* Reflectance models, directly and from tables. */
-    {.table = "phong model", SET("material.model=phong")},
-    {.table = "phong model table", .picture = "Phong", .id = "A3", SET("material.model=phong", TABLE)},
+    {.picture = "Phong", .id = "A3", SET("material.model=phong", TABLE)},
     {.picture = "Phong, 8 bit", .id = "A3", SET("material.model=phong", FIXED8)},
     {.picture = "Blinn-Phong", .id = "A3", SET("material.model=blinn_phong")},
     {.picture = "Blinn-Phong, 8 bit", .id = "A3", SET("material.model=blinn_phong", FIXED8)},
-    {.table = "cosine_lobe", SET("material.model=cosine_lobe")},
-    {.table = "cosine_lobe table",
-     .picture = "cosine lobe",
-     .id = "A3",
-     SET("material.model=cosine_lobe", TABLE)},
+    {.picture = "cosine lobe", .id = "A3", SET("material.model=cosine_lobe", TABLE)},
     {.picture = "cosine lobe, 64, 8 bit",
      .id = "A3",
      SET("material.model=cosine_lobe", FIXED8, "shading.table_size=64")},
-    {.table = "torrance_sparrow", SET("material.model=torrance_sparrow")},
-    {.table = "torrance_sparrow tables",
-     .picture = "one pass",
-     .id = "A7",
-     SET("material.model=torrance_sparrow", TABLE)},
-    {.table = "torrance_sparrow, 3 passes",
-     .picture = "two passes, float target",
+    {.picture = "one pass", .id = "A7", SET("material.model=torrance_sparrow", TABLE)},
+    {.picture = "two passes, float target",
      .golden = "local_passes",
      .id = "A7",
      SET("material.model=torrance_sparrow", TABLE, ONE_A_PASS)},
-    {.table = "torrance_sparrow, 3 passes in 8 bits",
-     .picture = "two passes, 8-bit target",
+    {.picture = "two passes, 8-bit target",
      .id = "A7",
      SET("material.model=torrance_sparrow", TABLE, ONE_A_PASS, "shading.pass_target=fixed8")},
-    {.table = "ward", SET("material.model=ward")},
-    {.table = "ward tables", SET("material.model=ward", TABLE)},
-    {.table = "ward, 4 passes", SET("material.model=ward", TABLE, ONE_A_PASS)},
     {.golden = "brdf_ward", .id = "A4", SET(ACROSS_WARP)},
     {.picture = "equal widths", .id = "A4", SET("material.width_weft=0.2", "material.width_warp=0.2", TABLE)},
     {.picture = "shine across the warp", .id = "A4", SET(ACROSS_WARP, TABLE)},
     {.picture = "turned by 45 degrees", .id = "A4", SET(ACROSS_WARP, "material.rotation_deg=45", TABLE)},
     {.picture = "turned by 90 degrees", .id = "A4", SET(ACROSS_WARP, "material.rotation_deg=90", TABLE)},
     {.picture = "shine across the warp, 8 bit", .id = "A4", SET(ACROSS_WARP, TABLE, FIXED8)},
-    {.table = "banks", SET("material.model=banks")},
     {.picture = "threads along the warp", .id = "A5", SET("material.rotation_deg=90", TABLE)},
-    {.table = "banks tables",
-     .picture = "threads along the weft",
-     .id = "A5",
-     SET("material.model=banks", TABLE)},
+    {.picture = "threads along the weft", .id = "A5", SET("material.model=banks", TABLE)},
     {.picture = "threads along the weft, 8 bit", .id = "A5", SET(TABLE, FIXED8)},
 };
 
@@ -214,9 +180,6 @@ static const struct tl_experiment_appearance models[] = {
      .assignments = {"material.model=ward", "material.width_weft=0.4", "material.width_warp=0.1", SPECULAR}},
 };
 
-/* Appearances of the mesh that bench shading draws (app/lab/trade/bench_shading.c). */
-static const struct tl_experiment_appearance meshes[] = {{.name = "plain"}, {.name = "decal and bumps"}};
-
 /* Hems and stitches vary f0, glossiness and the spread of normals from pixel to pixel. */
 static const struct tl_experiment_appearance hems[] = {
     {.name = "hem", .title = "with hem and stitches", .assignments = {"construction.show=auto"}},
@@ -224,11 +187,6 @@ static const struct tl_experiment_appearance hems[] = {
 };
 
 static const struct tl_experiment experiments[] = {
-    {.output = TL_OUTPUT_TABLE,
-     .name = "shading",
-     .base = {"material.model=blinn_phong"},
-     APPEARANCES(meshes),
-     METHODS(techniques)},
     {.output = TL_OUTPUT_PAGE,
      .name = "shading",
      .title = "The trade of shading under a lamp: error against time",

@@ -15,6 +15,5 @@ bool tl_command_bench(const struct tl_arguments *arguments, tl_error *error)
         return tl_bench_cloth(&scene, error);
     if (topic == SHADING)
         return tl_bench_shading(&scene, error);
-    tl_topic_default_scene(&scene, "review");
     return tl_bench_light(&scene, error);
 }

@@ -18,13 +18,14 @@ static void write_frames_csv(const void *trade, FILE *out)
 static bool trade_frames(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
                          tl_error *error)
 {
+    const struct tl_trade_options options = {.quick = arguments->quick};
     struct tl_headless headless;
-    if (!tl_trade_headless(experiment, arguments, &headless, error))
+    if (!tl_trade_headless(experiment, arguments, &options, &headless, error))
         return false;
     struct tl_trade trade;
     tl_error failure = {0};
     const char *folder = arguments->output;
-    bool done = tl_trade_measure(experiment, arguments, &headless, &trade, error);
+    bool done = tl_trade_measure(experiment, arguments, &options, &headless, &trade, error);
     if (trade.row_count && !(tl_folder_print(folder, "trade.csv", &trade, write_frames_csv, &failure) &&
                              tl_trade_write_report(&trade, folder, &failure))) {
         *error = failure;

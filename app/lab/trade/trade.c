@@ -24,11 +24,15 @@ struct run {
     bool quick;
     tl_recording *recording;
     tl_environment sky;
+    const struct tl_trade_options *options;
     struct tl_variant_run reference;
     struct tl_reference_frame frames[2]; /* the reference's first and last measured frame under this
                                             appearance; empty until needed */
     int appearance;
 };
+
+#define FRAMES_MAX     16
+#define REST_DRAWS_MAX 1024
 
 /* One technique with its renderer, and the governor that chooses its levels. */
 struct entry {
@@ -36,12 +40,23 @@ struct entry {
     struct tl_variant_run variant;
     struct tl_settings settings;   /* before the governor's levels */
     tl_quality_governor *governor; /* NULL: no budget */
+    double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
+    struct tl_measured_error first, last; /* of the measured frames */
 };
+
+/* The scene's own, where no appearance of the experiment is measured. */
+static const struct tl_experiment_appearance as_read = {.name = "as read", .title = "as read"};
+
+static const struct tl_experiment_appearance *
+appearance_of(const struct tl_experiment *experiment, const struct tl_trade_options *options, int number)
+{
+    return options->as_read ? &as_read : &experiment->appearances[number];
+}
 
 static tl_frame frame_of(const struct run *run, int number)
 {
     tl_frame frame = tl_recording_frame(run->recording, number);
-    if (run->experiment->appearances[run->appearance].uniform_sky) {
+    if (appearance_of(run->experiment, run->options, run->appearance)->uniform_sky) {
         frame.environment = &run->sky;
         frame.environment_revision = 0; /* sessions count from 1 */
     }
@@ -129,50 +144,62 @@ static bool draw(struct run *run, struct entry *entry, int number, struct tl_tak
     return true;
 }
 
-/* `share` is that of the technique that is measured now. */
+/* `share` is that of the techniques that are measured now, in techniques. */
 static void show_progress(struct run *run, double share)
 {
     tl_progress_update(&run->progress, (double)run->finished + share, (double)run->count);
 }
 
-#define FRAMES_MAX     16
-#define REST_DRAWS_MAX 1024
-
-static bool measure_motion(struct run *run, struct entry *entry, tl_error *error)
+/* Draws one frame and compares the first and the last of the measured ones. What does not depend on earlier
+ * frames draws only the last one before them, to fill its caches. */
+static bool measure_frame(struct run *run, struct entry *entry, int number, tl_error *error)
 {
-    int warm = run->warm, count = run->measured;
-    double cpu_ms[FRAMES_MAX], wall_ms[FRAMES_MAX];
     struct tl_taken taken = {0};
-    struct tl_measured_error first = {0}, last;
-    struct tl_variant_run *variant = &entry->variant;
-    bool remembers = entry->governor || tl_variant_run_has_history(variant);
-    for (int number = remembers ? 0 : warm - 1; number < warm; number++) {
-        if (!draw(run, entry, number, &taken, error))
-            return false;
-        show_progress(run, (number + 1.0) / (warm + count));
-    }
-    for (int i = 0; i < count; i++) {
-        if (!draw(run, entry, warm + i, &taken, error))
-            return false;
-        show_progress(run, (warm + i + 1.0) / (warm + count));
-        cpu_ms[i] = taken.cpu_ms;
-        wall_ms[i] = taken.wall_ms;
-        if (i == 0 && !compare(run, variant, warm, &first, error))
-            return false;
-    }
-    if (!compare(run, variant, warm + count - 1, &last, error))
+    bool remembers = entry->governor || tl_variant_run_has_history(&entry->variant);
+    if (number < run->warm - 1 && !remembers)
+        return true;
+    if (!draw(run, entry, number, &taken, error))
         return false;
-    add_row(run, entry, 1, cpu_ms, wall_ms, count,
-            (struct tl_measured_error){
-                .rel_rmse = 0.5 * (first.rel_rmse + last.rel_rmse),
-                .standard_error = 0.5 * (first.standard_error + last.standard_error),
-                .flip_mean = 0.5 * (first.flip_mean + last.flip_mean),
-                .max_abs = fmax(first.max_abs, last.max_abs),
-                .covered = last.covered,
-                .garment = {.pixels = last.garment.pixels,
-                            .flip_mean = 0.5 * (first.garment.flip_mean + last.garment.flip_mean),
-                            .flip_worst = 0.5 * (first.garment.flip_worst + last.garment.flip_worst)}});
-    return !entry->technique->shown || keep_picture(run, variant, entry->technique->page, &last, error);
+    if (number < run->warm)
+        return true;
+    entry->cpu_ms[number - run->warm] = taken.cpu_ms;
+    entry->wall_ms[number - run->warm] = taken.wall_ms;
+    return (number != run->warm || compare(run, &entry->variant, number, &entry->first, error)) &&
+           (number != last_frame(run) || compare(run, &entry->variant, number, &entry->last, error));
+}
+
+static struct tl_measured_error mean_error(const struct tl_measured_error *first,
+                                           const struct tl_measured_error *last)
+{
+    return (struct tl_measured_error){
+        .rel_rmse = 0.5 * (first->rel_rmse + last->rel_rmse),
+        .standard_error = 0.5 * (first->standard_error + last->standard_error),
+        .flip_mean = 0.5 * (first->flip_mean + last->flip_mean),
+        .max_abs = fmax(first->max_abs, last->max_abs),
+        .worst_share = fmax(first->worst_share, last->worst_share),
+        .covered = last->covered,
+        .garment = {.pixels = last->garment.pixels,
+                    .flip_mean = 0.5 * (first->garment.flip_mean + last->garment.flip_mean),
+                    .flip_worst = 0.5 * (first->garment.flip_worst + last->garment.flip_worst)}};
+}
+
+/* Every frame is drawn by all entries in turn, so that other load on the machine affects all alike. */
+static bool measure_motion(struct run *run, struct entry *entries, size_t count, tl_error *error)
+{
+    bool done = true;
+    for (int number = 0; done && number <= last_frame(run); number++) {
+        for (size_t i = 0; done && i < count; i++)
+            done = measure_frame(run, &entries[i], number, error);
+        show_progress(run, (double)count * (number + 1.0) / (last_frame(run) + 1.0));
+    }
+    for (size_t i = 0; done && i < count; i++) {
+        struct entry *entry = &entries[i];
+        add_row(run, entry, 1, entry->cpu_ms, entry->wall_ms, run->measured,
+                mean_error(&entry->first, &entry->last));
+        done = !entry->technique->shown ||
+               keep_picture(run, &entry->variant, entry->technique->page, &entry->last, error);
+    }
+    return done;
 }
 
 /* Draws the last frame until the renderer is at rest. Adds a row whenever the number of draws has doubled,
@@ -251,6 +278,43 @@ static bool enter(struct run *run, const struct tl_technique *technique, struct 
            tl_variant_run_create(&out->variant, run->headless->gpu, &technique->setup, scene, error);
 }
 
+static void leave(struct entry *entry)
+{
+    tl_variant_run_release(&entry->variant);
+    tl_quality_governor_destroy(&entry->governor);
+}
+
+/* The next technique that is measured under this appearance. */
+static const struct tl_technique *next_technique(const struct run *run, const struct tl_technique *after)
+{
+    const struct tl_trade_options *options = run->options;
+    const struct tl_technique *next = after;
+    bool first = options->quick || run->appearance == 0;
+    do
+        next = tl_experiment_next(run->experiment, TL_OUTPUT_PAGE, next);
+    while (next && ((options->group && strcmp(options->group, next->group) != 0) ||
+                    (options->quick && !options->group && !next->quick) || (next->once && !first)));
+    return next;
+}
+
+/* All techniques in turn: each has a renderer at the same time. */
+static bool measure_in_turn(struct run *run, tl_error *error)
+{
+    struct entry *entries = TL_NEW_ARRAY(struct entry, run->count);
+    const struct tl_technique *technique = NULL;
+    size_t count = 0;
+    bool done = true;
+    while (done && (technique = next_technique(run, technique)))
+        done = enter(run, technique, &entries[count++], error);
+    done = done && measure_motion(run, entries, count, error);
+    for (size_t i = 0; done && run->experiment->rests && i < count; i++)
+        done = measure_rest(run, &entries[i], error);
+    for (size_t i = 0; i < count; i++)
+        leave(&entries[i]);
+    free(entries);
+    return done;
+}
+
 /* A technique that the renderer refuses is noted and skipped; Ctrl-C or a failing reference ends the run. */
 static bool measure_technique(struct run *run, const struct tl_technique *technique, tl_error *error)
 {
@@ -258,10 +322,9 @@ static bool measure_technique(struct run *run, const struct tl_technique *techni
     tl_error refusal = {0};
     bool done = enter(run, technique, &entry, &refusal);
     if (done && !repeat(run, &entry))
-        done = measure_motion(run, &entry, &refusal) &&
+        done = measure_motion(run, &entry, 1, &refusal) &&
                (!run->experiment->rests || measure_rest(run, &entry, &refusal));
-    tl_variant_run_release(&entry.variant);
-    tl_quality_governor_destroy(&entry.governor);
+    leave(&entry);
     if (done)
         return true;
     if (refusal.code != TL_USAGE) {
@@ -289,17 +352,18 @@ static bool make_reference(struct run *run, const struct tl_experiment_appearanc
 }
 
 /* The appearance that is measured first: the only one of a quick run. */
-static int first_appearance(const struct tl_experiment *experiment, bool quick)
+static int first_appearance(const struct tl_experiment *experiment, const struct tl_trade_options *options)
 {
-    return quick ? experiment->quick_appearance : 0;
+    return options->quick ? experiment->quick_appearance : 0;
 }
 
 /* The scene as an appearance has it. It is read from its file again, because a fabric that an assignment
  * names is a layer below the other assignments. */
-static bool read_appearance(const struct tl_experiment *experiment, int number,
+static bool read_appearance(const struct tl_experiment *experiment,
+                            const struct tl_experiment_appearance *appearance,
                             const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
 {
-    const char *const *parts[] = {experiment->base, experiment->appearances[number].assignments};
+    const char *const *parts[] = {experiment->base, appearance->assignments};
     struct tl_arguments own = *arguments;
     own.assignments =
         tl_alloc(TL_COUNT(parts) * TL_EXPERIMENT_ASSIGNMENTS + arguments->assignment_count, sizeof(char *));
@@ -327,13 +391,14 @@ static bool begin_appearance(struct run *run, int number, tl_error *error)
     struct tl_headless *headless = run->headless;
     struct tl_trade *trade = run->trade;
     struct tl_settings settings;
-    bool first = number == first_appearance(experiment, run->quick);
+    const struct tl_experiment_appearance *appearance = appearance_of(experiment, run->options, number);
+    bool first = number == first_appearance(experiment, run->options);
     run->appearance = number;
     tl_reference_frame_release(&run->frames[0]);
     tl_reference_frame_release(&run->frames[1]);
     tl_recording_destroy(&run->recording);
     if (!first) {
-        if (!read_appearance(experiment, number, run->arguments, &settings, error) ||
+        if (!read_appearance(experiment, appearance, run->arguments, &settings, error) ||
             !tl_session_restart(headless->session, &settings, error))
             return false;
         headless->settings = settings;
@@ -342,7 +407,7 @@ static bool begin_appearance(struct run *run, int number, tl_error *error)
     run->recording = tl_motion_record(headless->session, run->warm + run->measured, error);
     if (run->recording && first)
         trade->recording = tl_recording_report(run->recording);
-    return run->recording && make_reference(run, &experiment->appearances[number], error);
+    return run->recording && make_reference(run, appearance, error);
 }
 
 static bool measure_all(struct run *run, tl_error *error)
@@ -350,16 +415,17 @@ static bool measure_all(struct run *run, tl_error *error)
     const struct tl_experiment *experiment = run->experiment;
     char label[64];
     snprintf(label, sizeof label, "measuring the trade of %s", experiment->name);
-    int appearances = run->quick ? 1 : experiment->appearance_count;
+    int first = first_appearance(experiment, run->options),
+        appearances = run->quick || run->options->as_read ? 1 : experiment->appearance_count;
     run->progress = tl_progress_begin(label);
     run->count = tl_experiment_count(experiment, TL_OUTPUT_PAGE) * (size_t)appearances;
     bool done = true;
     for (int i = 0; done && i < appearances; i++) {
-        done = begin_appearance(run, first_appearance(experiment, run->quick) + i, error);
         const struct tl_technique *technique = NULL;
-        while (done && (technique = tl_experiment_next(experiment, TL_OUTPUT_PAGE, technique))) {
-            if (run->quick ? technique->quick : i == 0 || !technique->once)
-                done = measure_technique(run, technique, error);
+        done = begin_appearance(run, first + i, error) &&
+               (!run->options->in_turn || measure_in_turn(run, error));
+        while (done && !run->options->in_turn && (technique = next_technique(run, technique))) {
+            done = measure_technique(run, technique, error);
             run->finished++;
             show_progress(run, 0);
         }
@@ -369,25 +435,29 @@ static bool measure_all(struct run *run, tl_error *error)
 }
 
 bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
-                       struct tl_headless *headless, tl_error *error)
+                       const struct tl_trade_options *options, struct tl_headless *headless, tl_error *error)
 {
     struct tl_settings settings;
-    return read_appearance(experiment, first_appearance(experiment, arguments->quick), arguments, &settings,
-                           error) &&
+    const struct tl_experiment_appearance *appearance =
+        appearance_of(experiment, options, first_appearance(experiment, options));
+    return read_appearance(experiment, appearance, arguments, &settings, error) &&
            tl_headless_open(headless, &settings, error);
 }
 
 bool tl_trade_measure(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
-                      struct tl_headless *headless, struct tl_trade *out, tl_error *error)
+                      const struct tl_trade_options *options, struct tl_headless *headless,
+                      struct tl_trade *out, tl_error *error)
 {
-    bool quick = arguments->quick;
+    bool quick = options->quick;
+    int frames = options->frames ? options->frames : experiment->measured;
     struct run run = {
         .experiment = experiment,
         .arguments = arguments,
+        .options = options,
         .headless = headless,
         .trade = out,
         .warm = quick ? 2 : experiment->warm_up,
-        .measured = quick ? 2 : experiment->measured,
+        .measured = quick ? 2 : frames,
         .quick = quick,
         .sky = tl_environment_constant(1, 1, 1),
     };

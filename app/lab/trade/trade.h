@@ -43,16 +43,26 @@ struct tl_trade {
     struct tl_recording_report recording; /* of the first appearance */
 };
 
+struct tl_trade_options {
+    bool quick;        /* a few techniques and frames, as a test that it works */
+    const char *group; /* of the techniques that are measured, in a quick run too; NULL: all */
+    int frames;        /* measured ones, at most 16; 0: as many as the experiment has */
+    bool as_read;      /* under the scene's own appearance, none of the experiment's */
+    bool in_turn; /* every frame is drawn by all techniques in turn: ratios of their times are those of the
+                     same minutes. One that is refused ends the run */
+};
+
 /* Opens the scene that an experiment is measured in, as its first appearance has it: the command line's scene
  * or the experiment's, then the experiment's base, the appearance and the command line's assignments, of
  * which a later one overrides an earlier one. */
 bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
-                       struct tl_headless *headless, tl_error *error);
+                       const struct tl_trade_options *options, struct tl_headless *headless, tl_error *error);
 
-/* Measures all techniques. `quick`: a few techniques and frames, as a test that it works. On Ctrl-C the error
+/* Measures the techniques. On Ctrl-C the error
  * is TL_INTERRUPTED and `out` holds what was measured until then. Release `out` in any case. */
 bool tl_trade_measure(const struct tl_experiment *experiment, const struct tl_arguments *arguments,
-                      struct tl_headless *headless, struct tl_trade *out, tl_error *error);
+                      const struct tl_trade_options *options, struct tl_headless *headless,
+                      struct tl_trade *out, tl_error *error);
 void tl_trade_release(struct tl_trade *trade);
 
 /* trade.csv: a row for every technique, appearance and state. */

@@ -50,7 +50,11 @@ bench = json.load(sys.stdin)
 for key in (\"time_ratio\", \"error_ratio\", \"flip_ratio\"):
     assert math.isfinite(bench[key]) and bench[key] > 0, key
 assert bench[\"mean_step_m\"] > 5e-4, \"the cloth stands still\"
-assert len(bench[\"rows\"]) >= 5'"
+rows = {(row[\"name\"], row[\"state\"]): row for row in bench[\"rows\"]}
+assert len(rows) == 8, rows.keys()
+paper, review = rows[\"paper\", \"moving\"], rows[\"review\", \"moving\"]
+assert abs(bench[\"time_ratio\"] - paper[\"cpu_ms\"] / review[\"cpu_ms\"]) < 1e-6 * bench[\"time_ratio\"]
+assert abs(bench[\"error_ratio\"] - review[\"rel_rmse\"] / paper[\"rel_rmse\"]) < 1e-6 * bench[\"error_ratio\"]'"
 else
     echo "skipped: files are not parsed: python3 is absent"
 fi
