@@ -73,6 +73,13 @@ void tl_report_add_text(cJSON *object, const char *key, const void *what,
     free(text);
 }
 
+void tl_report_add_texts(cJSON *object, const char *key, char *const *texts, size_t count)
+{
+    cJSON *array = cJSON_AddArrayToObject(object, key);
+    for (size_t i = 0; i < count; i++)
+        cJSON_AddItemToArray(array, cJSON_CreateString(texts[i]));
+}
+
 cJSON *tl_report_png(const void *png, size_t size)
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

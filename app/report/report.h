@@ -24,6 +24,9 @@ bool tl_report_write(const char *folder, const char *file, const char *script, c
 void tl_report_add_text(cJSON *object, const char *key, const void *what,
                         void (*write)(const void *what, FILE *out));
 
+/* Adds an array of texts, empty where there are none. */
+void tl_report_add_texts(cJSON *object, const char *key, char *const *texts, size_t count);
+
 /* New string of JSON: a PNG of `size` bytes as the address of a picture ("data:image/png;base64,..."). */
 cJSON *tl_report_png(const void *png, size_t size);
 

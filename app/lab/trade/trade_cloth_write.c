@@ -54,8 +54,6 @@ bool tl_trade_cloth_write_report(const struct tl_trade_cloth *trade, const char 
     cJSON_AddNumberToObject(data, "truth_error_m", trade->truth_error_m);
     tl_report_add_text(data, "csv", trade, write_csv);
     tl_report_add_text(data, "fit", &trade->fit, write_fit);
-    cJSON_AddItemToObject(
-        data, "refusals",
-        cJSON_CreateStringArray((const char *const *)trade->refusals, (int)trade->refusal_count));
+    tl_report_add_texts(data, "refusals", trade->refusals, trade->refusal_count);
     return tl_report_write(folder, "report.html", tl_embedded_trade[1].data, data, error);
 }

@@ -115,8 +115,6 @@ bool tl_trade_write_report(const struct tl_trade *trade, const char *folder, tl_
         tl_trade_add_lobes(trade->quick, figures);
         tl_trade_add_memory(trade->environment, figures);
     }
-    cJSON_AddItemToObject(
-        data, "refusals",
-        cJSON_CreateStringArray((const char *const *)trade->refusals, (int)trade->refusal_count));
+    tl_report_add_texts(data, "refusals", trade->refusals, trade->refusal_count);
     return tl_report_write(folder, "report.html", tl_embedded_trade[0].data, data, error);
 }

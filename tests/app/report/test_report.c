@@ -70,6 +70,19 @@ static void pictures_are_base64(void **state)
     }
 }
 
+static void no_texts_are_an_empty_array(void **state)
+{
+    (void)state;
+    cJSON *object = cJSON_CreateObject();
+    char one[] = "one", *texts[] = {one};
+    tl_report_add_texts(object, "none", NULL, 0);
+    tl_report_add_texts(object, "some", texts, 1);
+    char *text = cJSON_PrintUnformatted(object);
+    assert_string_equal(text, "{\"none\":[],\"some\":[\"one\"]}");
+    cJSON_free(text);
+    cJSON_Delete(object);
+}
+
 static void figures_are_what_was_added(void **state)
 {
     (void)state;
@@ -100,6 +113,7 @@ int main(void)
         cmocka_unit_test(data_stays_data),
         cmocka_unit_test(a_folder_that_is_not_there_is_named),
         cmocka_unit_test(pictures_are_base64),
+        cmocka_unit_test(no_texts_are_an_empty_array),
         cmocka_unit_test(figures_are_what_was_added),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
