@@ -62,18 +62,21 @@ static void add_looks(cJSON *data, const struct tl_experiment *experiment)
     }
 }
 
-/* The reference has no error. */
-static void add_error(cJSON *object, const struct tl_trade_picture *picture)
+/* Of the measure that the experiment is judged by. The reference has no error. */
+static void add_error(cJSON *object, const struct tl_measured_error *measured, bool by_flip)
 {
-    if (!picture->error.covered) {
+    if (!measured->covered) {
         cJSON_AddNullToObject(object, "error");
         return;
     }
     cJSON *error = cJSON_AddObjectToObject(object, "error");
-    cJSON_AddNumberToObject(error, "rel_rmse", picture->error.rel_rmse);
-    cJSON_AddNumberToObject(error, "flip_mean", picture->error.flip_mean);
-    cJSON_AddNumberToObject(error, "garment_flip", picture->error.garment.flip_mean);
-    cJSON_AddNumberToObject(error, "garment_flip_worst", picture->error.garment.flip_worst);
+    if (by_flip) {
+        cJSON_AddNumberToObject(error, "garment_flip", measured->garment.flip_mean);
+        cJSON_AddNumberToObject(error, "garment_flip_worst", measured->garment.flip_worst);
+    } else {
+        cJSON_AddNumberToObject(error, "rel_rmse", measured->rel_rmse);
+        cJSON_AddNumberToObject(error, "flip_mean", measured->flip_mean);
+    }
 }
 
 static void add_pictures(cJSON *data, const struct tl_trade *trade)
@@ -85,7 +88,7 @@ static void add_pictures(cJSON *data, const struct tl_trade *trade)
         cJSON_AddStringToObject(object, "name", picture->name);
         cJSON_AddStringToObject(object, "look", trade->experiment->appearances[picture->appearance].name);
         cJSON_AddItemToObject(object, "png", tl_report_png(picture->png, picture->size));
-        add_error(object, picture);
+        add_error(object, &picture->error, trade->experiment->by_flip);
         cJSON_AddItemToArray(pictures, object);
     }
 }
