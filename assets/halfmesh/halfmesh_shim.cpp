@@ -3,7 +3,6 @@ extern "C" {
 #include "assets/halfmesh/sector.h"
 }
 
-#define NDEBUG    /* OpenMesh's assertions look up the type of every property, which takes most of the time */
 #ifndef __clang__ /* which has no such warning */
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* in OpenMesh's properties, which are inlined */
 #endif

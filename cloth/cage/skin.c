@@ -227,8 +227,8 @@ struct tl_skin tl_skin_make(const struct tl_skin_source *source)
     {
         struct weight_patch patch = make_patch(count);
 #pragma omp for schedule(dynamic, 16)
-        for (uint32_t b = 0; b < source->bone_count; b++)
-            columns[b] = spread_bone(source, &rings, &lists, b, &patch);
+        for (size_t b = 0; b < source->bone_count; b++)
+            columns[b] = spread_bone(source, &rings, &lists, (uint32_t)b, &patch);
         release_patch(&patch);
     }
     take_rows(columns, source->bone_count, &skin);
