@@ -12,7 +12,7 @@ function(toile_version target header name libraries)
   get_directory_property(options COMPILE_OPTIONS)
   add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/${header}
     COMMAND ${CMAKE_COMMAND} -DNAME=${name} -DLIST=${list_file}
-      "-DFLAGS=${CMAKE_C_COMPILER_ID} ${CMAKE_C_COMPILER_VERSION} ${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${build}} ${options} ${CMAKE_SYSTEM_PROCESSOR} ${libraries}"
+      "-DFLAGS=${CMAKE_C_COMPILER_ID} ${CMAKE_C_COMPILER_VERSION} ${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${build}} ${TOILE_HOT_FLAGS} ${options} ${CMAKE_SYSTEM_PROCESSOR} ${libraries}"
       -DOUT=${CMAKE_BINARY_DIR}/${header} -P ${toile_version_folder}/write_version.cmake
     DEPENDS ${sources} ${toile_version_folder}/write_version.cmake VERBATIM)
   target_sources(${target} PRIVATE ${CMAKE_BINARY_DIR}/${header})
