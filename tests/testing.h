@@ -14,19 +14,22 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Path of a file of the real test data (TOILE_DATA overrides the folder). Skips the test, with the reason,
- * when it is absent. */
+/* Path of a file or folder of the real test data: of the folder that the environment's TOILE_DATA names, or that
+ * TOILE_DATA_DIR names, else of tests/data, which has the small ones. Skips the test, with the reason, when all lack it. */
 static inline const char *test_data(const char *relative)
 {
     static char paths[8][1024]; /* a test may hold a few at once */
     static int next;
     char *path = paths[next++ % 8];
-    const char *folder = getenv("TOILE_DATA");
-    snprintf(path, sizeof paths[0], "%s/%s", folder ? folder : TOILE_DATA_DIR, relative);
-    if (access(path, R_OK) != 0) {
-        printf("skipped: %s is absent\n", path);
-        skip();
+    const char *other = getenv("TOILE_DATA");
+    const char *folders[] = {other ? other : TOILE_DATA_DIR, TOILE_SOURCE_DIR "/tests/data"};
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof paths[0], "%s/%s", folders[i], relative);
+        if (access(path, R_OK) == 0)
+            return path;
     }
+    printf("skipped: %s is in neither %s nor tests/data\n", relative, folders[0]);
+    skip();
     return path;
 }
 
