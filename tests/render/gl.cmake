@@ -1,7 +1,6 @@
 # Tests of the renderer on a headless GL context.
 add_library(toile_test_scenes STATIC scenes.c paths.c)
 target_link_libraries(toile_test_scenes PUBLIC toile_render PkgConfig::CMOCKA)
-target_compile_definitions(toile_test_scenes PRIVATE
   TOILE_DATA_DIR="" # testing.h wants it; no scene reads data
   TOILE_SCRATCH_DIR="${CMAKE_CURRENT_BINARY_DIR}")
 
@@ -9,7 +8,7 @@ toile_test(gpu/gpu gpu toile_render PkgConfig::EPOXY)
 toile_test(light/light gpu toile_test_scenes)
 toile_test(light/pem_layouts gpu toile_test_scenes)
 toile_test(gbuffer/cull gpu toile_test_scenes)
-toile_test(gbuffer/id_layers unit toile_render)
+toile_test(gbuffer/id_layers slow toile_render)
 toile_test(gbuffer/raster gpu toile_test_scenes)
 toile_test(gbuffer/rings unit toile_test_scenes)
 toile_test(visibility/maps gpu toile_test_scenes)
