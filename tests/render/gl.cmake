@@ -1,7 +1,7 @@
 # Tests of the renderer on a headless GL context.
 add_library(toile_test_scenes STATIC scenes.c paths.c)
 target_link_libraries(toile_test_scenes PUBLIC toile_render PkgConfig::CMOCKA)
-  TOILE_DATA_DIR="" # testing.h wants it; no scene reads data
+target_compile_definitions(toile_test_scenes PRIVATE
   TOILE_SCRATCH_DIR="${CMAKE_CURRENT_BINARY_DIR}")
 
 toile_test(gpu/gpu gpu toile_render PkgConfig::EPOXY)

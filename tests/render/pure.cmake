@@ -1,7 +1,6 @@
 # The parts of render that need no device.
 foreach(name
     detail/bake
-    brdf/brdf
     plan/budget
     pem/chain
     metrics/compare
@@ -9,15 +8,12 @@ foreach(name
     bounce/bounce_sky
     light/compose
     light/kept_light
-    env/convert
     plan/cost
     env/cube
     env/emitters
-    brdf/factor
     plan/first_second
     brdf/fuzz
     brdf/ggx/ggx_lobes
-    brdf/lobe_fit
     metrics/flip
     surfaces/ground
     env/layout
@@ -26,7 +22,6 @@ foreach(name
     pem/lobe
     pem/lobe_error
     pem/paraboloids
-    env/lobes
     visibility/map_fit
     visibility/map_order
     frame/memory
@@ -49,3 +44,6 @@ foreach(name
   toile_test(${name} unit toile_light)
 endforeach()
 target_sources(test_ggx_lobes PRIVATE ./brdf/ggx/ggx_fitter.c)
+foreach(name brdf/brdf env/convert brdf/factor brdf/lobe_fit env/lobes)
+  toile_test(${name} slow toile_light)
+endforeach()
