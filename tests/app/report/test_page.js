@@ -57,6 +57,8 @@ function optionsAreDrawn() {
     assert.strictEqual(count("path", "area"), kind === "areas" ? 2 : 0);
     assert.strictEqual(count("rect", "mark"), kind === "bars" ? 6 : 0);
     assert.strictEqual(figure.find("svg", "plot")[0].find("path", "mark").length, joined ? 6 : 0);
+    if (kind === "bars") /* half a unit of x wide, about 1 */
+      assert.deepStrictEqual(["x", "width"].map(key => Number(figure.find("rect", "mark")[1].attributes[key])), [318.75, 168.5]);
     if (kind === "areas") assert.deepStrictEqual(figure.find("path", "area").map(path => path.attributes.class), ["area s1", "area s0"]);
     assert(figure.find("ul", "legend")[0].textContent.includes("one"));
     assert(figure.textContent.endsWith("below"));
