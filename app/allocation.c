@@ -80,7 +80,7 @@ REPLACES void *mmap(void *address, size_t size, int protection, int flags, int f
     return memory;
 }
 
-/* What libraries call that were compiled for files beyond 2 GB. */
+/* Calls of libraries that were compiled for files beyond 2 GB. */
 REPLACES void *mmap64(void *address, size_t size, int protection, int flags, int file, off_t offset)
 {
     return mmap(address, size, protection, flags, file, offset);

@@ -11,7 +11,7 @@
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 
-/* As in app/allocation.c. */
+/* The same as in app/allocation.c. */
 #define REPLACES __attribute__((weak, visibility("default")))
 
 /* The C library's own. */

@@ -11,7 +11,7 @@
  * Errors, Lifetime, Threads: as tl_model_load; *out is released by tl_avatar_release. */
 bool tl_avatar_load(const char *path, tl_avatar *out, tl_error *error);
 
-/* As tl_avatar_load, with the units given; TL_UNITS_AUTO is tl_avatar_load.
+/* Is tl_avatar_load with the units given; TL_UNITS_AUTO is tl_avatar_load.
  *
  * Errors, Lifetime, Threads: as tl_avatar_load. */
 bool tl_avatar_load_in(const char *path, enum tl_units units, tl_avatar *out, tl_error *error);

@@ -11,7 +11,7 @@
  * Errors, Lifetime, Threads: as tl_model_load; *out is released by tl_garment_release. */
 bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
 
-/* As tl_garment_load, with the units given; TL_UNITS_AUTO is tl_garment_load.
+/* Is tl_garment_load with the units given; TL_UNITS_AUTO is tl_garment_load.
  *
  * Errors, Lifetime, Threads: as tl_garment_load. */
 bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error);

@@ -23,7 +23,7 @@
  * Threads: several threads may load at once, also the same file. */
 bool tl_model_load(const char *path, tl_model *out, tl_error *error);
 
-/* As tl_model_load, with the units given; TL_UNITS_AUTO is tl_model_load.
+/* Is tl_model_load with the units given; TL_UNITS_AUTO is tl_model_load.
  *
  * Errors, Lifetime, Threads: as tl_model_load. */
 bool tl_model_load_in(const char *path, enum tl_units units, tl_model *out, tl_error *error);

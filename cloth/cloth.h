@@ -22,12 +22,12 @@ typedef struct tl_cloth tl_cloth;
 /* A particle's mass is at least this share of the mean mass: the vertex of a sliver would weigh next to
  * nothing, and one iteration that corrects it would leave its neighbours where they are. */
 #define TL_CLOTH_MIN_MASS 1e-4
-/* Of `preview`, per step. */
+/* Substeps of `preview`, per step. */
 #define TL_CLOTH_MAX_SUBSTEPS 1000
 /* A larger strain than this means that the solver has failed: the frame is refused. */
 #define TL_CLOTH_MAX_STRAIN 10
 
-/* How the motion is solved. Table "cloth". preview: cloth/solvers/xpbd.h; settle:
+/* Solvers of the motion. Table "cloth". preview: cloth/solvers/xpbd.h; settle:
  * cloth/solvers/implicit/implicit.h; reference: cloth/solvers/verlet.h. */
 enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
@@ -112,9 +112,9 @@ void tl_cloth_mark_start(tl_cloth *cloth);
  * again; a vertex that was grabbed or pinned by hand is free. */
 void tl_cloth_reset(tl_cloth *cloth);
 
-/* Largest displacement of a free vertex over the last frame, as a speed in m/s. Velocities would not tell
- * rest: a vertex that oscillates by a tenth of a millimetre between substeps has a large one and goes
- * nowhere. 0 before the first frame. */
+/* Largest displacement of a free vertex over the last frame, as a speed in m/s. Velocities do not show rest:
+ * a vertex that oscillates by a tenth of a millimetre between substeps has a large one and goes nowhere. 0
+ * before the first frame. */
 double tl_cloth_frame_speed(const tl_cloth *cloth);
 
 /* Whether settling has ended at rest; false for cloth that was not settled, or not long enough. */
@@ -163,7 +163,7 @@ void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
  * the cloth, valid until the next call that is not const. */
 const uint32_t *tl_cloth_weld(const tl_cloth *cloth);
 
-/* Where a cloth that is moved by a cage lies on it. */
+/* The place on a cage of a cloth that it moves. */
 struct tl_cage_places {
     uint32_t (*from)[3]; /* [mesh.vertex_count] render vertices: the corners of the triangle on which each
                             lies; of one that is a corner, or at the place of one, three times that */

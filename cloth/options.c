@@ -1,6 +1,6 @@
 #include "cloth/cloth.h"
 
-/* How the cloth is solved decides where it settles, and can be set while it moves. */
+/* The solver decides where the cloth settles, and can be set while it moves. */
 #define AFFECTS (TL_AFFECTS_CLOTH | TL_AFFECTS_DRAPE)
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
@@ -65,7 +65,7 @@ static const struct tl_option cloth_rows[] = {
                     "m", "target edge length of built-in garments; larger: coarser, faster"),
     TL_OPTION_ENUM(struct tl_cloth_params, rest, TL_AFFECTS_SCENE | AFFECTS, tl_rest_names,
                    "rest shape, grain and strain of a garment's file: uv: its UVs are its pattern, at one "
-                   "scale; mesh: its first shape; auto: uv where they are one, which `toile info` tells"),
+                   "scale; mesh: its first shape; auto: uv where they are one, which `toile info` states"),
     TL_OPTION_FLOAT(struct tl_cloth_params, longest_edge_m, TL_AFFECTS_SCENE | AFFECTS, 0, 1000, "m",
                     "longer edges of a garment's file are halved, so that it can fold; 0: never"),
 };

@@ -20,7 +20,7 @@
  * into `choices`); TL_COLOUR float[3] (linear Rec. 709); TL_VECTOR float[3] (written [x, y, z]); TL_STRING
  * and TL_PATH char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the file that names it. A
  * TL_PATH with `choices` holds either one of these names, kept as it is, or a file name;
- * tl_option_is_file_name tells them apart.
+ * tl_option_is_file_name distinguishes them.
  *
  * NaN and infinities are refused everywhere; so is text that is not printable UTF-8, so that every value can
  * be written into YAML and JSON and read back.
@@ -49,7 +49,7 @@
 #define TL_AFFECTS_BIT(i) ((uint64_t)1 << (i))
 
 /* Nothing is kept that depends on the option: it is read each time that it is used. Every row has at least
- * one bit, so a row that has no other consequence says this. */
+ * one bit, so a row that has no other consequence states this. */
 #define TL_AFFECTS_NOTHING TL_AFFECTS_BIT(0)
 /* Avatar and garment are loaded and the cloth is draped again. */
 #define TL_AFFECTS_SCENE TL_AFFECTS_BIT(1)
@@ -96,7 +96,7 @@ struct tl_option {
     const char *const
         *choices;     /* TL_ENUM: names, NULL-terminated; TL_PATH: NULL or names that are not files */
     const char *unit; /* "m", "texels", "" for none */
-    const char *help; /* one line, says what a larger value does */
+    const char *help; /* one line: what a larger value does */
 };
 
 struct tl_option_table {
@@ -175,7 +175,7 @@ void tl_options_reset(const struct tl_binding *bindings, size_t count);
 bool tl_options_set(const struct tl_binding *bindings, size_t count, const char *key, const char *text,
                     const char *where, const char *base_file, tl_error *error);
 
-/* What should be reported about a text that tl_options_set takes: that a colour is drawn as another, and how
+/* The warning about a text that tl_options_set takes: that a colour is drawn as another, and how
  * much these differ. tl_options_set warns of it. Errors: none. Lifetime: a new string, which the caller
  * frees; NULL for nothing. Threads: pure. */
 char *tl_option_remark(const struct tl_option *row, const char *text);

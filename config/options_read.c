@@ -318,10 +318,10 @@ char *tl_option_remark(const struct tl_option *row, const char *text)
     float rgb[3];
     if (row->type != TL_COLOUR || !is_lab(text) || !parse_lab(text, of))
         return NULL;
-    const struct tl_lab asked = {of[0], of[1], of[2]};
-    tl_lab_to_rgb(asked, rgb);
+    const struct tl_lab requested = {of[0], of[1], of[2]};
+    tl_lab_to_rgb(requested, rgb);
     const struct tl_lab shown = tl_lab_of(rgb);
-    const double difference = tl_lab_difference(asked, shown);
+    const double difference = tl_lab_difference(requested, shown);
     if (difference < seen)
         return NULL;
     return tl_format("%s is more saturated than a screen shows (Rec. 709): it is drawn as lab(%.1f, %.1f, "

@@ -59,7 +59,7 @@ struct tl_audit_finding {
     char *message;
 };
 
-/* Of each code so many are listed; the others are counted. */
+/* Findings of one code that are listed; the others are counted. */
 #define TL_AUDIT_LISTED 100
 typedef struct tl_audit {
     size_t finding_count;

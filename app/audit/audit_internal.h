@@ -5,7 +5,7 @@
 #include "app/audit/audit.h"
 #include "cloth/mesh/topology.h"
 
-/* What is audited: a model and its connectivity, with vertices at one place welded. Stitches are not in it:
+/* The audited model: a model and its connectivity, with vertices at one place welded. Stitches are not in it:
  * sewn pleats lie upon themselves. */
 struct audited {
     const tl_model *model;

@@ -179,7 +179,7 @@ static void describe_pins(cJSON *object, const tl_model *model)
         cJSON_AddNumberToObject(colours, tl_pin_colour_names[TL_PIN_RED + channel], (double)painted[channel]);
 }
 
-/* What a heavy model is as an avatar; simplifies it. Panels that were sewn are no body. */
+/* Describes a heavy model as an avatar; simplifies it. Panels that were sewn are no body. */
 static void describe_simplified(cJSON *object, tl_model *model)
 {
     if (model->mesh.index_count / 3 <= TL_SIMPLIFY_ABOVE || model->stitch_count > 0)

@@ -89,7 +89,7 @@ static void print_tables(const struct tl_measures *measures)
     }
 }
 
-/* How the cloth came to lie: what a pattern that does not fit shows first. */
+/* Prints the state of the cloth, which shows first that a pattern does not fit. */
 static void print_cloth(const tl_session *session)
 {
     const struct tl_cloth_report report = tl_session_report(session);
@@ -271,7 +271,7 @@ static struct tl_measures measure(tl_session *session)
     struct tl_measures measures = tl_measures_take(&source);
     free(weld);
     if (!measures.has_pattern)
-        tl_info("%s: has no pattern: strains are those since its first shape (`toile info` tells why)",
+        tl_info("%s: has no pattern: strains are those since its first shape (`toile info` states why)",
                 source.garment->model.name);
     return measures;
 }

@@ -75,7 +75,7 @@ static void add_budget(cJSON *object, const struct budgeted *budgeted)
     cJSON_AddNumberToObject(budget, "budget_ms", budgeted->budget_ms);
     cJSON_AddItemToObject(budget, "predicted_ms", number_or_null(budgeted->choice.predicted_ms));
     cJSON_AddNumberToObject(budget, "error", budgeted->choice.error);
-    cJSON *controls = cJSON_AddArrayToObject(budget, "knobs");
+    cJSON *controls = cJSON_AddArrayToObject(budget, "controls");
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
         const struct tl_quality_step *step = &budgeted->steps[k];
         cJSON *control = cJSON_CreateObject();

@@ -1,4 +1,4 @@
-/* What `toile info` prints of a garment: its rest shape, its openings, its pattern. Threads: pure. */
+/* Prints a garment for `toile info`: its rest shape, its openings, its pattern. Threads: pure. */
 #ifndef TOILE_APP_BATCH_INFO_GARMENT_H
 #define TOILE_APP_BATCH_INFO_GARMENT_H
 

@@ -11,7 +11,7 @@
 
 /* Share of the budget that drawing may take: the cloth takes the rest. */
 #define DRAWING_SHARE 0.6
-/* Where neither holds the budget, maps must at least be this many times faster to be worth their error. */
+/* Factor by which maps must be faster to be worth their error where neither holds the budget. */
 #define WORTH 3
 
 /* ---- The decision ---- */
@@ -96,7 +96,7 @@ static bool draw_frame(const struct meter *meter, tl_quality_governor *governor,
     return true;
 }
 
-/* Surfaces that are said to have moved make the renderer do what it does in motion. */
+/* Surfaces that are marked as moved make the renderer do what it does in motion. */
 static bool measure_frames(void *context, int visibility, double *ms, tl_error *error)
 {
     const struct meter *meter = context;
@@ -130,7 +130,7 @@ bool tl_back_end_calibrate(const struct tl_back_end_start *start, struct tl_sett
     if (settings->light.visibility != TL_VISIBILITY_AUTO || settings->light.method != TL_METHOD_PEM) {
         *out = (struct tl_back_end){
             .visibility = settings->light.visibility, .rays_ms = (double)NAN, .maps_ms = (double)NAN};
-        snprintf(out->reason, sizeof out->reason, "as light.visibility and light.method say");
+        snprintf(out->reason, sizeof out->reason, "as light.visibility and light.method state");
         return true;
     }
     struct meter meter = {.start = start, .settings = settings};

@@ -121,10 +121,10 @@ static struct tl_render_settings at_level(const struct coming *coming, int contr
     return tl_quality_at(&levels, &coming->full);
 }
 
-/* Which jobs would run in the coming frame: at the levels of the last one, and when a control changes its
- * level, which runs jobs whose results would have been reused. */
-static struct coming look_ahead(const tl_quality_governor *governor, const tl_renderer *renderer,
-                                const tl_frame *frame, const struct tl_render_settings *full)
+/* Finds the jobs that would run in the coming frame: at the levels of the last one, and when a control
+ * changes its level, which runs jobs whose results would have been reused. */
+static struct coming predict_coming(const tl_quality_governor *governor, const tl_renderer *renderer,
+                                    const tl_frame *frame, const struct tl_render_settings *full)
 {
     struct coming coming = {.governor = governor, .renderer = renderer, .full = *full};
     for (int level = 0; level < governor->level_counts[TL_CONTROL_RATIO]; level++) {
@@ -272,7 +272,7 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
     governor->rested = tl_renderer_is_moving(renderer, frame) ? 0 : governor->rested + 1;
     if (governor->budget_ms > 0 && governor->rested < REST_FRAMES)
         prepare_regions(governor, renderer, frame, &full);
-    const struct coming coming = look_ahead(governor, renderer, frame, &full);
+    const struct coming coming = predict_coming(governor, renderer, frame, &full);
     const struct tl_budget budget = budget_of(governor, &coming);
     governor->level_counts[TL_CONTROL_SCALE] = budget.level_counts[TL_CONTROL_SCALE];
     governor->choice.reason[0] = '\0';
@@ -306,7 +306,7 @@ void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_ren
                                struct tl_quality_step out[TL_CONTROL_COUNT])
 {
     const struct tl_render_settings full = tl_settings_render(settings);
-    const struct coming coming = look_ahead(governor, renderer, frame, &full);
+    const struct coming coming = predict_coming(governor, renderer, frame, &full);
     uint8_t now[TL_BUDGET_CONTROLS_MAX] = {0};
     memcpy(now, governor->choice.levels.of, sizeof governor->choice.levels.of);
     double ms = cost_of(&coming, now), error = error_of(&coming, now);

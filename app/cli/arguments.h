@@ -1,5 +1,5 @@
-/* The command line, parsed once into plain data. Each command says which flags it takes; the rest is refused
- * with the nearest flag that it knows. Strings are borrowed from argv. */
+/* The command line, parsed once into plain data. Each command states which flags it takes; the rest is
+ * refused with the nearest flag that it knows. Strings are borrowed from argv. */
 #ifndef TOILE_APP_CLI_ARGUMENTS_H
 #define TOILE_APP_CLI_ARGUMENTS_H
 
@@ -11,7 +11,7 @@
 
 #define TL_POSITIONALS_MAX 64
 
-/* Which groups of flags a command takes. */
+/* Groups of flags that a command takes. */
 enum tl_flag_set {
     TL_FLAGS_SCENE = 1 << 0,    /* --garment to --set */
     TL_FLAGS_OUTPUT = 1 << 1,   /* -o */

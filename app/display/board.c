@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-/* From what stands beside it, and above the ground. */
+/* Distances from what stands beside it, and above the ground. */
 #define GAP_M   0.2f
 #define ABOVE_M 0.05f
 

@@ -40,13 +40,13 @@ struct baking {
 /* The struct must not be moved afterwards: `field` points to `heights`. */
 static void begin(struct baking *baking, const tl_image *picture)
 {
-    const struct tl_arguments *asked = baking->arguments;
-    baking->width_m = 1e-3f * (asked->repeat_mm > 0 ? (float)asked->repeat_mm : DEFAULT_REPEAT_MM);
+    const struct tl_arguments *given = baking->arguments;
+    baking->width_m = 1e-3f * (given->repeat_mm > 0 ? (float)given->repeat_mm : DEFAULT_REPEAT_MM);
     baking->height_m = baking->width_m * (float)picture->height / (float)picture->width;
-    baking->depth_m = 1e-3f * (asked->height_mm > 0 ? (float)asked->height_mm : DEFAULT_HEIGHT_MM);
+    baking->depth_m = 1e-3f * (given->height_mm > 0 ? (float)given->height_mm : DEFAULT_HEIGHT_MM);
     baking->heights = tl_bake_heights(picture, 0, baking->depth_m);
     baking->field =
-        tl_height_field_make(&baking->heights, baking->width_m, baking->height_m, asked->clamp, asked->clamp);
+        tl_height_field_make(&baking->heights, baking->width_m, baking->height_m, given->clamp, given->clamp);
 }
 
 static void log_map(const char *path, const tl_image *image)

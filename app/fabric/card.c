@@ -19,7 +19,7 @@
 
 /* ---- Contents ---- */
 
-/* Comments at the head of a fabric's file, joined: they say what it is and who measured it. */
+/* Comments at the head of a fabric's file, joined: they state what it is and who measured it. */
 static char *head_of(const char *text)
 {
     char *notes = tl_copy_string("");
@@ -107,7 +107,7 @@ static bool make(struct tl_card *card, const char *source, const struct tl_argum
            tl_card_draw_views(card, with_pictures, error) && tl_card_fill_figures(card, error);
 }
 
-/* ---- As JSON ---- */
+/* ---- JSON ---- */
 
 static cJSON *json_of_colour(const struct tl_card_colour *colour)
 {

@@ -22,9 +22,9 @@ struct tl_card_colour tl_card_colour_of(const float rgb[3])
     return colour;
 }
 
-/* ---- Where a figure comes from ---- */
+/* ---- The source of a figure ---- */
 
-/* What the fabric's source itself states; NaN: nothing. */
+/* The value that the fabric's source itself states; NaN: none. */
 struct stated {
     struct tl_cloth_fabric mechanics;
     struct tl_construction_params construction;

@@ -44,7 +44,7 @@ struct tl_card {
     bool is_at_rest;                    /* the disc */
     tl_image shadow;                    /* of the disc (assets/specimen/cusick.h) */
     tl_image swatch, close, ball, disc; /* U8 x3; empty where no page is written */
-    char *notes;                        /* what the fabric's own file says at its head; "" */
+    char *notes;                        /* the comments at the head of the fabric's own file; "" */
     char *unused;                       /* the fields that are not used */
 };
 

@@ -121,9 +121,9 @@ static void put_line(cairo_t *cairo, double x, double y, double dx, double dy)
     cairo_stroke(cairo);
 }
 
-/* A ruler below a picture: `count` millimetres of the cloth over `length` of the page, with a number at each
+/* A scale below a picture: `count` millimetres of the cloth over `length` of the page, with a number at each
  * `step` of them. */
-static void put_ruler(cairo_t *cairo, double x, double y, double length, int count, int step)
+static void put_scale(cairo_t *cairo, double x, double y, double length, int count, int step)
 {
     const struct text style = {.size = 2.2, .colour = BLACK};
     set_colour(cairo, BLACK);
@@ -230,11 +230,11 @@ static void put_pictures(const struct tl_card *card, cairo_t *cairo)
     const double step = PICTURE + GAP;
     char text[96];
     put_image(cairo, LEFT, SWATCH_Y, SWATCH, &card->swatch);
-    put_ruler(cairo, LEFT, SWATCH_Y + SWATCH + 0.6, SWATCH, TL_CARD_SWATCH_MM, 10);
+    put_scale(cairo, LEFT, SWATCH_Y + SWATCH + 0.6, SWATCH, TL_CARD_SWATCH_MM, 10);
     put(cairo, LEFT, SWATCH_Y + SWATCH + 5.5, &small,
         "Flat, at true scale on A4: the warp runs up the page, the weft across it.");
     put_image(cairo, LEFT, PICTURES_Y, PICTURE, &card->close);
-    put_ruler(cairo, LEFT, PICTURES_Y + PICTURE + 0.6, PICTURE, TL_CARD_CLOSE_MM, 1);
+    put_scale(cairo, LEFT, PICTURES_Y + PICTURE + 0.6, PICTURE, TL_CARD_CLOSE_MM, 1);
     put_image(cairo, LEFT + step, PICTURES_Y, PICTURE, &card->ball);
     put_image(cairo, LEFT + 2 * step, PICTURES_Y, PICTURE, &card->disc);
     snprintf(text, sizeof text, "Close-up, %.1f times its size", PICTURE / TL_CARD_CLOSE_MM);
@@ -268,7 +268,7 @@ static void put_shadow(const struct tl_card *card, cairo_t *cairo, double x, dou
     put(cairo, x, y + side + 1, &(const struct text){.size = 2.6, .width = side + 8, .colour = GREY}, text);
 }
 
-/* As large as fits into `height`. */
+/* Draws it as large as fits into `height`. */
 static void put_fitted(cairo_t *cairo, double x, double y, double height, const char *words)
 {
     struct text style = {.size = 2.8, .width = RIGHT - x, .colour = BLACK};

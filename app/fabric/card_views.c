@@ -16,7 +16,7 @@
 
 #define SHEET_EDGES 1.875f /* of the sheet, as a multiple of the disc's: 15 mm */
 
-static void look_down(struct tl_settings *settings, double fov_deg, double side_mm)
+static void view_from_above(struct tl_settings *settings, double fov_deg, double side_mm)
 {
     settings->camera =
         (struct tl_camera_params){.pitch_deg = ABOVE_DEG,
@@ -25,7 +25,7 @@ static void look_down(struct tl_settings *settings, double fov_deg, double side_
                                   .fov_deg = (float)fov_deg};
 }
 
-static void look_from_the_side(struct tl_settings *settings, float distance_m, float height_m)
+static void view_from_side(struct tl_settings *settings, float distance_m, float height_m)
 {
     settings->camera = (struct tl_camera_params){
         .yaw_deg = 20, .pitch_deg = 28, .distance_m = distance_m, .target = {0, height_m, 0}, .fov_deg = 30};
@@ -53,7 +53,7 @@ static bool measure_colour(struct tl_headless *headless, struct tl_card *card, t
     tl_image image = {0};
     double sums[4] = {0};
     strcpy(headless->settings.scene.environment, "white");
-    look_down(&headless->settings, LENS_DEG, 0.6 * TL_CARD_SWATCH_MM);
+    view_from_above(&headless->settings, LENS_DEG, 0.6 * TL_CARD_SWATCH_MM);
     bool read = draw(headless, 16, error) && tl_renderer_read(headless->renderer, &image, error);
     for (size_t i = 0; read && i < 4 * (size_t)image.width * (size_t)image.height; i++)
         sums[i % 4] += (double)tl_image_floats(&image)[i];
@@ -80,13 +80,13 @@ static void measure_drape(const struct tl_headless *headless, struct tl_card *ca
 /* Flat, near and draped: the middle of the disc is level. */
 static bool draw_disc(struct tl_headless *headless, struct tl_card *card, tl_error *error)
 {
-    look_down(&headless->settings, LENS_DEG, TL_CARD_SWATCH_MM);
+    view_from_above(&headless->settings, LENS_DEG, TL_CARD_SWATCH_MM);
     if (!draw_picture(headless, TL_CARD_SWATCH_MM, &card->swatch, error))
         return false;
-    look_down(&headless->settings, CLOSER_DEG, TL_CARD_CLOSE_MM);
+    view_from_above(&headless->settings, CLOSER_DEG, TL_CARD_CLOSE_MM);
     if (!draw_picture(headless, TL_CARD_PICTURE_MM, &card->close, error))
         return false;
-    look_from_the_side(&headless->settings, 0.58f, 0.365f);
+    view_from_side(&headless->settings, 0.58f, 0.365f);
     return draw_picture(headless, TL_CARD_PICTURE_MM, &card->disc, error);
 }
 
@@ -99,7 +99,7 @@ static bool draw_ball(struct tl_headless *headless, struct tl_card *card, tl_err
     headless->settings.cloth.settle_speed = defaults->settle_speed;
     strcpy(headless->settings.scene.garment, "sheet");
     strcpy(headless->settings.scene.avatar, "ball");
-    look_from_the_side(&headless->settings, 0.95f, 0.31f);
+    view_from_side(&headless->settings, 0.95f, 0.31f);
     return draw_picture(headless, TL_CARD_PICTURE_MM, &card->ball, error);
 }
 

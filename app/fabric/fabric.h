@@ -32,7 +32,7 @@ void tl_fabric_bind(struct tl_fabric *fabric, struct tl_binding bindings[TL_FABR
 const char *tl_fabric_name(const struct tl_fabric *fabric);
 
 /* Writes the fabric in toile's own form, which --fabric reads back to the same: a folder with fabric.yaml, or
- * a file .yaml; its pictures are copied as they are where their names alone say what they mean, else
+ * a file .yaml; its pictures are copied as they are where their names alone state what they mean, else
  * converted. Every file appears whole or not at all, the one of options last. Errors: TL_OUTPUT too. */
 bool tl_fabric_write(struct tl_fabric *fabric, const char *path, tl_error *error);
 

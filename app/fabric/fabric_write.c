@@ -11,7 +11,7 @@
 
 #define PICTURE_BYTES_MAX ((size_t)512 << 20)
 
-/* Where the parts of a fabric go. */
+/* Destinations of the parts of a fabric. */
 struct target {
     char *options;        /* the file of options */
     char *pictures;       /* the folder of pictures */

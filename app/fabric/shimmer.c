@@ -15,7 +15,7 @@
 
 /* The k-th camera: moved over the cloth by parts of a pixel whose ratio is irrational, so that no step
  * repeats one before. */
-static void look(struct tl_settings *settings, const struct tl_camera_params *start, int k, int finer)
+static void aim_camera(struct tl_settings *settings, const struct tl_camera_params *start, int k, int finer)
 {
     const double pixel_m = 2 * (double)start->distance_m * tan(FOV_DEG / 2 * M_PI / 180) / SIDE;
     settings->camera = *start;
@@ -51,7 +51,7 @@ static bool find_differences(struct tl_headless *headless, const struct tl_camer
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < STEPS; k++) {
             double *to = differences + (size_t)k * SIDE * SIDE;
-            look(&headless->settings, start, k, finer[i]);
+            aim_camera(&headless->settings, start, k, finer[i]);
             if (i == 1) /* finer pixels are samples enough */
                 headless->settings.image.supersample = 1;
             if (!add_frame(headless, finer[i], i == 0 ? 1 : -1, to, error))

@@ -17,7 +17,7 @@ struct tl_measures_source {
     const tl_mesh *body;    /* standing upright on y = 0 as it is worn; NULL: nobody */
 };
 
-/* Of strains over rest area, slivers left out. p95: what 95 % of the area do not exceed. */
+/* Statistics of strains over rest area, slivers left out. p95: what 95 % of the area do not exceed. */
 struct tl_spread {
     double mean, p95, max;
 };

@@ -14,7 +14,7 @@ size_t tl_sewn_weld(const tl_garment *garment, uint32_t *weld);
  * receives the sewn vertex of each render vertex, which the openings count by. */
 struct tl_openings tl_sewn_openings(const tl_garment *garment, const vec3s *positions, uint32_t *weld);
 
-/* As tl_sewn_openings, of a file's model; one that stands along Z is turned as it will be: names depend on
+/* Is tl_sewn_openings for a file's model; one that stands along Z is turned as it will be: names depend on
  * it. */
 struct tl_openings tl_sewn_openings_of_model(const tl_model *model);
 

@@ -21,8 +21,8 @@ struct toile_scene {
 
 static bool messages_wanted;
 
-/* What holds during a call: numbers in files and options have a point whatever the caller's locale, and the
- * scene's GL context is current. */
+/* The state that holds during a call: numbers in files and options have a point whatever the caller's locale,
+ * and the scene's GL context is current. */
 struct call {
     locale_t plain, before;
     tl_gpu *gpu;

@@ -63,8 +63,8 @@ struct tl_measured_error {
     double max_abs;
     double worst_share; /* of the square error: the share of its worst pixel */
     size_t covered;     /* pixels */
-    /* As shown, over the pixels where the reference shows the garment; the reference's noise is part of it.
-     * Without pixels, and NaN, when it shows none of it or was drawn without tl_frame.aovs. */
+    /* The error as shown, over the pixels where the reference shows the garment; the reference's noise is
+     * part of it. Without pixels, and NaN, when it shows none of it or was drawn without tl_frame.aovs. */
     struct tl_object_error garment;
 };
 /* Compares an image as tl_renderer_read returns it, and for the garment's error the picture as

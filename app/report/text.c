@@ -117,8 +117,8 @@ void tl_text_draw(tl_image *picture, int x, int y, const struct tl_text_style *s
                 "such as "
                 "fonts-noto-cjk for Chinese, Japanese and Korean",
                 text);
-    /* As wide as the picture, so that text of any length fits a surface of Cairo's, at most 32767 wide; an em
-     * above the first line for accents, and one below the last. */
+    /* The surface is as wide as the picture, so that text of any length fits a surface of Cairo's, at most
+     * 32767 wide; an em above the first line for accents, and one below the last. */
     int height = 3 * style->size + (extent.lines - 1) * style->leading;
     cairo_surface_t *mask = cairo_image_surface_create(CAIRO_FORMAT_A8, picture->width, height);
     draw_lines(layout, style, mask, x, style->size);

@@ -61,8 +61,8 @@ static bool has_threads(const struct tl_material_params *params)
            params->thread_across > 0;
 }
 
-/* The share of the colour that threads send back as gloss. The rest is even, and the lobes' colours are told
- * as ratios to it, so it cannot be nothing. */
+/* The share of the colour that threads send back as gloss. The rest is even, and the lobes' colours are
+ * stored as ratios to it, so it cannot be nothing. */
 static float thread_share(const struct tl_material_params *params)
 {
     return has_threads(params) ? fminf(params->thread, 0.95f) : params->thread;

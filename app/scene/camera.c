@@ -86,7 +86,7 @@ static struct picture_extent extent_of(const vec3s *points, int count, const str
     return extent;
 }
 
-/* How much of the allowed part of the picture is filled. */
+/* Share of the allowed part of the picture that is filled. */
 static float fill_of(const struct tl_framing *framing, const struct axes *axes, vec3s middle, float distance,
                      float tangent, float aspect)
 {

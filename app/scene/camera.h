@@ -12,7 +12,7 @@ bool tl_camera_is_placed(const struct tl_camera_params *params);
 #define TL_CAMERA_GARMENT 0.75f
 #define TL_CAMERA_BODY    0.94f
 
-/* What is framed: the most distant points of a thing in directions all around, in metres of the world. */
+/* The framed extent: the most distant points of a thing in directions all around, in metres of the world. */
 enum { TL_FRAMING_POINTS = 64 };
 struct tl_framing {
     struct tl_box box;
@@ -26,7 +26,7 @@ struct tl_framing {
 void tl_framing_add(struct tl_framing *framing, const vec3s *points, size_t count);
 /* Adds those of the points that are higher than what is framed as what stands out above it. */
 void tl_framing_add_head(struct tl_framing *framing, const vec3s *points, size_t count);
-/* Of a box, for which a cylinder about it stands: it is framed alike from all sides. */
+/* The extent of a box, for which a cylinder about it stands: it is framed alike from all sides. */
 struct tl_framing tl_framing_of_box(struct tl_box box, float share);
 
 /* The camera of the frame. With distance_m = 0 what is framed fills its share of the height of an image of

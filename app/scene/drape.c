@@ -30,8 +30,8 @@ static void log_stretch(const struct tl_cloth_params *params, double strain)
         tl_info("the cloth is stretched by %.0f %%: it is tight", 100 * strain);
 }
 
-/* What came crossed and could not be untangled: a garment that is too tight, or one that its file ties in
- * knots. */
+/* Reports what came crossed and could not be untangled: a garment that is too tight, or one that its file
+ * ties in knots. */
 static void log_crossings(const struct tl_cloth_params *params, const tl_cloth *cloth)
 {
     size_t count =
@@ -45,7 +45,7 @@ static void log_crossings(const struct tl_cloth_params *params, const tl_cloth *
 #define NOTICED_DEPTH_M 0.005
 #define NOTICED_SHARE   0.01
 
-/* A garment as authored that was made for another body is not refitted, but it is told. */
+/* A garment as authored that was made for another body is not refitted; a warning is logged. */
 static void log_depth(const struct tl_drape_request *request, const tl_collider *collider)
 {
     const double reach_m = 0.5;

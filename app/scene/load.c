@@ -35,7 +35,7 @@ static void report_line(char *line)
 }
 
 /* The option's up axis, or the one that the geometry shows, which is logged. A recorded motion, or a rig,
- * moves vertices in the file's own axes: such models are not turned unless they are told to. */
+ * moves vertices in the file's own axes: such models are turned on request only. */
 static bool is_z_up(const tl_model *model, int up, bool moves, const char *option)
 {
     if (up != TL_UP_AUTO || moves)

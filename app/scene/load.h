@@ -20,7 +20,7 @@ bool tl_scene_load_avatar(const struct tl_settings *settings, tl_avatar **out, i
  * Errors: as above. Lifetime: the caller releases *out. */
 bool tl_scene_load_whole_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error);
 
-/* How a garment came to stand where it does. */
+/* The steps by which a garment was placed. */
 struct tl_scene_standing {
     float lifted_m; /* onto the ground */
     char *size;     /* one line about a garment that is of another size than its wearer; NULL: none */

@@ -17,7 +17,7 @@ typedef struct tl_playback tl_playback;
 tl_playback *tl_playback_open(const struct tl_settings *settings, const tl_model *model, tl_error *error);
 void tl_playback_close(tl_playback **handle); /* nulls it; null is fine */
 
-/* How long it takes at its own rate, or at scene.motion_rate; seconds. */
+/* Duration at its own rate, or at scene.motion_rate; seconds. */
 double tl_playback_length_s(const tl_playback *playback, const struct tl_settings *settings);
 
 /* The lowest height that it is known to reach, metres: of a sequence and a clip at the start. */

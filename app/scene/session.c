@@ -181,7 +181,7 @@ static struct tl_box box_of_moving(const struct tl_moving *moving)
 /* A head that stands out of its garment by less than this is framed with it, for the same reason. */
 #define FRAMED_WITH_HEAD 0.6f
 
-/* Of garment and body. */
+/* Bounding box of garment and body. */
 static struct tl_box box_of_scene(const tl_session *session)
 {
     if (!session->garment || !session->avatar)
@@ -194,7 +194,7 @@ static void add_framed(struct tl_framing *framed, const struct tl_moving *moving
     tl_framing_add(framed, moving->positions, moving->model->mesh.vertex_count);
 }
 
-/* What the camera frames: the garment, which is what is judged; without one, the body. */
+/* The camera's subject: the garment, which is what is judged; without one, the body. */
 static void frame_garment(tl_session *session)
 {
     struct tl_box all = box_of_scene(session),
@@ -514,7 +514,7 @@ static tl_surface smoothed(tl_session *session, const tl_surface *garment)
     return tl_smoothed_surface(smooth, &worn, garment);
 }
 
-/* Of a heavy garment that is moved by a cage: light is computed where its corners are. */
+/* A heavy garment is moved by a cage: light is computed where its corners are. */
 static const struct tl_light_mesh *light_mesh_of_garment(tl_session *session)
 {
     const uint64_t revision = session->cloth ? tl_cloth_cage(session->cloth, NULL) : 0;

@@ -154,7 +154,7 @@ tl_frame tl_session_frame_in(const struct tl_session_models *models, const struc
 void tl_session_keep_appearance(tl_session *session, const struct tl_settings *made_of,
                                 struct tl_appearance *made);
 
-/* ---- What there is ---- */
+/* ---- The present state ---- */
 
 /* True when the environment is a sequence. Errors: none. Threads: the session's. */
 bool tl_session_light_plays(const tl_session *session);
@@ -188,7 +188,7 @@ void tl_session_want_strains(tl_session *session, bool wanted);
 bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, uint32_t *vertex,
                      float *distance_m);
 
-/* How the garment stands in the present frame: as its file has it, at rest under gravity, or on its way. */
+/* The garment's state in the present frame: as its file has it, at rest under gravity, or on its way. */
 enum tl_garment_state {
     TL_GARMENT_IS_NOT_CLOTH, /* none, a solid, or one that plays a recorded motion */
     TL_GARMENT_AUTHORED,
@@ -209,7 +209,7 @@ bool tl_session_is_authored(const tl_session *session);
  */
 bool tl_session_is_undraped(const tl_session *session);
 
-/* By how much the garment stands above where its file has it: one without an avatar is lifted out of the
+/* The height of the garment above where its file has it: one without an avatar is lifted out of the
  * ground. Errors: none. Threads: the session's. */
 float tl_session_lifted_m(const tl_session *session);
 
@@ -219,7 +219,7 @@ float tl_session_lifted_m(const tl_session *session);
 bool tl_session_show_placed(tl_session *session, const struct tl_placing *placing);
 
 /* One line about a garment that is of another size than the body that wears it, or lies inside it; NULL:
- * there is nothing to say. Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or
+ * nothing is to be reported. Errors: none. Lifetime: borrowed until the scene is loaded again, replaced or
  * destroyed. Threads: the session's. */
 const char *tl_session_size_note(const tl_session *session);
 

@@ -1,4 +1,4 @@
-/* What a session holds: for session.c and session_change.c. */
+/* The content of a session, for session.c and session_change.c. */
 #ifndef TOILE_APP_SCENE_SESSION_INTERNAL_H
 #define TOILE_APP_SCENE_SESSION_INTERNAL_H
 

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a triangle without an area: `otherwise`. */
+/* `otherwise` for a triangle without an area. */
 static vec3s face_normal(const tl_mesh *mesh, uint32_t triangle, vec3s otherwise)
 {
     const uint32_t *v = &mesh->indices[3 * (size_t)triangle];
@@ -17,8 +17,9 @@ static vec3s face_normal(const tl_mesh *mesh, uint32_t triangle, vec3s otherwise
     return length > 0 ? glms_vec3_scale(area, 1 / length) : otherwise;
 }
 
-/* How far a vertex has to go against its normal. 0 where the garment does not cover it: the nearest point is
- * on an edge of the cloth, beside the vertex; or the cloth faces another way, as a sleeve does to a hip. */
+/* The distance by which a vertex moves against its normal. 0 where the garment does not cover it: the nearest
+ * point is on an edge of the cloth, beside the vertex; or the cloth faces another way, as a sleeve does to a
+ * hip. */
 static float depth_of(const tl_collider *cloth, const tl_mesh *garment, vec3s at, vec3s normal)
 {
     const float least_facing = 0.3f, least_above = 0.8f;

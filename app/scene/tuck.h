@@ -8,7 +8,7 @@
 #include "assets/base/mesh.h"
 #include "config/base/error.h"
 
-/* By how much each vertex of the body, in its rest pose, is to be moved against its normal, so that it lies
+/* The distance by which each vertex of the body, in its rest pose, moves against its normal, so that it lies
  * TL_TUCK_CLEARANCE_M inside the garment: [body->vertex_count], 0 where no cloth covers it or it lies deeper.
  * A vertex is covered where the garment is at most TL_TUCK_REACH_M away, before or behind it, and faces the
  * same side. All 0 for a body that the garment was not made for: it shows as it is. Errors: NULL, as

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/* As the session poses its own body (session.c). */
+/* Poses the body as the session does (session.c). */
 static bool pose(const tl_session *session, struct tl_whole_body *body, tl_error *error)
 {
     const tl_model *model = &body->avatar->model;

@@ -227,7 +227,7 @@ static bool apply_model(const struct tl_binding *all, const char *path, tl_error
            tl_options_set(all, TL_SETTINGS_TABLES, "scene.fabric", "none", "SCENE", NULL, error);
 }
 
-/* The model is a garment where the options say who wears it, or none. A fabric that they name stays. */
+/* The model is a garment where the options state who wears it, or none. A fabric that they name stays. */
 static bool wear_model(const struct tl_binding *all, const char *path, tl_error *error)
 {
     const struct tl_scene_params *scene = all[SCENE].params;
@@ -477,7 +477,7 @@ static void log_assumed_width(const struct tl_weave_params *weave)
                 TL_PICTURE_ASSUMED_MM);
 }
 
-/* A photographer sets the lights up for the view. They stay as the camera turns from there. */
+/* A photographer places the lights for the view. They stay as the camera turns from there. */
 static void turn_studio(struct tl_settings *settings)
 {
     struct tl_scene_params *scene = &settings->scene;

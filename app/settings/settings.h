@@ -30,7 +30,7 @@ struct tl_scene_params {          /* table "scene": what to show; names of built
     bool pattern;                        /* its pieces hang beside it */
     bool smooth;                         /* it is drawn as Loop's surface */
     char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
-    float motion_rate;                   /* frames of it a second; 0: as its file says */
+    float motion_rate;                   /* frames of it a second; 0: as its file states */
     char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
     char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the

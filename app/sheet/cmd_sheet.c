@@ -115,7 +115,7 @@ static void frame_garment(tl_session *session, struct tl_settings *settings)
     struct tl_box worn = tl_box_of(surface->positions, surface->vertex_count);
     struct tl_box before = tl_box_of(garment->mesh.positions, garment->mesh.vertex_count);
     if (!tl_session_cloth(session))
-        before = worn; /* recorded motion may begin with flat panels, whose size says nothing */
+        before = worn; /* recorded motion may begin with flat panels, whose size means nothing */
     float aspect = (float)settings->image.width / (float)settings->image.height;
     struct tl_box box = worn_box(&before, &worn);
     if (tl_session_models(session).avatar)

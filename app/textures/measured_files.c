@@ -10,7 +10,7 @@
 
 struct kept_file {
     char *path;
-    struct stat found; /* size and time tell whether the file is the same */
+    struct stat found; /* size and time identify the file */
     struct tl_measured made;
     int users;
     uint64_t used; /* rises with each use */

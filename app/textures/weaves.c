@@ -47,7 +47,7 @@ static bool hash_pictures(const char *path, uint64_t *hash, tl_error *error)
     for (int use = 0; use < TL_PICTURE_USES; use++) {
         const char *name = file.pictures[use].file;
         char *place = name ? tl_store_place(&file.store, name) : NULL;
-        if (place) /* in an archive there is no such file, but its own time says it */
+        if (place) /* in an archive there is no such file, but its own time decides */
             *hash = hash_file(*hash, place);
         free(place);
     }

@@ -1,4 +1,4 @@
-/* Commands of this room: the review window. app/cli/command.h says what a command is. */
+/* Commands of this room: the review window. app/cli/command.h defines a command. */
 #ifndef TOILE_APP_VIEW_COMMANDS_H
 #define TOILE_APP_VIEW_COMMANDS_H
 

@@ -19,7 +19,7 @@ struct tl_hold {
     float level_m;
 };
 
-/* What is the rest shape of a garment from a file (assets/sewing/rest.h). */
+/* The rest shape of a garment from a file (assets/sewing/rest.h). */
 enum tl_rest_choice { TL_REST_AUTO, TL_REST_UV, TL_REST_MESH };
 extern const char *const tl_rest_names[]; /* "auto", "uv", "mesh"; NULL-terminated */
 

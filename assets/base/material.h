@@ -18,7 +18,7 @@ struct tl_uv_transform {
     float rotation; /* radians, counter-clockwise */
 };
 
-/* As the rows of a 2x3 matrix: u' = rows[0] u + rows[1] v + rows[2], v' = rows[3] u + rows[4] v + rows[5]. */
+/* The rows of a 2x3 matrix: u' = rows[0] u + rows[1] v + rows[2], v' = rows[3] u + rows[4] v + rows[5]. */
 void tl_uv_transform_rows(const struct tl_uv_transform *transform, float rows[6]);
 /* Applies the rows of tl_uv_transform_rows. */
 vec2s tl_uv_transformed(const struct tl_uv_transform *transform, vec2s uv);
@@ -82,7 +82,7 @@ struct tl_gloss {
     float rotation;   /* rad, counter-clockwise seen from outside: turns weft and warp in the surface */
 };
 
-/* How pieces are sewn together and their free edges finished; render/construction has the heights. Lengths
+/* Seams of pieces and finish of their free edges; render/construction has the heights. Lengths
  * in metres. */
 enum tl_seam {
     TL_SEAM_NONE,

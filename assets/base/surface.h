@@ -11,7 +11,7 @@
 
 struct tl_borders;
 
-/* Where light is computed on a surface that is drawn finer than light varies: at some of its vertices, from
+/* The places of light on a surface that is drawn finer than light varies: at some of its vertices, from
  * which the others take means. Vertices of one place need not be one vertex. It owns its arrays:
  * tl_light_mesh_release. */
 struct tl_light_mesh {

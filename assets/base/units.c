@@ -39,7 +39,7 @@ static void guess(struct tl_units_reading *reading)
 
 /* Far longer along Z than along Y, and about Y = 0: a body's depth. Then either longest along Z, or standing
  * on Z = 0. A wide skirt with Y up is as long along X, and centred along Z. */
-static bool looks_z_up(struct tl_box box)
+static bool is_shaped_z_up(struct tl_box box)
 {
     vec3s size = glms_vec3_sub(box.upper, box.lower), middle = glms_vec3_lerp(box.lower, box.upper, 0.5f);
     bool shallow = size.z > 1.5f * size.y && fabsf(middle.y) < 0.25f * size.y;
@@ -52,7 +52,7 @@ static bool hangs_on_a_body(double top, enum tl_units units)
     return top_m >= 0.7 && top_m <= 2;
 }
 
-/* How far the area is from a square metre, as the logarithm of their ratio. */
+/* The distance of the area from a square metre, as the logarithm of their ratio. */
 static double area_error(double area, enum tl_units units)
 {
     return fabs(log(area * tl_units_metres(units) * tl_units_metres(units)));
@@ -111,7 +111,7 @@ struct tl_units_reading tl_units_read(struct tl_box box, enum tl_units wanted, b
     vec3s size = glms_vec3_sub(box.upper, box.lower);
     struct tl_units_reading reading = {
         .units = wanted, .longest = glms_vec3_max(size), .fits = true, .metric = is_metric};
-    reading.z_up = !is_metric && looks_z_up(box);
+    reading.z_up = !is_metric && is_shaped_z_up(box);
     reading.deep = !is_metric && size.z > size.y;
     if (wanted != TL_UNITS_AUTO)
         return reading;

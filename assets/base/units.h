@@ -35,11 +35,11 @@ struct tl_units_reading {
     bool absurd;         /* guessed, because the format's metres give an impossible size */
     bool fits;           /* the size is that of a garment or a body */
     bool metric;         /* its format is in metres with Y up */
-    bool z_up;           /* stands along Z, and its format does not say that Y is up */
-    bool deep;           /* deeper than high with Y up, and its format does not say that Y is up */
+    bool z_up;           /* stands along Z, and its format does not state that Y is up */
+    bool deep;           /* deeper than high with Y up, and its format does not state that Y is up */
 };
 
-/* What of a reading is in doubt, and worth a question. Units: they were guessed, and a second one is
+/* The parts of a reading that are in doubt. Units: they were guessed, and a second one is
  * possible, none fits, or the format's metres are absurd. Up: the format does not state it, and the model is
  * deeper (along Z) than high (along Y), as bodies and what they wear seldom are, whichever axis was chosen.
  */

@@ -52,8 +52,8 @@ static double *sample_nodes(void)
     return distance;
 }
 
-/* Where only the diagonal corners of a square of nodes are inside, the net would meet itself: takes one of
- * the others inside. Happens where a limb's ridge just passes a plane of nodes. */
+/* Takes one more corner inside where only the diagonal corners of a square of nodes are, as the net would
+ * touch itself. Happens where a limb's ridge just passes a plane of nodes. */
 static void join_diagonals(double *distance)
 {
     bool changed = true;

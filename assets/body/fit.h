@@ -23,14 +23,14 @@ struct tl_waist {
  * when the mesh has none there. */
 bool tl_mesh_waist(const tl_mesh *mesh, struct tl_waist *out);
 
-/* Says that a garment is of another size than the body: at its longest it is more than 1.25 times as long as
- * the body, or less than a tenth of it; or by girths: at its widest it does not go round the waist, or at its
- * narrowest it is wider by a third than the body is anywhere. NULL: none of these, or one of them has no
+/* Reports that a garment is of another size than the body: at its longest it is more than 1.25 times as long
+ * as the body, or less than a tenth of it; or by girths: at its widest it does not go round the waist, or at
+ * its narrowest it is wider by a third than the body is anywhere. NULL: none of these, or one of them has no
  * sections to be measured. The caller frees it. */
 char *tl_describe_size(const char *name, const tl_mesh *garment, const char *body_name, const tl_mesh *body);
 
-/* Says that a garment cut for the built-in form is worn by a body with another waist. NULL: the waists differ
- * by less than 3 %, or the body has none. The caller frees it. */
+/* Reports that a garment cut for the built-in form is worn by a body with another waist. NULL: the waists
+ * differ by less than 3 %, or the body has none. The caller frees it. */
 char *tl_describe_waist(const char *name, const char *body_name, const tl_mesh *body);
 
 /* Moves a garment cut for the built-in form from the form's waist to the body's. `scaled`: scales it about

@@ -30,7 +30,7 @@ double tl_form_girth(double y);
  * at y = 0, facing +Z, closed and manifold, covered in canvas. */
 tl_avatar tl_avatar_form(void);
 
-/* What both are covered in. */
+/* The cover of both. */
 tl_material tl_form_canvas(void);
 
 /* The same of the figure: 1.68 m high, its head an egg. Its feet stand on y = 0. */

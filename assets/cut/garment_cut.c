@@ -16,7 +16,7 @@
 #define EDGE_MAXIMUM_M 0.08f
 #define EDGE_FIRST_M   0.02f /* a finer cut starts from the shape of one with edges twice as long */
 
-/* How far relaxation reaches in the first cut, less far in finer ones: from neck to hem and back. Drafted
+/* The reach of relaxation in the first cut, less far in finer ones: from neck to hem and back. Drafted
  * garments, which start farther from their shape, are relaxed for longer. */
 #define REACH_M         4.0
 #define REACH_DRAFTED_M 8.0
@@ -312,7 +312,7 @@ static double form_distance(const void *context, const double point[3])
     return tl_form_distance(point);
 }
 
-/* What a garment is cut to. */
+/* The measures that a garment is cut to. */
 struct cut_order {
     const struct cut_kind *kind;
     const struct tl_body *body; /* NULL: the form */
@@ -328,7 +328,7 @@ static struct tl_cut_plan make_plan(const struct cut_order *order)
     return plan;
 }
 
-/* Of the start shape around the form. */
+/* Bounds of the start shape around the form. */
 static struct tl_cache_key key_of(const struct cut_order *order, float edge_m)
 {
     struct tl_cache_key key = tl_cache_key_begin();
@@ -404,18 +404,18 @@ static const struct cut_kind *choose(const char *name, float edge_m, tl_error *e
     return &kinds[chosen];
 }
 
-/* What was asked is refused, not trimmed: a size is a measure that somebody relies on. */
-static bool check_length(const char *option, double asked, struct tl_cut_range range,
+/* A request is refused, not trimmed: a size is a measure that somebody relies on. */
+static bool check_length(const char *option, double requested, struct tl_cut_range range,
                          const struct cut_kind *kind, tl_error *error)
 {
     const double rounding = 1e-6;
-    if (asked >= range.least - rounding && asked <= range.most + rounding)
+    if (requested >= range.least - rounding && requested <= range.most + rounding)
         return true;
-    bool is_short = asked < range.least;
+    bool is_short = requested < range.least;
     /* The limit to the millimetre, inwards: what is printed is accepted. */
     double limit = is_short ? ceil(range.least * 1e3) / 1e3 : floor(range.most * 1e3) / 1e3;
-    return tl_fail(error, TL_USAGE, "%s: %g m: the %s for this body can have no %s than %g m", option, asked,
-                   kind->name, is_short ? "less" : "more", limit + 0.0);
+    return tl_fail(error, TL_USAGE, "%s: %g m: the %s for this body can have no %s than %g m", option,
+                   requested, kind->name, is_short ? "less" : "more", limit + 0.0);
 }
 
 static bool check_sizes(const struct cut_order *order, tl_error *error)

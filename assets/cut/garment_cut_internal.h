@@ -1,4 +1,4 @@
-/* How a built-in garment is described and cut: flat pieces, the start position of each around the dress form,
+/* Descriptions and cuts of built-in garments: flat pieces, the start position of each around the dress form,
  * their seams and their pins. One plan per garment (garment_cut_dress.c,
  * garment_cut_skirt.c); garment_cut.c turns a plan into a tl_garment.
  *
@@ -59,7 +59,7 @@ struct tl_cut_flared {
 };
 struct tl_cut_piece tl_cut_flared_piece(const struct tl_cut_flared *flared);
 
-/* How much longer than drafted a garment can be, metres; most of them are bounded on one side only. */
+/* The additional length that a garment can have, metres; most of them are bounded on one side only. */
 struct tl_cut_range {
     double least, most;
 };

@@ -125,7 +125,7 @@ static void find_shoulder(struct shirt *s)
     s->shoulder_x = x;
 }
 
-/* By rays from the ridge at the underarm's level, through a quarter of a turn. */
+/* Casts rays from the ridge at the underarm's level, through a quarter of a turn. */
 static void trace_profile(const struct shirt *s, double x, bool back, struct shoulder_profile *out)
 {
     enum { RAYS = 96 };
@@ -244,7 +244,7 @@ static void cut_sleeve(struct shirt *s, double girth)
     s->sleeve[UNDER_FRONT] = tl_curve_line(point_at(-to_front, 0), ends[0]);
 }
 
-/* ---- Where the pieces start ---- */
+/* ---- Start positions of the pieces ---- */
 
 static struct tl_point trunk_at(const struct shirt *s, double x, double y, bool back)
 {
@@ -507,7 +507,7 @@ static struct tl_cut_piece stand_piece(const struct shirt *s)
     return piece_of(curves, STAND_CURVES, false, "collar");
 }
 
-/* From one angle to another, its height changing: nearly a circle's arc. */
+/* An arc from one angle to another, its height changing: nearly a circle's arc. */
 static struct tl_curve fall_arc(const struct shirt *s, double height, double angle, double to_height,
                                 double to)
 {

@@ -96,14 +96,14 @@ static struct tl_point between(struct tl_point a, struct tl_point b, double t)
     return (struct tl_point){a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
 }
 
-/* What differs between front and back. */
+/* Differences between front and back. */
 struct leg_draft {
     double width, fork, slant, rise, curve, dart_length, waist; /* waist: a quarter of the waistband */
     double knee, hem;                                           /* widths */
 };
 
-/* How far the side seam moves in from the hip to the waist, the knee and the hem: the same in front and back,
- * so that both are as long. */
+/* The distance by which the side seam moves in from the hip to the waist, the knee and the hem: the same in
+ * front and back, so that both are as long. */
 struct side_shape {
     double waist, knee, hem;
 };
@@ -176,7 +176,7 @@ static double find_back_fork(const struct trousers *t, const struct leg_draft *b
     return high;
 }
 
-/* Where the curves from `first` to `last` cross the height y: the lowest and highest x. */
+/* Finds where the curves from `first` to `last` cross the height y: the lowest and highest x. */
 static void find_span(const struct leg_pattern *pattern, int first, int last, double y, double span[2])
 {
     enum { SAMPLES = 64 };

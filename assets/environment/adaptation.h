@@ -1,5 +1,5 @@
-/* What a picture needs to know of a place: the brightness and the white in which its light is shown, as the
- * eye adapts to it; and its ground. */
+/* Exposure and white point of an environment: the brightness and the white in which its light is shown, as
+ * the eye adapts to it; and its ground. */
 #ifndef TOILE_ASSETS_ENVIRONMENT_ADAPTATION_H
 #define TOILE_ASSETS_ENVIRONMENT_ADAPTATION_H
 
@@ -10,8 +10,7 @@
 /* Luminance (Rec. 709) of the light that the built-in studio sends on upright cards: cylindrical irradiance,
  * over pi. Other places are shown as bright. */
 #define TL_ADAPTED_LUMINANCE 0.462f
-/* How much of a place's tint is taken away, in the logarithm: the eye adapts to most of it, and what is left
- * tells of the place. */
+/* The share of a place's tint that is removed, in the logarithm: the eye adapts to most of it. */
 #define TL_ADAPTED_WHITE 0.75f
 /* Places that are darker or brighter than this factor are adapted to only so far. */
 #define TL_ADAPTED_MOST 4096.0f

@@ -113,7 +113,7 @@ static bool load_radiance(const char *path, tl_image *out, tl_error *error)
     return loaded;
 }
 
-/* By the content, not by the extension. */
+/* The content decides, not the extension. */
 static bool is_radiance(const char *path)
 {
     char start[2] = "";

@@ -7,7 +7,7 @@
 #include "config/base/error.h"
 
 /* Loads an OpenEXR or Radiance picture, recognised by its content. An EXR is a cube map when its envmap
- * attribute says so or its sides are 1:6 or 6:1; everything else is lat-long. Negative values, NaN and
+ * attribute states so or its sides are 1:6 or 6:1; everything else is lat-long. Negative values, NaN and
  * infinities are replaced as base/environment.h states, and counted. `shown` is what
  * assets/environment/adaptation.h makes of it.
  *

@@ -145,7 +145,7 @@ static void fill_image(const struct tl_studio_axes *axes, tl_image *image)
     free(angles);
 }
 
-/* From the cache, if one is used that has it. */
+/* Reads it from the cache, if one is used that has it. */
 static tl_image studio_image(const struct tl_studio_axes *axes)
 {
     const char *name = axes ? "studio" : "backdrop";

@@ -27,7 +27,7 @@ enum tl_picture_use {
 };
 extern const char *const tl_picture_names[]; /* "colour", ..., NULL-terminated */
 
-/* How a colour picture is blended with its factor, in linear light (U3M's texture.mode). */
+/* The blending of a colour picture with its factor, in linear light (U3M's texture.mode). */
 enum tl_picture_mode {
     TL_PICTURE_MULTIPLY,
     TL_PICTURE_ADD,
@@ -92,7 +92,7 @@ typedef struct tl_fabric_file {
     bool has_back;
     float back[3];                         /* linear; multiplies ... */
     struct tl_fabric_picture back_picture; /* ... the mean of this one, if there is one */
-    enum tl_fabric_pattern pattern;        /* how its yarns are said to interlace */
+    enum tl_fabric_pattern pattern;        /* how its yarns interlace, as stated */
     struct tl_fabric_physics physics;
     struct tl_fabric_field *fields;
     size_t field_count;

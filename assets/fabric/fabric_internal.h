@@ -1,4 +1,4 @@
-/* What the readers of the room share. */
+/* Shared by the readers of the room. */
 #ifndef TOILE_ASSETS_FABRIC_FABRIC_INTERNAL_H
 #define TOILE_ASSETS_FABRIC_FABRIC_INTERNAL_H
 

@@ -171,7 +171,7 @@ static void leave(struct tl_fabric_picture *picture)
     *picture = (struct tl_fabric_picture){0};
 }
 
-/* Where nothing is hidden and all is metal, nobody filled those channels: no cloth is metal throughout. */
+/* Channels by which nothing is hidden and all is metal were not filled: no cloth is metal throughout. */
 static bool leave_unfilled(tl_fabric_file *file, const char *name)
 {
     struct tl_fabric_picture *occlusion = &file->pictures[TL_PICTURE_OCCLUSION],
@@ -205,7 +205,7 @@ static void take_packed(tl_fabric_file *file, const char *name)
     list(file, name, taken > 0, tl_copy_string(use));
 }
 
-/* A picture whose name says nothing is the colour, if it is the only one of its kind. */
+/* A picture whose name has no meaning is the colour, if it is the only one of its kind. */
 static void take_rest(tl_fabric_file *file)
 {
     const tl_store *store = &file->store;
@@ -221,7 +221,7 @@ static void take_rest(tl_fabric_file *file)
             use_picture(file, name, TL_PICTURE_COLOUR, -1, NULL);
             list(file, name, true, tl_copy_string("colour: the only picture without a known name"));
         } else if (picture) {
-            list(file, name, false, tl_copy_string("not used: its name does not say what it is"));
+            list(file, name, false, tl_copy_string("not used: its name does not state what it is"));
         } else {
             tl_fabric_add_field(file, name, tl_copy_string("file"), false,
                                 tl_copy_string("not used: is no PNG, JPEG or TIFF"));

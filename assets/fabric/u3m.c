@@ -265,7 +265,7 @@ static const struct number_rule number_rules[] = {
     {"sheen_tint", AT(sheen_tint), 0, 1, 1, -1, "material.fuzz_colour: towards a constant base colour"},
 };
 
-/* What a missing or unused texture leaves: the constant where no texture was meant, else the schema's
+/* The value of a missing or unused texture: the constant where no texture was meant, else the schema's
  * default. */
 static bool take_constant(const struct u3m_reader *reader, const struct number_rule *rule,
                           const struct parameter *parameter)
@@ -326,7 +326,7 @@ static bool read_basecolor(struct u3m_reader *reader)
     return good;
 }
 
-/* Normals and heights, whose constants say nothing. */
+/* Normals and heights, whose constants mean nothing. */
 static bool read_relief(struct u3m_reader *reader, const char *key, enum tl_picture_use picture,
                         const char *use)
 {
@@ -411,7 +411,7 @@ static bool read_front(struct u3m_reader *reader)
     return true;
 }
 
-/* Of the back only its colour. */
+/* The back has a colour only. */
 static bool read_back(struct u3m_reader *reader)
 {
     struct parameter parameter;

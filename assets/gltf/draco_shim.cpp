@@ -22,8 +22,8 @@ const uint64_t faces_per_byte = 64, faces_always = 1 << 20;
 /* Sixteen attributes of four floats. */
 const int64_t bytes_per_point = 256;
 
-/* What both decoders of draco leave to the stream: how many faces and points memory is allocated for, and how
- * large a point is. */
+/* Sizes that both decoders of draco leave to the stream: how many faces and points memory is allocated for,
+ * and how large a point is. */
 template <class Decoder> class Checked : public Decoder
 {
   public:

@@ -239,7 +239,7 @@ bool gltf_buffer_bytes(const gltf_document *document, int buffer, size_t offset,
 bool gltf_view_bytes(const gltf_document *document, int view, const char *what, const uint8_t **bytes,
                      size_t *size, tl_error *error);
 
-/* Values of an accessor of `components` components as floats, normalised where it says so; free(*out).
+/* Values of an accessor of `components` components as floats, normalised where it is so marked; free(*out).
  * Refuses other shapes, more than `limit` elements, and values that are not finite unless `any_value`. */
 bool gltf_read_floats(const gltf_document *document, int accessor, const char *what, int components,
                       size_t limit, bool any_value, float **out, size_t *count, tl_error *error);

@@ -50,7 +50,7 @@ static bool find_chunks(const char *path, const uint8_t *data, size_t size, stru
     return true;
 }
 
-/* What JSON text costs the parser, which is recursive and makes a tree of all values. */
+/* The cost of JSON text for the parser, which is recursive and makes a tree of all values. */
 struct json_facts {
     int depth;
     size_t objects, commas;

@@ -493,7 +493,7 @@ void copy_geometry(Owner &owner)
     }
 }
 
-void copy_looks(Owner &owner)
+void copy_all_materials(Owner &owner)
 {
     const tinygltf::Model &model = owner.model;
     size_t extensions = 0;
@@ -573,7 +573,7 @@ bool gltf_parse(const char *path, const char *json, size_t json_size, const uint
             if (owner->model.asset.version.rfind("2.", 0) != 0)
                 throw std::runtime_error("asset.version is not 2");
             copy_geometry(*owner);
-            copy_looks(*owner);
+            copy_all_materials(*owner);
             point_to(*owner, *out);
             out->path = path;
             out->file_bytes = named.bytes;

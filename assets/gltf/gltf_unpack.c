@@ -37,7 +37,7 @@ void gltf_unpack_release(gltf_document *document)
     document->unpacked = NULL;
 }
 
-/* ---- What tinygltf would refuse ---- */
+/* ---- Content that tinygltf would refuse ---- */
 
 static bool has_extension(const cJSON *object, const char *name)
 {

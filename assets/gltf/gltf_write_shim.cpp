@@ -273,7 +273,7 @@ double add_transmission(Writer &writer, const tl_material &from, tinygltf::Mater
     return share;
 }
 
-void tell_what_is_left_out(const tl_material &from, bool metal, const char *path)
+void warn_of_losses(const tl_material &from, bool metal, const char *path)
 {
     std::string left;
     const std::pair<bool, const char *> parts[] = {
@@ -356,7 +356,7 @@ int add_material(Writer &writer, const tl_material &from, const char *path, tl_e
         add_reflectance(writer, from, f0, to, path, error);
     add_coat(writer, from, to);
     add_sheen(writer, from, to);
-    tell_what_is_left_out(from, metal, path);
+    warn_of_losses(from, metal, path);
     add_map(writer, from.normal_map, AS_IT_IS, to.normalTexture, path, error);
     add_map(writer, from.occlusion_map, AS_IT_IS, to.occlusionTexture, path, error);
     writer.model.materials.push_back(to);

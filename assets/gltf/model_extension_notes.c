@@ -1,4 +1,4 @@
-/* What becomes of the extensions that a material names. */
+/* The use of the extensions that a material names. */
 #include "assets/gltf/model_internal.h"
 #include "config/base/memory.h"
 

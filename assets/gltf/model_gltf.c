@@ -103,7 +103,8 @@ static struct rig_influence influence_of(const struct gltf_vertices *primitive, 
 }
 
 /* Asks for the vertices and indices so far and those to be added. Many nodes may show one mesh. */
-static bool ask_for(const struct gltf_builder *builder, size_t vertices, size_t indices, tl_error *error)
+static bool request_memory(const struct gltf_builder *builder, size_t vertices, size_t indices,
+                           tl_error *error)
 {
     const tl_mesh *mesh = &builder->model->mesh;
     const uint64_t capacity = 2; /* arrays that grow have twice the size at most */
@@ -211,7 +212,7 @@ static bool append_primitive(struct gltf_builder *builder, const struct gltf_pri
     if (!gltf_primitive_read_indices(document, from, primitive, error))
         return false;
     size_t added = shared ? 0 : primitive->vertex_count;
-    if (!ask_for(builder, added, primitive->index_count, error))
+    if (!request_memory(builder, added, primitive->index_count, error))
         return false;
     if (primitive->index_count == 0)
         return true;

@@ -16,7 +16,7 @@ bool rig_read(const gltf_document *document, tl_rig *rig, tl_error *error);
  */
 bool rig_read_weights(const gltf_document *document, tl_rig *rig, tl_error *error);
 
-/* What the targets of a document have taken so far. */
+/* Memory that the targets of a document have taken so far. */
 struct morph_reading {
     size_t read, kept; /* offsets */
     size_t capacity;   /* of rig->morphs */
@@ -38,7 +38,7 @@ struct gltf_vertices {
 /* joint_count: of the primitive's skin; 0: its joints and weights are not read. */
 bool gltf_primitive_read_vertices(const gltf_document *document, const struct gltf_primitive *from,
                                   size_t joint_count, struct gltf_vertices *to, tl_error *error);
-/* As a list of triangles; needs to->vertex_count. */
+/* Converts to a list of triangles; needs to->vertex_count. */
 bool gltf_primitive_read_indices(const gltf_document *document, const struct gltf_primitive *from,
                                  struct gltf_vertices *to, tl_error *error);
 void gltf_vertices_release(struct gltf_vertices *vertices);

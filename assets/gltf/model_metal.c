@@ -18,7 +18,7 @@ static const uint8_t *texel_at(const tl_image *image, const tl_image *of, size_t
     return tl_image_bytes(image) + (y * (size_t)image->width + x) * (size_t)image->channels;
 }
 
-/* From linear to sRGB by a table, 65,536 steps of which the darkest byte has twenty. */
+/* Converts linear to sRGB by a table, 65,536 steps of which the darkest byte has twenty. */
 #define STEPS 65535
 
 static uint8_t *srgb_table(void)

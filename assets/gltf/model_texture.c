@@ -102,7 +102,7 @@ static void take_means(const tl_image *image, bool is_colour, struct texture_loa
     }
 }
 
-/* What blending needs to know of a colour's alpha. */
+/* Facts of a colour's alpha that blending needs. */
 static void take_alpha(const tl_image *image, struct texture_loaded *to)
 {
     size_t texels = (size_t)image->width * (size_t)image->height, channels = (size_t)image->channels;

@@ -186,7 +186,7 @@ bool remains(const Ring &ring, size_t spoke, size_t face)
     return ring.faces[face] != NONE && face != spoke && face != ring.before(spoke);
 }
 
-/* Of a collapse along a line: how far what the new side stands for may be from it. */
+/* The distance of a collapsed line from what its new side stands for. */
 double line_stray(const Decimation &work, const Ring &ring, size_t spoke)
 {
     size_t other = spoke == 0 ? ring.other_line : 0;

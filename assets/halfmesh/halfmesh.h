@@ -29,8 +29,8 @@ struct tl_cage_source {
     const bool *held;               /* [vertex_count] */
 };
 
-/* Where a vertex of the source lies on a cage: the weights of the corners of a triangle, whose sum is 1. At a
- * border that was straightened one may be negative. */
+/* The place of a vertex of the source on a cage: the weights of the corners of a triangle, whose sum is 1. At
+ * a border that was straightened one may be negative. */
 struct tl_cage_point {
     uint32_t triangle;
     double weights[3];

@@ -173,7 +173,7 @@ Weights to_corners(const double found[3], size_t slot)
     return corners;
 }
 
-/* Where a point of face `n` of a sector lies after the collapse. */
+/* The place of a point of face `n` of a sector after the collapse. */
 Located locate(const Around &around, size_t n, size_t point, const Weights &weights, double &inside)
 {
     double found[3];
@@ -325,7 +325,7 @@ template <class MeshT> class CageModule : public OpenMesh::Decimater::ModBaseT<M
         return static_cast<float>(worst);
     }
 
-    /* Of collapses that were judged, and so look at the vertex without fail. */
+    /* Collapses that were judged, and so visit the vertex without fail. */
     void preprocess_collapse(const CollapseInfo &info) override
     {
         if (look_at(info.v0) && aim(around_, info.v1.idx()))

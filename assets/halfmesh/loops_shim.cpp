@@ -151,7 +151,7 @@ std::vector<Side> prune(const std::vector<Side> &sides)
     return kept;
 }
 
-/* Where a refused face ended a line, joins it to a side that begins there and that none leads to. */
+/* Joins a line that a refused face ended to a side that begins there and that none leads to. */
 void link(std::vector<Side> &sides)
 {
     std::vector<char> led_to(sides.size());

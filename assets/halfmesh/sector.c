@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Of a triangle's height to its longest side (0.87 at best): flatter ones are needles. */
+/* Ratio of a triangle's height to its longest side (0.87 at best): flatter ones are needles. */
 #define NEEDLE 0.15
 #define BEST   0.866
 /* Rise of an outline's vertex over the chord that replaces it, to the chord: a turn of 27 degrees. */
@@ -186,7 +186,7 @@ void tl_sector_rest(const struct tl_sector *sector, size_t target, size_t face, 
     turn_back(sector, corners, rest);
 }
 
-/* Where the point with these weights in face `from` is laid out. */
+/* The position at which the point with these weights in face `from` is laid out. */
 static void lay_point(const struct tl_sector *sector, size_t from, const double weights[3], double point[2])
 {
     const double *first = sector->spokes[from], *second = sector->spokes[spoke_after(sector, from)];

@@ -63,7 +63,7 @@ enum { TL_FLIPPED_HUB, TL_FLIPPED_FAR };
 /* Whether the flipped diagonal is Delaunay's: the smallest angle grows, and no triangle turns over. */
 bool tl_sector_should_flip(const struct tl_sector *sector);
 
-/* As tl_sector_rest and tl_sector_locate, for the flipped faces. */
+/* The same as tl_sector_rest and tl_sector_locate, for the flipped faces. */
 void tl_sector_flipped_rest(const struct tl_sector *sector, size_t face, double rest[3][2]);
 size_t tl_sector_flipped_locate(const struct tl_sector *sector, size_t from, const double weights[3],
                                 double found[3]);

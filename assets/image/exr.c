@@ -119,7 +119,7 @@ static bool check_attributes(const struct exr_source *source, tl_error *error)
     const uint32_t magic = 20000630, multi_part_flag = 0x1000;
     const uint8_t *at = source->data + 8, *end = source->data + source->size;
     if (source->size < 8 || word_at(source->data) != magic)
-        return true; /* the library says that it is no OpenEXR file */
+        return true; /* the library finds that it is no OpenEXR file */
     bool is_multi_part = word_at(source->data + 4) & multi_part_flag;
     for (bool header_begins = true;;) {
         const uint8_t *type = skip_text(at, end);

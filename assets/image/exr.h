@@ -33,7 +33,7 @@ struct tl_exr_layer {
 /* Writes at least one layer. The file appears whole or not at all. */
 bool tl_exr_save(const char *path, const struct tl_exr_layer *layers, size_t layer_count, tl_error *error);
 
-/* As tl_exr_save, with the attribute "comments", which image viewers show; NULL: without. */
+/* Is tl_exr_save with the attribute "comments", which image viewers show; NULL: without. */
 bool tl_exr_save_commented(const char *path, const struct tl_exr_layer *layers, size_t layer_count,
                            const char *comments, tl_error *error);
 

@@ -164,7 +164,7 @@ bool tl_tiff_decode(const char *name, const void *data, size_t size, tl_image *o
     return read;
 }
 
-/* What lies in a row of the file. */
+/* The content of a row of the file. */
 struct samples {
     uint16_t bits, format, per_texel, planes;
 };

@@ -123,7 +123,8 @@ static char *picture_path(const char *model, const char *library, const char *na
 
 /* Asks for all pictures so far and this one. A material file may name one small picture by many paths, so
  * that the sizes of different files alone are added. */
-static bool ask_for(struct mtl_reader *reader, const char *path, const tl_image *image, tl_error *error)
+static bool request_memory(struct mtl_reader *reader, const char *path, const tl_image *image,
+                           tl_error *error)
 {
     const uint64_t copies = 2; /* the decoder's */
     reader->decoded_bytes +=
@@ -157,7 +158,7 @@ static const tl_image *load_picture(struct mtl_reader *reader, const char *name,
     if (reader->is_full || model->image_count == reader->image_capacity)
         goto failed;
     if (!tl_path_is_inside(reader->path, path, &error) || !tl_image_load(path, &image, &error) ||
-        !ask_for(reader, path, &image, &error)) {
+        !request_memory(reader, path, &image, &error)) {
         note_unread(reader, path, &error);
         goto failed;
     }

@@ -76,7 +76,7 @@ void tl_pattern_edge_divide(const struct tl_pattern_edge *edge, int segments, st
 
 double tl_pattern_panel_area(const struct tl_pattern_panel *panel); /* m^2 */
 
-/* How much longer the longer side of a stitch is than the shorter, as a share of the shorter: it is gathered
+/* The excess of the longer side of a stitch over the shorter, as a share of the shorter: it is gathered
  * there. */
 double tl_pattern_stitch_ease(const tl_pattern *pattern, size_t stitch);
 

@@ -31,7 +31,7 @@ static int *segments_of(const struct pattern_cutting *cutting, const struct tl_p
     return &cutting->segments[cutting->first_edge[side->panel] + side->edge];
 }
 
-/* As many segments on both sides of each stitch; an edge may be in several stitches. */
+/* Makes as many segments on both sides of each stitch; an edge may be in several stitches. */
 static void agree(const struct pattern_cutting *cutting)
 {
     const tl_pattern *pattern = cutting->pattern;
@@ -231,8 +231,7 @@ static void sew(const struct pattern_cutting *cutting, tl_garment *garment)
     }
 }
 
-/* Where a neck line meets that of the other half, in front and behind, both would draw it to their sides: it
- * is left free. */
+/* Leaves a neck line free where it meets that of the other half: both would draw it to their sides. */
 static bool is_centre(const struct pattern_cutting *cutting, const struct tl_pattern_side *side, bool end)
 {
     const struct tl_pattern_panel *panel = &cutting->pattern->panels[side->panel];

@@ -1,4 +1,4 @@
-/* From the lines of a panel, as a file lists them, to its outline. */
+/* Converts the lines of a panel, as a file lists them, to its outline. */
 #include "assets/pattern/pattern_internal.h"
 #include "config/base/memory.h"
 

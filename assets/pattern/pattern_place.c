@@ -9,11 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How far panels at the waist are moved towards the body. */
-#define TUCK_M 0.015
+/* The distance by which panels at the waist are moved towards the body. */
+#define INSET_M 0.015
 /* GarmentCode hangs a shirt so that its top is so far below the shoulders, which it then falls over. */
 #define BELOW_SHOULDER_M 0.05
-/* Of the average body's height (GarmentCode's mean_all: 1.457 of 1.720 m). */
+/* Share of the average body's height (GarmentCode's mean_all: 1.457 of 1.720 m). */
 #define SHOULDER_SHARE 0.847
 #define ARMSCYE_SHARE  0.075
 #define NECK_SHARE     0.11
@@ -158,13 +158,13 @@ static void add_edge(struct mean_height *mean, const struct tl_pattern_panel *pa
 }
 
 /* Moves a panel against its outer side. */
-static void tuck(struct tl_pattern_panel *panel)
+static void move_inwards(struct tl_pattern_panel *panel)
 {
     const double *a = panel->across, *u = panel->up;
     const double outwards[3] = {a[1] * u[2] - a[2] * u[1], a[2] * u[0] - a[0] * u[2],
                                 a[0] * u[1] - a[1] * u[0]};
     for (int k = 0; k < 3; k++)
-        panel->origin[k] -= TUCK_M * outwards[k];
+        panel->origin[k] -= INSET_M * outwards[k];
 }
 
 /* Marks a panel and all that are sewn to it, directly or not, except those at the waist. */
@@ -215,8 +215,8 @@ static double top_of(const struct tl_pattern_panel *panel)
     return top;
 }
 
-/* What is sewn to the waist goes there with it, as one: a bodice. Where panels hang aslant they are placed on
- * limbs, away from which they are not moved. */
+/* Panels that are sewn to the waist move with it, as one: a bodice. Where panels hang aslant they are placed
+ * on limbs, away from which they are not moved. */
 static void raise_sewn(tl_pattern *pattern, size_t first, const struct tl_pattern_levels *levels, bool *done)
 {
     bool *marked = TL_NEW_ARRAY(bool, pattern->panel_count);
@@ -247,7 +247,7 @@ bool tl_pattern_raise(tl_pattern *pattern, const struct tl_pattern_levels *level
                 add_edge(&mean, &pattern->panels[p], &pattern->panels[p].edges[e]);
     for (size_t p = 0; mean.length > 0 && p < pattern->panel_count; p++) {
         if (has_waist(&pattern->panels[p])) {
-            tuck(&pattern->panels[p]);
+            move_inwards(&pattern->panels[p]);
             pattern->panels[p].origin[1] += levels->waist - mean.moment / mean.length;
         } else if (!done[p]) {
             raise_sewn(pattern, p, levels, done);

@@ -11,7 +11,7 @@
 
 #define UNITS_IN_METER 100 /* of a file without properties: GarmentCode writes centimetres */
 
-/* Where each line of a panel has gone, for the stitches, which name lines by their place in the file. */
+/* The new place of each line of a panel, for the stitches, which name lines by their place in the file. */
 struct places {
     size_t count, *edges;
 };

@@ -21,8 +21,8 @@ static void join(const tl_pattern *pattern, const uint32_t *firsts, const struct
                      corner(pattern, firsts, &stitch->sides[1], (end == 1) == right_wrong));
 }
 
-/* How many of the two edges end where they begin, once all seams but this one are sewn, and this one too
- * where `right_wrong` says how. */
+/* Counts those of the two edges that end where they begin, once all seams but this one are sewn, and this one
+ * too as `right_wrong` states. */
 static int count_rings(const tl_pattern *pattern, const uint32_t *firsts, uint32_t corner_count, size_t index,
                        const bool *right_wrong)
 {

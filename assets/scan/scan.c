@@ -1,4 +1,4 @@
-/* From polygons as read to a model. */
+/* Converts polygons as read to a model. */
 #include "assets/scan/scan.h"
 
 #include "assets/base/model_build.h"

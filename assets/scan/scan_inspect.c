@@ -1,4 +1,4 @@
-/* What is wrong with the mesh of a scan. */
+/* Faults of the mesh of a scan. */
 #include "assets/base/model_build.h"
 #include "assets/scan/scan_internal.h"
 #include "assets/topology/sets.h"

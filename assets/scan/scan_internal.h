@@ -1,4 +1,4 @@
-/* What all formats of scans are read into, and the steps after reading. */
+/* The form that all formats of scans are read into, and the steps after reading. */
 #ifndef TOILE_ASSETS_SCAN_SCAN_INTERNAL_H
 #define TOILE_ASSETS_SCAN_SCAN_INTERNAL_H
 

@@ -77,7 +77,7 @@ static bool read_colour(struct off_reader *reader, vec3s *out)
     return true;
 }
 
-/* x y z, then what the header says: a normal, a colour, a texture coordinate. */
+/* x y z, then what the header states: a normal, a colour, a texture coordinate. */
 static bool read_vertex(struct off_reader *reader)
 {
     struct tl_text *text = reader->text;

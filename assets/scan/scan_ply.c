@@ -24,7 +24,7 @@ enum ply_type {
 };
 static const size_t type_sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
 
-/* Where a property goes. */
+/* The destination of a property. */
 enum ply_slot {
     SLOT_X,
     SLOT_Y,

@@ -120,7 +120,7 @@ static float level_of(const struct opening_piece *piece, const struct tl_opening
     return (loop->centre.y - piece->box.lower.y) / fmaxf(height, FLT_MIN);
 }
 
-/* What a loop is like; KINDS: nothing known. Small holes and slits are not openings that somebody wears. */
+/* The kind of a loop; KINDS: nothing known. Small holes and slits are not openings that somebody wears. */
 static int kind_of(const struct opening_piece *piece, const struct tl_opening *loop)
 {
     const float in_middle = 0.08f, at_side = 0.12f, upright = 0.5f, down = -0.85f, bottom = 0.15f;
@@ -248,7 +248,8 @@ static void name_piece(const struct tl_opening_mesh *mesh, const uint32_t *roots
         name_pair(piece, LIKE_LEG, "leg hem");
 }
 
-/* How many of the first `end` openings have a name, not counting the numbers that were added to it. */
+/* Counts those of the first `end` openings that have a name, not counting the numbers that were added to it.
+ */
 static size_t count_named(const struct tl_openings *openings, size_t end, const char *name)
 {
     size_t count = 0, length = strlen(name);

@@ -53,7 +53,7 @@ static bool are_adjacent(const struct stitches *stitches, uint32_t a, uint32_t b
     return stitches->borders[a].next == b || stitches->borders[b].next == a;
 }
 
-/* How far a stitch is moved along its edge, as a share of it. */
+/* The distance by which a stitch is moved along its edge, as a share of it. */
 static float moved_by(const struct tl_stitch *stitch)
 {
     return fminf(fabsf(stitch->at), fabsf(1 - stitch->at));
@@ -80,7 +80,7 @@ static bool sew_one(struct stitches *stitches, const struct tl_stitch *stitch, t
     return true;
 }
 
-/* Of several stitches to one end the one that is moved least holds. Returns how many hold. */
+/* The stitch to an end that is moved least holds. Returns how many hold. */
 static size_t sew_exact_ones_first(struct stitches *stitches, tl_garment *garment)
 {
     const tl_model *model = &garment->model;

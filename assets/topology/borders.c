@@ -47,7 +47,7 @@ static float turn_between(const struct outlining *outlining, uint32_t side, uint
     return fabsf(atan2f(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
 }
 
-/* Where a loop of borders begins: where hem and seam join, or else at the sharpest corner but for tips of
+/* The begin of a loop of borders: where hem and seam join, or else at the sharpest corner but for tips of
  * darts, so that no seam changes its side half way. */
 static uint32_t start_of_loop(const struct outlining *outlining, uint32_t side)
 {
@@ -130,7 +130,7 @@ static uint32_t partner_of(const struct outlining *outlining, size_t border)
     return partner == TL_NO_BORDER ? TL_NO_BORDER : outlining->numbers[partner];
 }
 
-/* From every tip, where a border is sewn to the next one, outwards along both legs. */
+/* Goes from every tip, where a border is sewn to the next one, outwards along both legs. */
 static void find_darts(struct outlining *outlining)
 {
     tl_borders *made = &outlining->made;
@@ -158,7 +158,7 @@ static float radius_of(const struct outlining *outlining, size_t first, size_t e
 }
 
 /* Every hem of an opening (a neck, an armhole, a skirt's hem) is as wide as its most curved run allows. A run
- * ends at corners and at seams; short ones tell nothing. */
+ * ends at corners and at seams; short ones are no measure. */
 static void limit_widths(struct outlining *outlining)
 {
     const float corner = 0.6f, shortest_m = 0.03f; /* radians */

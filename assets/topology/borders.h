@@ -22,7 +22,7 @@
  * can be eased away by pressing, and with it follows how wide a hem may be. */
 #define TL_BORDER_EASE 0.06f
 
-/* Of the two borders of a seam, one is on the side to which the allowance is pressed. The legs of a dart,
+/* One of the two borders of a seam is on the side to which the allowance is pressed. The legs of a dart,
  * which meet at its tip, have no allowance of an even width. */
 enum tl_border_kind {
     TL_BORDER_SEAM_OVER,

@@ -57,7 +57,7 @@ static struct buckets sort_sides(const tl_mesh *mesh, const uint32_t *places)
 
 enum relation { APART, SEWN, JOINED };
 
-/* How two sides that begin in one bucket are related: JOINED within one piece. */
+/* The relation of two sides that begin in one bucket: JOINED within one piece. */
 static enum relation relation_of(const tl_mesh *mesh, const uint32_t *places, uint32_t s, uint32_t t)
 {
     uint32_t a = corner_of(mesh, s, 0), b = corner_of(mesh, s, 1);

@@ -101,7 +101,8 @@ static void lay_tips(const struct tl_weave_params *params, struct tl_tile *tile)
     }
 }
 
-/* How hands and folds leave a pile: in patches of the size of its clumps, each towards somewhere else. */
+/* The lean that hands and folds leave in a pile: in patches of the size of its clumps, each towards somewhere
+ * else. */
 static void lean(const struct tl_weave_params *params, struct tl_tile *tile)
 {
     const int cells = cells_of(tile, (double)params->clump_mm);

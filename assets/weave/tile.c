@@ -45,7 +45,7 @@ static int wrapped(int i, int count)
     return i < 0 ? i + count : i;
 }
 
-/* Of an index less than a period away. */
+/* Wraps an index less than a period away. */
 static int near(int i, int count)
 {
     return i < 0 ? i + count : i >= count ? i - count : i;

@@ -320,7 +320,7 @@ static void sum_deviations(uint32_t seed, int count, double amount, float *sums)
     sums[count] = 0;
 }
 
-/* What lies on top counts: the warp in twill and satin, both in plain weaves, and loops across and along. */
+/* The top layer counts: the warp in twill and satin, both in plain weaves, and loops across and along. */
 static struct tl_yarns *make_streaks(const struct tl_weave_params *params)
 {
     static const double shares[] = {[TL_WEAVE_PLAIN] = 0.5, [TL_WEAVE_TWILL] = 0.9, [TL_WEAVE_SATIN] = 0.8};

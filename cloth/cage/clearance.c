@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Most that rooms are told apart by: 2.5 mm, of the dress's 20 mm edges enough for nine vertices in ten. */
+/* Maximum clearance that is resolved: 2.5 mm, of the dress's 20 mm edges enough for nine vertices in ten. */
 #define LIST_REACH_M  0.002
 #define LIST_MARGIN_M 0.001
 

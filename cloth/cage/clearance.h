@@ -1,4 +1,4 @@
-/* How far each vertex of the cloth is from what is around it: the room that a drawn surface has which does
+/* Distance of each vertex of the cloth from what is around it: the room that a drawn surface has which does
  * not lie in the cloth itself. Threads: parallel inside, with the same results at any number of threads. */
 #ifndef TOILE_CLOTH_CAGE_CLEARANCE_H
 #define TOILE_CLOTH_CAGE_CLEARANCE_H

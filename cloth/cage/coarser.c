@@ -133,7 +133,7 @@ static void take_pins(tl_coarser *coarser, const tl_cloth *from)
     free(particles);
 }
 
-/* Where the cage's vertices are, as a new array. */
+/* Positions of the cage's vertices, as a new array. */
 static vec3d *places_of(const tl_coarser *coarser)
 {
     const struct tl_cage *cage = &coarser->cage;
@@ -328,7 +328,7 @@ void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
     tl_follower_start(coarser->follower, coarser->made, cloth->particles.x);
 }
 
-/* By vertices of the cage, as a new array. */
+/* Values by vertices of the cage, as a new array. */
 static struct tl_clearance *clearances_of(const tl_coarser *coarser, const tl_collider *collider)
 {
     const struct tl_cage *cage = &coarser->cage;

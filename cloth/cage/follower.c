@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a body may be below a vertex before it is asked for its surface. */
+/* The depth below a vertex from which a body's surface is queried. */
 #define NEAR_M 0.005
 
 /* A vertex stays above a body by this share of the height of the cage's nearest vertex, so that layers keep
@@ -68,7 +68,7 @@ struct tl_rigid tl_cage_motion(const struct tl_cage *cage, const struct tl_fans 
     return tl_rigid_fit(from, to, count);
 }
 
-/* ---- What is made once ---- */
+/* ---- Preparation ---- */
 
 /* Blends the vertices' motions, and maps them to corners. */
 static void bind(tl_follower *follower)

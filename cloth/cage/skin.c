@@ -28,7 +28,8 @@ static uint32_t neighbour_at(const struct rings *rings, uint32_t item)
     return rings->edges[item / 2][1 - item % 2];
 }
 
-/* What a bone's weights spread over: vertices, by number of rounds from where they were not 0. */
+/* The vertices that a bone's weights spread over: vertices, by number of rounds from where they were not 0.
+ */
 struct weight_patch {
     uint32_t *slots;    /* [vertex_count] of the vertices in the patch, plus 1; else 0 */
     uint32_t *vertices; /* [slot] */

@@ -36,7 +36,7 @@ struct tl_skin {
 struct tl_skin tl_skin_make(const struct tl_skin_source *source);
 void tl_skin_release(struct tl_skin *skin);
 
-/* Where `motions` [bone] move the point `from` of a vertex that has bones. */
+/* The position to which `motions` [bone] move the point `from` of a vertex that has bones. */
 vec3d tl_skin_point(const struct tl_skin *skin, size_t vertex, const struct tl_rigid *motions, vec3d from);
 
 #endif

@@ -253,7 +253,7 @@ static bool is_any_released(const struct tl_contacts *contacts, size_t index)
                : is_sample_released(contacts, &contacts->samples[index - contacts->particle_count]);
 }
 
-/* What is outside again is held outside. What is still inside when its time is over comes out at
+/* Vertices that are outside again are held outside. Those still inside when their time is over come out at
  * push_out_speed. */
 static void follow_released(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
                             vec3d x)
@@ -428,7 +428,7 @@ bool tl_contacts_height_asked(const tl_collider *collider, vec3d x, struct tl_co
     return take_ground(tl_collider_has_ground(collider), x, out);
 }
 
-/* What is solved for, on the team. */
+/* The work on the team. */
 struct solving {
     struct surroundings surroundings;
     struct tl_contacts *contacts;

@@ -86,7 +86,7 @@ struct tl_contact_plane {
 size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
                           size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
 
-/* Where a particle is above the nearer of avatar and ground, as far as the caches know: returns false if
+/* Height of a particle above the nearer of avatar and ground, as far as the caches know: returns false if
  * neither is known to be near. */
 struct tl_contact_height {
     vec3d up; /* outward, unit */

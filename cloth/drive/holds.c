@@ -7,7 +7,7 @@ static double *coordinate(vec3d *x, int axis)
     return axis == 0 ? &x->x : axis == 1 ? &x->y : &x->z;
 }
 
-/* By how much the particle is off the plane; 0 on the side where it may be. */
+/* Distance of the particle from the plane; 0 on the side where it may be. */
 static double off_plane(const struct tl_hold *hold, double at)
 {
     double off = at - (double)hold->level_m;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* How far pins look for the avatar. */
+/* The reach within which pins find the avatar. */
 #define REACH_M 0.1
 
 /* Point and axes of the avatar's triangle that carries a pin, at a phase of the motion. */

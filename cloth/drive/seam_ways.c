@@ -1,10 +1,10 @@
-/* Which way round the body a seam closes. */
+/* Chooses the side of the body around which a seam closes. */
 #include "cloth/drive/seams.h"
 #include "config/base/memory.h"
 
 #include <stdlib.h>
 
-/* How far the body is looked for, how far off it a way leads, how far aside, and in what steps. */
+/* The reach in which the body is found, the distance of a path from it, how far aside, and in what steps. */
 #define REACH_M 0.3
 #define OFF_M   0.012
 #define ASIDE_M 0.3

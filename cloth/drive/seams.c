@@ -15,7 +15,7 @@
 #define STUCK_S 0.3
 /* Seconds that stuck ones are given. */
 #define LAST_S 1.0
-/* m/s, how fast winches draw in, and 1/s: the cloth's drag meanwhile. */
+/* Speed at which seam pulls shorten, m/s, and the cloth's drag meanwhile, 1/s. */
 #define GENTLE_SPEED 0.6
 #define FIRM_SPEED   0.15
 #define STUCK_SPEED  1.5

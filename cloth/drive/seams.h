@@ -1,6 +1,6 @@
-/* Seams: pairs of vertices that are drawn together like by winches, and then welded.
+/* Seams: pairs of vertices that are pulled together at a bounded speed, and then welded.
  *
- * A winch draws its thread in by a bounded speed from its present length: a thread that something holds loses
+ * A pull shortens a seam's thread by a bounded speed from its present length: a thread that is held loses
  * nothing and stores nothing. (A link that shrinks on a clock asks for all that it missed at once, and
  * tears.) Drawing before welding lets panels wrap around the body while contact keeps them outside; welding
  * at once would put the middle of a 30 cm gap inside the avatar. Seams close gently at first, when the

@@ -21,7 +21,7 @@ static double gust_at(double late_s)
     return wave;
 }
 
-/* By how many seconds a place a metre on sees the gusts later, s/m: the wind's direction over its speed. 0
+/* The delay of gusts over a metre, s/m: the wind's direction over its speed. 0
  * without wind. */
 static vec3d lateness(const struct tl_wind *wind)
 {

@@ -16,7 +16,7 @@
  * flat: folds in the garment's file are not remembered.
  *
  * Rest shapes: x along the weft, y along the warp, metres. Lifetime: plain structs that own their arrays.
- * Threads: pure, except where a function says otherwise. */
+ * Threads: pure, except where a function states otherwise. */
 #ifndef TOILE_CLOTH_ENERGY_ENERGY_H
 #define TOILE_CLOTH_ENERGY_ENERGY_H
 

@@ -248,7 +248,7 @@ static void add_energies(const struct tl_pair_forces *pairs)
             bending_energy(pairs, block_from(from, mine));
 }
 
-/* What the passes compute, on the team. */
+/* Work of the passes on the team. */
 struct evaluation {
     const struct tl_energy *energy;
     const struct tl_cloth_fabric *fabric;

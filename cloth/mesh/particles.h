@@ -1,7 +1,7 @@
 /* The moving state of the cloth, one entry per physics vertex, and the loops over it that the solvers share.
  *
  * Double precision throughout: in float, the position increment h^2 g of a particle at 1.5 m is rounded away
- * for h <= 7e-5 s. Lifetime: plain structs that own their arrays unless they say otherwise. Threads: pure. */
+ * for h <= 7e-5 s. Lifetime: plain structs that own their arrays unless stated otherwise. Threads: pure. */
 #ifndef TOILE_CLOTH_MESH_PARTICLES_H
 #define TOILE_CLOTH_MESH_PARTICLES_H
 

@@ -26,7 +26,7 @@
 #define MOST_ALONE_NS      2000000000
 #define CALM_NS            50000000
 
-/* The present work is told by one number, so that threads that have no part in it need not read the rest,
+/* One number identifies the present work, so that threads that have no part in it need not read the rest,
  * which the next work may be changing: how many works there were before, and how many threads it has. */
 #define THREADS_BITS 8
 #define THREADS_MASK ((1u << THREADS_BITS) - 1)
@@ -56,9 +56,9 @@ static _Thread_local struct {
     size_t thread, threads;
 } mine = {0, 1};
 
-static void pause_or_yield(unsigned looks)
+static void pause_or_yield(unsigned polls)
 {
-    if (looks >= SPINS)
+    if (polls >= SPINS)
         sched_yield();
 #if defined __x86_64__ || defined __i386__
     else
@@ -76,11 +76,11 @@ static int64_t now_ns(void)
 static void wait_for_others(unsigned before)
 {
     int64_t began_ns = 0;
-    for (unsigned looks = 0; atomic_load_explicit(&team.passed, memory_order_acquire) == before; looks++) {
-        pause_or_yield(looks);
-        if (looks == SPINS)
+    for (unsigned polls = 0; atomic_load_explicit(&team.passed, memory_order_acquire) == before; polls++) {
+        pause_or_yield(polls);
+        if (polls == SPINS)
             began_ns = now_ns();
-        else if (looks > SPINS && now_ns() - began_ns > team.patience_ns)
+        else if (polls > SPINS && now_ns() - began_ns > team.patience_ns)
             atomic_store(&team.stalled, true);
     }
 }
@@ -110,11 +110,11 @@ static void sleep_until_other(uint64_t number)
 
 static uint64_t wait_for_other(uint64_t number)
 {
-    for (unsigned looks = 0; looks < SPINS + YIELDS; looks++) {
+    for (unsigned polls = 0; polls < SPINS + YIELDS; polls++) {
         uint64_t now = atomic_load_explicit(&team.number, memory_order_acquire);
         if (now != number)
             return now;
-        pause_or_yield(looks);
+        pause_or_yield(polls);
     }
     sleep_until_other(number);
     return atomic_load(&team.number);

@@ -37,7 +37,7 @@ size_t tl_team_thread(void);
 /* Within work: the calling thread's range of `count` elements, in whole multiples of `unit`; outside: all. */
 struct tl_range tl_team_range(size_t count, size_t unit);
 
-/* How many threads tl_team_run may take for so many vertices. */
+/* The number of threads that tl_team_run may take for so many vertices. */
 size_t tl_team_size(size_t vertex_count);
 
 #endif

@@ -4,7 +4,7 @@
 #define SAMPLES 256
 /* Added to the covariance, relative to its trace: flat cloth has no extent across. */
 #define REGULARISATION 1e-3
-/* Of the determinant. */
+/* Bound of the determinant. */
 #define INVERTIBLE 0.1
 
 /* The rows of a symmetric or any other 3x3 matrix's inverse; false if its determinant is below `least`. */

@@ -64,7 +64,7 @@ void tl_closest_on_segments(vec3d p0, vec3d p1, vec3d q0, vec3d q1, double *s, d
  * times.
  */
 #define UNCERTAIN_SHARE (TL_CLOSEST_LOSS / 2)
-/* Of a squared distance and its root. */
+/* Rounding of a squared distance and of its root. */
 #define ROUND_SHARE 1e-6f
 
 struct lane_vector {

@@ -180,7 +180,7 @@ static bool find_place(const struct exchange *now, struct touched *touched)
     return tl_apart_allows(touched->kept, apart->radius[v], planes, count);
 }
 
-/* Where moving planes leave a vertex no place they stand still, for the other vertices of their pairs too,
+/* Moving planes stand still where they leave a vertex no place, for the other vertices of their pairs too,
  * which may find no place any more in turn. Where all planes stand still, a vertex can stay where it was. */
 static void find_places(struct exchange *now)
 {

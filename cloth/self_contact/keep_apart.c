@@ -165,7 +165,7 @@ struct truncation {
     bool sunk; /* a vertex was moved into the body */
 };
 
-/* What is truncated, on the team, and what was seen of any vertex. */
+/* Work of a truncation on the team, and what was found at any vertex. */
 struct truncating {
     const struct tl_apart *apart;
     const struct tl_apart_params *params;

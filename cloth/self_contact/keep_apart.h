@@ -51,7 +51,7 @@ struct tl_apart_contacts {
 /* The vector from the first feature's point to the second one's, of a contact at positions x. */
 vec3d tl_apart_between(const struct tl_apart_contact *contact, const vec3d *x);
 
-/* Which of v[4] are the first feature's, or the second one's. */
+/* Those of v[4] that are the first feature's, or the second one's. */
 struct tl_range tl_apart_feature(const struct tl_apart_contact *contact, bool first);
 
 /* A contact in which one feature lies on the other, as seen from the body. */
@@ -61,7 +61,7 @@ struct tl_apart_carried {
     bool first; /* the first feature is the upper one */
 };
 
-/* What the caller gives each time; borrowed for the call. */
+/* Inputs of each call; borrowed for the call. */
 struct tl_apart_params {
     const struct tl_topology *topology;
     const vec2s (*rest)[3]; /* [triangle] */
@@ -112,7 +112,7 @@ void tl_apart_release(struct tl_apart *apart);
  * made sure that it must be: what is moved back loses its momentum. */
 #define TL_APART_CUT_M 5e-6
 
-/* Where all planes and balls hold: positions that the last truncation left, and the common motion until then.
+/* A state in which planes and balls hold: positions of the last truncation, and the common motion until then.
  */
 struct tl_apart_start {
     const vec3d *x;

@@ -199,7 +199,7 @@ static vec3d in_axes(const vec3d axes[3], vec3d v)
     return (vec3d){vec3d_dot(axes[0], v), vec3d_dot(axes[1], v), vec3d_dot(axes[2], v)};
 }
 
-/* How far any spoke has changed since the measurement. */
+/* The largest change of a spoke since the measurement. */
 static double spoke_change(const struct tl_near *near, uint32_t hub, const vec3d *x)
 {
     vec3d axes[3];
@@ -276,7 +276,7 @@ static void measure_hub(struct tl_near *near, uint32_t hub, const vec3d *x)
     near->clear[hub] = least;
 }
 
-/* What features around a hub can come nearer by, in all. */
+/* The distance by which features around a hub can come nearer, in all. */
 static double hub_reach(const struct tl_near *near, uint32_t hub)
 {
     double most = near->reach[hub];

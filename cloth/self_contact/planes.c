@@ -47,7 +47,7 @@ bool tl_apart_planes_of(const struct tl_near_pair *pair, const double *size, con
     return true;
 }
 
-/* How much of the way from `safe` to `d` is within the ball. */
+/* The share of the way from `safe` to `d` that is within the ball. */
 static double share_within(vec3d safe, vec3d d, double radius)
 {
     vec3d way = vec3d_sub(d, safe);

@@ -30,9 +30,9 @@ struct tl_apart_plane {
 bool tl_apart_planes_of(const struct tl_near_pair *pair, const double *size, const vec3d at[4],
                         const vec3d to[4], vec3d normal, double distance, struct tl_apart_plane planes[4]);
 
-/* The displacement nearest to `d` that heeds a ball of `radius` and the planes, as far as a few projections
- * find it; then as much of the way to it from `safe`, which heeds them, as heeds them all. Sets *stopped if a
- * plane has stopped it. */
+/* The displacement nearest to `d` that satisfies a ball of `radius` and the planes, as far as a few
+ * projections find it; then as much of the way to it from `safe`, which keeps to them, as keeps to all. Sets
+ * *stopped if a plane has stopped it. */
 vec3d tl_apart_bounded(vec3d d, vec3d safe, double radius, const struct tl_apart_plane *planes,
                        size_t plane_count, bool *stopped);
 

@@ -24,7 +24,7 @@
 #define WANTED_SHARE 0.7
 /* Common motion is renewed before it turns or stretches by more than this. */
 #define COMMON_MOST 0.2
-/* Of lists: more stretch of the common motion since then asks for a new one. */
+/* Limit of lists: more stretch of the common motion since then requires a new one. */
 #define LIST_STRETCH 1.1
 /* Planes that leave a vertex more room than its ball are no bound and not kept; but what they are exchanged
  * for may be. Each vertex has room for so many more planes than it has, at first. */
@@ -102,7 +102,7 @@ static double measure_list(struct tl_apart *apart, const vec3d *x)
 
 /* ---- Pairs ---- */
 
-/* What one thread finds in its part of the list. */
+/* Findings of one thread in its part of the list. */
 struct found {
     bool touching;
     struct tl_apart_contacts contacts;
@@ -290,7 +290,7 @@ static void gather_contacts(struct tl_apart *apart, const struct found *parts, s
             add_contact(&apart->contacts, &parts[part].contacts.contacts[k]);
 }
 
-/* ---- What carries what ---- */
+/* ---- Supports ---- */
 
 vec3d tl_apart_between(const struct tl_apart_contact *contact, const vec3d *x)
 {
@@ -313,7 +313,7 @@ struct tl_range tl_apart_feature(const struct tl_apart_contact *contact, bool fi
 #define CARRYING_GAPS  2
 #define LEAST_CARRYING 0.1
 
-/* Where vertices are that lie on the body, directly or by way of other cloth. */
+/* Positions of vertices that lie on the body, directly or by way of other cloth. */
 struct carriers {
     bool *known; /* [vertex] */
     struct tl_contact_height *at;

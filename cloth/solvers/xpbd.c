@@ -133,26 +133,26 @@ TL_INLINE double stretch_push(double squared, double factor)
 TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->a, m->weft[lane]);
-    double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], met = f->g + lean * f->a;
+    double scale = 1 + push * m->cc[lane], lean = push * m->cd[lane], middle = f->g + lean * f->a;
     f->v_u = lean;
-    f->b += lean * (f->g + met);
+    f->b += lean * (f->g + middle);
     f->u_u = scale;
     f->a *= scale * scale;
-    f->g = scale * met;
+    f->g = scale * middle;
     return push;
 }
 
 TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
     double push = stretch_push(f->b, m->warp[lane]);
-    double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], met = f->g + lean * f->b;
+    double scale = 1 + push * m->dd[lane], lean = push * m->cd[lane], middle = f->g + lean * f->b;
     f->u_u += lean * f->v_u;
     f->u_v = lean;
-    f->a += lean * (f->g + met);
+    f->a += lean * (f->g + middle);
     f->v_u *= scale;
     f->v_v = scale;
     f->b *= scale * scale;
-    f->g = scale * met;
+    f->g = scale * middle;
     return push;
 }
 

@@ -140,16 +140,17 @@ static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
     }
 }
 
-/* How near. Farther, so much passes that it cannot be untangled. */
-#define LET_PASS_M 0.012
+/* Distance of such cloth. Farther, so much passes that it cannot be untangled. */
+#define NO_CONTACT_M 0.012
 
 /* Joins what is near a pair that is stuck, as with a fold between its two sides: cloth may pass through
  * itself there until the pair has met, and is untangled then. */
-static void let_pass(const tl_cloth *cloth, const struct tl_link *link, uint32_t *classes)
+static void disable_self_contact_near(const tl_cloth *cloth, const struct tl_link *link, uint32_t *classes)
 {
     const vec3d *x = cloth->particles.x;
     for (uint32_t i = 0; i < cloth->particles.count; i++)
-        if (vec3d_distance(x[i], x[link->a]) < LET_PASS_M || vec3d_distance(x[i], x[link->b]) < LET_PASS_M)
+        if (vec3d_distance(x[i], x[link->a]) < NO_CONTACT_M ||
+            vec3d_distance(x[i], x[link->b]) < NO_CONTACT_M)
             tl_sets_join(classes, link->a, i);
 }
 
@@ -162,7 +163,7 @@ static void prepare_apart(tl_cloth *cloth)
     for (size_t i = 0; i < cloth->seams.pair_count; i++)
         tl_sets_join(classes, cloth->seams.links[i].a, cloth->seams.links[i].b);
     for (size_t i = 0; i < cloth->seams.pair_count && tl_seams_are_stuck(&cloth->seams); i++)
-        let_pass(cloth, &cloth->seams.links[i], classes);
+        disable_self_contact_near(cloth, &cloth->seams.links[i], classes);
     for (uint32_t i = 0; i < cloth->particles.count; i++)
         classes[i] = tl_sets_find(classes, i);
     const struct tl_apart_params params = apart_params(cloth, 0, 1, 0);
@@ -171,7 +172,7 @@ static void prepare_apart(tl_cloth *cloth)
 }
 
 /* Looks for what the cloth might touch, if what is known is outdated. */
-static void look_around(tl_cloth *cloth, const struct tl_substep *substep)
+static void renew_self_contact(tl_cloth *cloth, const struct tl_substep *substep)
 {
     if (!cloth->params.self_contact || !tl_apart_is_due(&cloth->apart, substep->h))
         return;
@@ -189,7 +190,7 @@ static void draw_seams(tl_cloth *cloth, const struct tl_substep *substep)
         tl_seams_solve(&cloth->seams, &cloth->particles, substep->h);
 }
 
-/* What comes last is stronger: gentle seams come before the strain limit. */
+/* The last constraint is the strongest: gentle seams come before the strain limit. */
 static bool seams_come_last(const tl_cloth *cloth)
 {
     return tl_seams_are_firm(&cloth->seams);
@@ -361,7 +362,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
                                            .collider = collider,
                                            .continues_previous = sub > 0 && !blown,
                                            .continues_next = (double)(sub + 1) < substeps && !blown};
-        look_around(cloth, &substep);
+        renew_self_contact(cloth, &substep);
         if (blown)
             apply_wind(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)

@@ -5,7 +5,7 @@
 
 #include "cloth/state.h"
 
-/* How tl_cloth_advance advances one frame. */
+/* The way in which tl_cloth_advance advances one frame. */
 struct tl_advance_params {
     double drag;           /* 1/s, replaces the fabric's damping if larger */
     bool clock;            /* whether the animation's clock runs */

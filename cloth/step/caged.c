@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As many as the first dress has, which two cores move in 20 ms a frame. */
+/* The number of the first dress, which two cores move in 20 ms a frame. */
 #define CAGE_VERTICES 3000
 
 static bool is_heavy(const tl_cloth *cloth)

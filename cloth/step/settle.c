@@ -85,7 +85,7 @@ static struct tl_advance_params advance_params(const struct tl_cloth_params *par
  * far as at half of settle_speed. */
 #define STILL_S 0.5
 
-/* Where the cloth was when the present span of STILL_S began. */
+/* Positions of the cloth when the present span of STILL_S began. */
 struct still_span {
     vec3d *from; /* [particles.count]; NULL: it has not begun */
     double since_s;

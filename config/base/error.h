@@ -1,6 +1,6 @@
 /* One way to fail: a function returns false (or NULL) and fills a tl_error.
  *
- * A message is one line, "what: where: remedy", meant for a person: it names the file, line or option, says
+ * A message is one line, "what: where: remedy", meant for a person: it names the file, line or option, states
  * what was expected, and what to do. The code decides the exit status. Threads: a tl_error belongs to its
  * caller. */
 #ifndef TOILE_CONFIG_BASE_ERROR_H

@@ -7,7 +7,7 @@ struct tl_lab {
     double l, a, b; /* l: 0 black to 100 white */
 };
 
-/* Of linear Rec. 709; 1, 1, 1 is white. */
+/* Converts linear Rec. 709; 1, 1, 1 is white. */
 struct tl_lab tl_lab_of(const float rgb[3]);
 
 /* Linear Rec. 709 of a colour whose l is in [0, 100]. One that Rec. 709 cannot show, because a channel would

@@ -4,10 +4,10 @@
 
 #include <stdlib.h>
 
-/* Of vertices that only rays have hit so many times fewer are traced in motion than of those that are seen.
+/* Factor by which fewer of the vertices that only rays have hit are traced in motion.
  */
 #define HIT_SHARES 4
-/* At rest one in so many vertices is traced in each update. */
+/* At rest every N-th vertex is traced in each update; N: */
 #define REST_SHARES 8
 /* Updates of a new scene before its first: until what rays hit is known itself. */
 #define FIRST_UPDATES 4
@@ -77,9 +77,9 @@ static void follow_shapes(struct tl_bounce *bounce, const struct tl_bounce_reque
     note_parts(bounce, ranges);
 }
 
-/* ---- What is wanted ---- */
+/* ---- Selection of vertices ---- */
 
-/* What lets light through is lit from both sides. */
+/* Parts that let light through are lit from both sides. */
 static void want_vertex(struct tl_bounce *bounce, size_t vertex, bool back)
 {
     /* Threads may want one vertex at once: they write the same. */
@@ -99,7 +99,7 @@ void tl_bounce_want(struct tl_bounce *bounce, const struct tl_triangle_ranges *r
     }
 }
 
-/* What the camera sees. */
+/* Vertices that the camera sees. */
 static void want_triangle(struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                           uint32_t triangle)
 {
@@ -166,7 +166,7 @@ static size_t list_due(struct tl_bounce *bounce, const struct tl_bounce_request 
     return count;
 }
 
-/* What a side sends to all sides: of the sky and of what bounces to it as its albedo says, of suns and lamps
+/* Light that a side sends to all sides: of the sky and of what bounces to it by its albedo, of suns and lamps
  * its gloss as well. */
 static vec3s reflected(const struct tl_bounce *bounce, const struct tl_bounce_request *request,
                        const struct tl_bounce_material *material, size_t at)

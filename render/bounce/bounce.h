@@ -42,7 +42,7 @@ struct tl_bounce_sky {
 
 struct tl_bounce_material; /* bounce_internal.h */
 
-/* How a vertex's light was found: in motion, or at rest by what vertices sent in motion, both to be replaced;
+/* The origin of a vertex's light: in motion, or at rest by what vertices sent in motion, both to be replaced;
  * in a first round of rays at rest, or in all. */
 enum tl_bounce_state { TL_BOUNCE_UNKNOWN, TL_BOUNCE_OLD, TL_BOUNCE_MIXED, TL_BOUNCE_FIRST, TL_BOUNCE_LAST };
 
@@ -84,7 +84,7 @@ struct tl_bounce_request {
     bool all;                         /* hits send on what bounced to them, too */
     bool moved;                       /* something else than the camera changed since the last update */
     bool at_once;                     /* every wanted vertex is traced, however long that takes */
-    int shares; /* in motion one in so many of the vertices that are seen is traced in an update */
+    int shares; /* in motion every N-th of the vertices that are seen is traced in an update */
 };
 
 /* Traces what is due. The first update of new shapes takes several at once, until what rays hit is known
@@ -93,7 +93,7 @@ void tl_bounce_update(struct tl_bounce *bounce, const struct tl_bounce_request *
 void tl_bounce_release(struct tl_bounce *bounce);
 size_t tl_bounce_bytes(const struct tl_bounce *bounce);
 
-/* What bounces to a sample of the last update, between the vertices of its triangle; terms of the sky are 0.
+/* Light bounced to a sample of the last update, between its triangle's vertices; terms of the sky are 0.
  */
 struct tl_bounced tl_bounced_at(const struct tl_bounce *bounce, const struct tl_triangle_ranges *ranges,
                                 const tl_sample *sample);

@@ -1,4 +1,4 @@
-/* What the files of this room share: the materials that rays meet, the sky that they reach, and what a vertex
+/* Shared by the files of this room: the materials that rays meet, the sky that they reach, and what a vertex
  * finds by its rays. */
 #ifndef TOILE_RENDER_BOUNCE_BOUNCE_INTERNAL_H
 #define TOILE_RENDER_BOUNCE_BOUNCE_INTERNAL_H

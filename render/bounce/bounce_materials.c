@@ -24,9 +24,9 @@ static vec3s mean_colour(const struct tl_map *map, vec3s colour)
     return colour;
 }
 
-/* Of a material that reflects more than it receives, so much: light between two of them would grow for ever.
+/* Limit of a material that reflects more than it receives: light between two of them would grow for ever.
  */
-#define MOST_REFLECTED 0.98f
+#define ALBEDO_MAX 0.98f
 
 /* All light that a surface sends back in even light: matt, and the mean over all directions of Schlick's
  * reflectance; without what a lobe of exponent s about the mirrored view has below the horizon: 1 / (2 s + 4)
@@ -39,7 +39,7 @@ static vec3s albedo_of(vec3s diffuse, vec3s specular, float glossiness)
     for (int c = 0; c < 3; c++) {
         float f0 = specular.raw[c];
         float gloss = f0 > 0 ? above * (f0 + (1 - f0) / 21) : 0;
-        albedo.raw[c] = fminf(diffuse.raw[c] + gloss, MOST_REFLECTED);
+        albedo.raw[c] = fminf(diffuse.raw[c] + gloss, ALBEDO_MAX);
     }
     return albedo;
 }
@@ -67,7 +67,7 @@ static struct tl_bounce_material material_of(const tl_material *material)
             read.has_lobes ? glms_vec3_minv(read.diffuse[side], read.whole[side]) : read.whole[side];
     const vec3s most = glms_vec3_maxv(read.whole[0], read.whole[1]);
     read.transmission =
-        glms_vec3_minv(material->transmission, glms_vec3_subs(glms_vec3_negate(most), -MOST_REFLECTED));
+        glms_vec3_minv(material->transmission, glms_vec3_subs(glms_vec3_negate(most), -ALBEDO_MAX));
     return read;
 }
 

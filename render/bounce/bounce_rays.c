@@ -41,7 +41,7 @@ static vec3s into_environment(const struct tl_bounce_request *request, vec3s dir
     return tl_turn_direction(direction, -request->environment_yaw);
 }
 
-/* ---- What rays find ---- */
+/* ---- Findings of rays ---- */
 
 struct bounce_ray {
     vec3s origin, direction;
@@ -112,7 +112,7 @@ static float open_towards(const struct tl_bounce_request *request, vec3s origin,
            tl_ground_visibility(request->ground, origin, direction);
 }
 
-/* ---- What is hit ---- */
+/* ---- Hits ---- */
 
 /* A point of a triangle that a ray hits. */
 struct hit_place {
@@ -128,7 +128,7 @@ static size_t corner_of(const struct tl_bounce *bounce, const struct hit_place *
     return 2 * (bounce->first_vertex[place->surface] + place->corners[k]) + place->back;
 }
 
-/* What the corners of a triangle send to all sides, between them. False where that is not known yet. */
+/* Light that the corners of a triangle send to all sides, interpolated. False where that is not known yet. */
 static bool sent_from(const struct tl_bounce *bounce, const struct hit_place *place, vec3s *sent)
 {
     float known = 0;
@@ -146,7 +146,7 @@ static bool sent_from(const struct tl_bounce *bounce, const struct hit_place *pl
     return true;
 }
 
-/* What the corners receive, between them, as far as it is known. */
+/* Light that the corners receive, interpolated, as far as it is known. */
 static struct tl_bounced received_at(const struct tl_bounce *bounce, const struct hit_place *place)
 {
     float known = 0;
@@ -194,7 +194,7 @@ static int lobes_of(const tl_surface *surface, const tl_material *material,
     return tl_lobe_fit_sum(&gloss, &frame, viewer, HIT_LOBES, lobes);
 }
 
-/* What a place sends by its gloss to where a ray comes from: of the sky, and of what bounces to it. */
+/* Light that a place sends by its gloss to where a ray comes from: of the sky, and of what bounces to it. */
 static vec3s gloss_from(const struct tl_bounce *bounce, const struct tl_bounce_request *request,
                         const struct hit_place *place, vec3s viewer)
 {
@@ -225,21 +225,21 @@ static vec3s gloss_from(const struct tl_bounce *bounce, const struct tl_bounce_r
     return light;
 }
 
-/* What a ray meets first, as far as it was not shown already. */
-struct met {
+/* The first hit of a ray, as far as it was not counted already. */
+struct surface_hit {
     vec3s sent;
     float cover;    /* the share of the ray that ends there */
     float beyond_m; /* where the rest goes on */
     bool is_known;  /* false: the light that it sends is not known yet */
 };
 
-static struct met meet(struct tl_bounce *bounce, const struct tl_bounce_request *request,
-                       const struct bounce_ray *ray, float from_m)
+static struct surface_hit find_hit(struct tl_bounce *bounce, const struct tl_bounce_request *request,
+                                   const struct bounce_ray *ray, float from_m)
 {
     const vec3s origin = ray->origin, direction = ray->direction;
     struct tl_trace_hit hit = tl_trace_nearest(request->trace, origin, direction, from_m,
                                                tl_ground_distance(request->ground, origin, direction));
-    struct met met = {.is_known = true, .beyond_m = INFINITY};
+    struct surface_hit found = {.is_known = true, .beyond_m = INFINITY};
     struct hit_place place = {0};
     vec3s point;
     if (hit.surface != TL_TRACE_NONE) {
@@ -250,21 +250,21 @@ static struct met meet(struct tl_bounce *bounce, const struct tl_bounce_request 
                                    .weights = {1 - hit.u - hit.v, hit.u, hit.v},
                                    .back = hit.back};
         tl_bounce_want(bounce, request->ranges, place.surface, place.corners, place.back);
-        met.is_known = sent_from(bounce, &place, &met.sent);
-        if (met.is_known)
-            met.sent =
-                glms_vec3_add(met.sent, gloss_from(bounce, request, &place, glms_vec3_negate(direction)));
+        found.is_known = sent_from(bounce, &place, &found.sent);
+        if (found.is_known)
+            found.sent =
+                glms_vec3_add(found.sent, gloss_from(bounce, request, &place, glms_vec3_negate(direction)));
         const size_t vertex = bounce->first_vertex[hit.surface] + place.corners[0];
-        met.cover = 1 - bounce->materials[bounce->parts[vertex]].openness;
-        met.beyond_m = hit.distance_m + tl_trace_offset(request->trace);
+        found.cover = 1 - bounce->materials[bounce->parts[vertex]].openness;
+        found.beyond_m = hit.distance_m + tl_trace_offset(request->trace);
     } else if (tl_ground_meet(request->ground, origin, direction, &point, &place.triangle, place.weights)) {
         place.surface = request->ranges->surface_count - 1;
         place.corners = request->ground->indices + 3 * (size_t)place.triangle;
         tl_bounce_want(bounce, request->ranges, place.surface, place.corners, false);
-        met.is_known = sent_from(bounce, &place, &met.sent);
-        met.cover = tl_ground_cover(request->ground, point.x, point.z);
+        found.is_known = sent_from(bounce, &place, &found.sent);
+        found.cover = tl_ground_cover(request->ground, point.x, point.z);
     }
-    return met;
+    return found;
 }
 
 /* Follows one ray to its end, through open sheets: to a surface, the ground or the sky. The last sheet counts
@@ -275,16 +275,16 @@ static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request 
     vec3s sent = {{0, 0, 0}};
     float share = 1, from_m = 0;
     for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS && share > 0; layer++) {
-        struct met met = meet(bounce, request, ray, from_m);
-        if (!met.is_known) {
+        struct surface_hit found = find_hit(bounce, request, ray, from_m);
+        if (!found.is_known) {
             count_sky(bounce, request, ray->direction, ray->cosine, 0, sums);
             return;
         }
-        if (layer == TL_TRANSPARENCY_LAYERS && met.cover > 0)
-            met.cover = 1;
-        sent = glms_vec3_muladds(met.sent, share * met.cover, sent);
-        share *= 1 - met.cover;
-        from_m = met.beyond_m;
+        if (layer == TL_TRANSPARENCY_LAYERS && found.cover > 0)
+            found.cover = 1;
+        sent = glms_vec3_muladds(found.sent, share * found.cover, sent);
+        share *= 1 - found.cover;
+        from_m = found.beyond_m;
         if (!(from_m < INFINITY))
             break;
     }
@@ -293,9 +293,9 @@ static void follow_ray(struct tl_bounce *bounce, const struct tl_bounce_request 
     count_sky(bounce, request, ray->direction, ray->cosine, share, sums);
 }
 
-/* ---- What arrives ---- */
+/* ---- Arriving light ---- */
 
-/* The bright parts of the sky, which rays over the hemisphere seldom meet. */
+/* The bright parts of the sky, which rays over the hemisphere seldom find. */
 TL_INLINE void see_sky(const struct tl_bounce *bounce, const struct tl_bounce_request *request, vec3s origin,
                        vec3s normal, uint32_t vertex, uint32_t round, struct gathered *sums)
 {

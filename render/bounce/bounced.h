@@ -22,7 +22,7 @@
 
 #define TL_BOUNCED_TERMS TL_LANES
 
-/* What the terms are of: light by channel; and luminances of the sky, of what is seen of it and of all that
+/* Terms: light by channel; and luminances of the sky, of what is seen of it and of all that
  * is above the surface. */
 enum { TL_BOUNCED_OPEN_SKY = 3, TL_BOUNCED_ALL_SKY, TL_BOUNCED_KINDS };
 

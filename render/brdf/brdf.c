@@ -78,7 +78,7 @@ struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float gloss
     return brdf;
 }
 
-/* A thread's lobe is as wide as its own widths say, and widened as the surface's lobe is. */
+/* A thread's lobe is as wide as its own widths state, and widened as the surface's lobe is. */
 static struct tl_brdf thread_of(const tl_material *material, const struct tl_thread *thread, vec3s f0,
                                 vec3s kd, float glossiness, float handedness, const float widening[3])
 {

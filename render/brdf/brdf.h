@@ -80,7 +80,7 @@ struct tl_brdf_sum {
     int count; /* 1: no threads */
     struct tl_brdf items[1 + TL_THREADS_MAX];
 };
-/* Of a point where maps give f0, the diffuse colour kd, glossiness and widening (tl_brdf_bumped). */
+/* The model where maps give f0, the diffuse colour kd, glossiness and widening (tl_brdf_bumped). */
 struct tl_brdf_sum tl_brdf_sum_of(const tl_material *material, vec3s f0, vec3s kd, float glossiness,
                                   float handedness, const float widening[3]);
 /* f_r cos a of all of them. */

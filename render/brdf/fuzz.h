@@ -90,7 +90,7 @@ TL_INLINE vec3s tl_fuzz_axis(const struct tl_fuzz *fuzz, vec3s smooth, vec3s sho
     return length > 1e-3f ? glms_vec3_scale(axis, 1 / length) : smooth;
 }
 
-/* What fuzz leaves to the rest of the material, for the cosine of viewer and smooth normal; 1 without fuzz.
+/* The share left to the rest of the material, for the cosine of viewer and smooth normal; 1 without fuzz.
  */
 float tl_fuzz_under(const tl_material *material, float facing);
 

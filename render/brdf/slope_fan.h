@@ -1,4 +1,4 @@
-/* Where the lobes of a fit lie that stand for facets with Gaussian slopes (lobe_fit.h), and the quadrature
+/* Places of the lobes of a fit that stand for facets with Gaussian slopes (lobe_fit.h), and the quadrature
  * for their albedo: scalar arithmetic without branches, which render/shade evaluates for many pixels at a
  * time. Directions are in the frame (tangent, bitangent, normal). Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_SLOPE_FAN_H
@@ -49,10 +49,10 @@ struct tl_slope_fan {
     float least;              /* variance of a lobe, at least */
 };
 
-/* How much of the spread lobes stand for, in standard deviations, and how far they overlap, where there are
- * as many as it takes; else a gap between them costs more than what they leave out. These and the figure for
- * up to four lobes had the least L1 error of some twenty sets, over satin's facets and threads and a round
- * gloss, from in front to 1.45 rad; the next best sets are within a tenth of it. */
+/* The part of the spread that lobes stand for, in standard deviations, and how far they overlap, where there
+ * are as many as it takes; else a gap between them costs more than what they leave out. These and the figure
+ * for up to four lobes had the least L1 error of some twenty sets, over satin's facets and threads and a
+ * round gloss, from in front to 1.45 rad; the next best sets are within a tenth of it. */
 #define TL_FAN_REACH         2.5f
 #define TL_FAN_OVERLAP       0.42f
 #define TL_FAN_REACH_FEW     2.0f
@@ -85,7 +85,7 @@ TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, f
     float slope_x = side * axes.slope_x, slope_y = side * axes.slope_y;
     float square = slope_x * slope_x + slope_y * slope_y;
     towards *= side;
-    /* A slope of t deviations sends light up where square z t^2 - 2 towards t - z < 0. */
+    /* A slope of t deviations sends light upwards where square z t^2 - 2 towards t - z < 0. */
     float root = sqrtf(towards * towards + square * z * z);
     float lowest = -z / tl_maxf(towards + root, 1e-12f);
     float highest = (towards + root) / tl_maxf(square * z, 1e-9f);

@@ -22,9 +22,9 @@ struct tl_ward_lanes {
     float sum[2][TL_LANES], albedo[2][TL_LANES];
 };
 
-/* What a slope contributes to the gloss: see value_of_slope of lobe_fit.c. With q the squared cosine of the
- * facet, p = t sqrt(1 / q) and a = 2 p q - b it is p q^2 sqrt(a / b) by Ward, and a / (p q) in the bounded
- * form. */
+/* The contribution of a slope to the gloss: see value_of_slope of lobe_fit.c. With q the squared cosine of
+ * the facet, p = t sqrt(1 / q) and a = 2 p q - b it is p q^2 sqrt(a / b) by Ward, and a / (p q) in the
+ * bounded form. */
 struct tl_ward_slope {
     float value, away; /* ... and times (1 - t)^5 */
     float towards;     /* p q */

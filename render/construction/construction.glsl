@@ -1,4 +1,4 @@
-// What seams, hems and stitches add to a sample, from the borders near its triangle (assets/topology/borders.h). The pass sets
+// The heights that seams, hems and stitches add to a sample, from the borders near its triangle (assets/topology/borders.h). The pass sets
 // `sewn` before it reads the material; construction_terms.glsl has the formulas.
 #include "surface.glsl"
 

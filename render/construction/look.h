@@ -1,4 +1,4 @@
-/* What seams, hems and stitches add to a point of a surface: the counterpart of construction.glsl. Pure;
+/* Seams, hems and stitches at a point of a surface: the counterpart of construction.glsl. Pure;
  * threads: any. */
 #ifndef TOILE_RENDER_CONSTRUCTION_LOOK_H
 #define TOILE_RENDER_CONSTRUCTION_LOOK_H

@@ -5,7 +5,7 @@
 #include "assets/base/material.h"
 #include "config/options.h"
 
-/* Which garments show seams and hems: those whose pieces have one scale, all, or none. */
+/* Garments that show seams and hems: those whose pieces have one scale, all, or none. */
 enum tl_construction_show { TL_CONSTRUCTION_AUTO, TL_CONSTRUCTION_ALWAYS, TL_CONSTRUCTION_NEVER };
 
 struct tl_construction_params { /* table "construction": from the fabric or by hand */

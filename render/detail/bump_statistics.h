@@ -67,8 +67,8 @@ TL_INLINE float tl_bump_statistics_roughness(const struct tl_detail_params *para
     return detail_widened(rough, along, across, fabsf(view.z));
 }
 
-/* What maps and these bumps add to squared widths of facets along axis 0 (u) or 1 (v). `own_rough` is that of
- * the material, `rough` with its maps and yarns. */
+/* The sum of maps and of these bumps in squared widths of facets along axis 0 (u) or 1 (v). `own_rough` is
+ * that of the material, `rough` with its maps and yarns. */
 TL_INLINE float tl_bump_statistics_widening(const struct tl_detail_params *params, float own_rough,
                                             float rough, const struct tl_bump_statistics *bumps, int axis)
 {
@@ -78,7 +78,7 @@ TL_INLINE float tl_bump_statistics_widening(const struct tl_detail_params *param
     return detail_widening(own_rough, rough, variance);
 }
 
-/* What they add to the product of the widths along u and v: off the diagonal of the matrix that has the
+/* Their part in the product of the widths along u and v: off the diagonal of the matrix that has the
  * squared widths on it. */
 TL_INLINE float tl_bump_statistics_shear(const struct tl_detail_params *params,
                                          const struct tl_bump_statistics *bumps)

@@ -17,7 +17,7 @@ vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v);
  * Returns `fallback` where the sum has no direction. */
 vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped, vec3s fallback);
 
-/* How a point and its UV change together within a triangle: the derivatives of the point by u and by v,
+/* The change of a point with its UV within a triangle: the derivatives of the point by u and by v,
  * metres per UV unit. False, and zeros, where the UVs span no area. */
 bool tl_uv_derivatives(const vec3s positions[3], const vec2s uvs[3], vec3s *p_u, vec3s *p_v);
 

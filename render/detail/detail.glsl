@@ -115,9 +115,9 @@ vec2 detail_bounds(float side)
 #endif
 
 #ifdef DETAIL_CURVED
-// How the front's normal turns on the way along a direction of the tangent plane, per metre of it: the change of interpolated
-// normals within the triangle, in tangent space. Point and normal come as they are interpolated, linear over the triangle,
-// for at an outline the neighbours of a pixel lie far beyond it.
+// The turn of the front's normal on the way along a direction of the tangent plane, per metre of it: the change of
+// interpolated normals within the triangle, in tangent space. Point and normal come as they are interpolated, linear
+// over the triangle, for at an outline the neighbours of a pixel lie far beyond it.
 vec2 detail_turn(vec3 point, vec3 normal, mat3 frame, vec2 direction)
 {
     vec3 along = frame * vec3(direction, 0.0), across = dFdx(point), down = dFdy(point);
@@ -138,8 +138,8 @@ float detail_pixel_m(vec3 point, vec3 eye)
     return sqrt(max(dot(across, across), dot(down, down)));
 }
 
-// How much of a step of UV to a neighbouring pixel bumps take that are turned towards the viewer: they are at most twice as
-// long as they are wide.
+// The share of a step of UV to a neighbouring pixel that bumps take which are turned towards the viewer: they are at
+// most twice as long as they are wide.
 float detail_shortened(vec3 step, vec3 v)
 {
     float square = dot(step, step), along = dot(v, step);
@@ -160,8 +160,8 @@ struct DetailCurve {
     float z, curvature, side, level;
 };
 
-// The way along the surface to below the ray. On a circle of radius r it is r asin(x / (r + h)): its first three powers, where
-// x / r is how the normal turns.
+// The way along the surface to below the ray. On a circle of radius r it is r asin(x / (r + h)): its first three
+// powers, where x / r is how the normal turns.
 vec2 detail_curve_way(DetailCurve ray, float distance)
 {
     float height = detail_over_circle(ray.z, ray.curvature, distance);
@@ -181,9 +181,9 @@ float detail_curve_clearance(DetailCurve ray, float distance)
     return detail_over_circle(ray.z, ray.curvature, distance) - stands;
 }
 
-// Relief over the circle that touches the surface along the view: equal steps from the top of the field until the ray is
-// below it, then bisection. A ray that leaves at the top hits nothing. Nor does one to the back of cloth that does not come
-// from above the field there: it came through the front, which it did not hit.
+// Relief over the circle that touches the surface along the view: equal steps from the top of the field until the ray
+// is below it, then bisection. A ray that leaves at the top hits nothing. Nor does one to the back of cloth that does
+// not come from above the field there: it came through the front, which it did not hit.
 DetailPlace detail_curved(vec2 uv, vec3 view, float side, float level, vec2 turn)
 {
     vec2 bounds = detail_bounds(side);
@@ -407,15 +407,15 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
 
 // ---- Averaged normals ----
 
-// Statistics of averaged normals: mean tangent-space normal, variances of its slopes along x and y and their covariance,
-// length of the mean.
+// Statistics of averaged normals: mean tangent-space normal, variances of its slopes along x and y and their
+// covariance, length of the mean.
 struct Bumps {
     vec3 normal;
     vec3 spread;
     float length;
 };
 
-// Of averages of (x, y), their squares and x y. `scale`: of slopes along u and v.
+// Statistics of averages of (x, y), their squares and x y. `scale`: of slopes along u and v.
 Bumps detail_bumps(vec2 first, vec2 squares, float product, vec2 scale)
 {
     float z = sqrt(max(1.0 - squares.x - squares.y, 0.0));
@@ -441,8 +441,8 @@ float detail_rough(float rough, Bumps bumps, vec3 view)
 #endif
 }
 
-// What maps and averaged normals add to squared widths of facets along u and v, and to the product of both: a symmetric
-// matrix.
+// The sum of maps and averaged normals in squared widths of facets along u and v, and to the product of both: a
+// symmetric matrix.
 vec3 detail_widenings(float own_rough, float rough, Bumps bumps)
 {
 #if DETAIL_MINIFY == DETAIL_TOKSVIG
@@ -456,7 +456,7 @@ vec3 detail_widenings(float own_rough, float rough, Bumps bumps)
 }
 
 #ifndef VERTEX_STAGE
-// How a point and its UV change together within a triangle: the derivatives of the point by u and by v, in metres; false
+// The change of a point with its UV within a triangle: the derivatives of the point by u and by v, in metres; false
 // where there are none.
 bool detail_derivatives(vec3 point, vec2 uv, out vec3 p_u, out vec3 p_v)
 {

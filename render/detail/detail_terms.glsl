@@ -10,8 +10,8 @@ TERM float detail_slant(float view_z)
     return 1.0f / max(view_z, 0.05f);
 }
 
-// The height of a view ray over the circle that touches the surface, at a distance towards the eye, but for a term of the
-// height's square over the diameter.
+// The height of a view ray over the circle that touches the surface, at a distance towards the eye, but for a term of
+// the height's square over the diameter.
 TERM float detail_over_circle(float view_z, float curvature, float distance)
 {
     return distance * (view_z + 0.5f * curvature * distance);
@@ -59,9 +59,9 @@ TERM float detail_due(float rest, float steps)
 }
 
 // The factor on slopes along an axis where the surface is stretched: heights keep their millimetres, lengths grow.
-// `metres`: of the surface per UV unit there; `nominal`: of the UV unit to which the bumps are made. At least a half, of
-// cloth twice as long; at most 1.25, for cloth buckles before it is shorter than that: what is more are UVs of another
-// scale. 1 where one of the two is unknown.
+// `metres`: of the surface per UV unit there; `nominal`: of the UV unit to which the bumps are made. At least a half,
+// of cloth twice as long; at most 1.25, for cloth buckles before it is shorter than that: what is more are UVs of
+// another scale. 1 where one of the two is unknown.
 TERM float detail_slope_factor(float metres, float nominal)
 {
     return metres > 0.0f && nominal > 0.0f ? clamp(nominal / metres, 0.5f, 1.25f) : 1.0f;
@@ -89,8 +89,9 @@ TERM float detail_facet_square(float rough)
     return rough / (2.0f + rough);
 }
 
-// What is added to a squared width of facets when the roughness of the yarn is `rough` in place of the material's own,
-// and the slopes of unresolved bumps have this variance: a width squared is twice the variance of its slopes.
+// The sum that is added to a squared width of facets when the roughness of the yarn is `rough` in place of the
+// material's own, and the slopes of unresolved bumps have this variance: a width squared is twice the variance of its
+// slopes.
 TERM float detail_widening(float own_rough, float rough, float variance)
 {
     return detail_facet_square(rough) - detail_facet_square(own_rough) + 2.0f * variance;
@@ -103,10 +104,10 @@ TERM float detail_open(float mean_length)
     return 0.5f + 0.5f * clamp(mean_length, 0.0f, 1.0f);
 }
 
-// How far a shading normal is turned towards a viewer at this cosine to it, as a multiple of the direction to the viewer that
+// The turn of a shading normal towards a viewer at this cosine to it, as a multiple of the direction to the viewer that
 // is added to the normal. Near an outline interpolated normals point away from a viewer who sees the surface: no
-// gloss would be sent there, and satin, whose light is gloss, had a black rim. Normals keep what they are up to 1.1 degrees
-// from edge-on.
+// gloss would be sent there, and satin, whose light is gloss, had a black rim. Normals keep what they are up to 1.1
+// degrees from edge-on.
 TERM float detail_facing(float cosine)
 {
     return max(0.02f - cosine, 0.0f);

@@ -16,7 +16,7 @@ struct texel_place {
     float second, third;
 };
 
-/* ---- Which triangle a texel lies in ---- */
+/* ---- Triangles of texels ---- */
 
 static bool check_uvs(const tl_surface *coarse, tl_error *error)
 {
@@ -75,7 +75,7 @@ static void cover(const tl_surface *coarse, const struct tl_transfer_params *par
         }
 }
 
-/* ---- What the rays hit ---- */
+/* ---- Hits of rays ---- */
 
 /* The coarse mesh at a texel. */
 struct coarse_frame {
@@ -145,7 +145,7 @@ static bool follow(const tl_trace *trace, const tl_surface *fine, const struct c
     return is_out;
 }
 
-/* Fills the texels of the charts; `known` tells of which. */
+/* Fills the texels of the charts; `known` marks them. */
 static size_t trace_texels(const tl_trace *trace, const tl_surface *coarse, const tl_surface *fine,
                            const struct tl_transfer_params *params, const struct texel_place *places,
                            bool *known, struct tl_transfer *out)

@@ -31,7 +31,7 @@ struct tl_transfer {
     size_t missed;    /* ... whose ray hit nothing */
 };
 
-/* Of `coarse`, which has tangents, and `fine`. Release the result; it is empty after a failure. */
+/* Transfers from `fine` to `coarse`, which has tangents. Release the result; it is empty after a failure. */
 bool tl_transfer_make(const tl_surface *coarse, const tl_surface *fine,
                       const struct tl_transfer_params *params, struct tl_transfer *out, tl_error *error);
 void tl_transfer_release(struct tl_transfer *transfer); /* frees and zeroes */

@@ -10,7 +10,7 @@
  * : sphere 3 : octahedral 3, so that converting there and back restores the size. At least 1. */
 int tl_convert_size(const struct tl_sphere_map *from, enum tl_layout to);
 
-/* Converts `image` (F32, RGB, finite, laid out as `from` says) to the layout `to`. Every texel of the result
+/* Converts `image` (F32, RGB, finite, laid out as `from`) to the layout `to`. Every texel of the result
  * is the mean of the source texels that it covers, weighted by their common solid angle, so a constant stays
  * constant to rounding and no value leaves the range of the input. Every source texel distributes its exact
  * solid angle. *error (may be NULL) is the largest relative error of that; it bounds the relative error of

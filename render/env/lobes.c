@@ -156,7 +156,7 @@ static struct tl_lobe_map convolve(const tl_emitter *texels, int cube_size, floa
     return map;
 }
 
-/* Of the map of the environment itself: as many texels as the cube has. */
+/* The side of the environment's own map: as many texels as the cube has. */
 static int side_for_cube(const tl_cube *cube)
 {
     return whole_tiles(sqrtf(6) * (float)cube->size);

@@ -14,7 +14,7 @@ struct tl_octahedral_place {
     float u, v;
 };
 
-/* Of a direction of any length. */
+/* Fetches for a direction of any length. */
 TL_INLINE struct tl_octahedral_place tl_octahedral_place(float x, float y, float z)
 {
     float scale = 0.5f / (fabsf(x) + fabsf(y) + fabsf(z));

@@ -1,8 +1,9 @@
 #version 450 core
 // The light of every sample of the G-buffer by look-ups in an environment map (envmap.h). MODE and COMPOSITION are
 // #defined as the numbers below. GROUND: the ground is drawn, always as SURFACE. MINIFY: mirrors read mip levels.
-// LAYERED: some surfaces have coats or transmit light. PASS: this draw is one of several passes (passes.c). VERTEX_VECTORS:
-// directions come from vertices (vectors.frag). BAKED: diffuse light comes from light maps (light_map.frag).
+// LAYERED: some surfaces have coats or transmit light. PASS: this draw is one of several passes (passes.c).
+// VERTEX_VECTORS: directions come from vertices (vectors.frag). BAKED: diffuse light comes from light maps
+// (light_map.frag).
 #include "exponents.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
@@ -240,7 +241,7 @@ vec3 whole_light(Part part, int number, Sample place, vec3 v, float cosine, floa
     return f * over_light(MODE, place) + (COMPOSITION == COAT ? 1.0 - f : vec3(1.0)) * under_light(MODE, place, v, ratio);
 }
 
-// What alpha holds: the share of the mirror, or of the coat.
+// The content of alpha: the share of the mirror, or of the coat.
 vec3 share_over(Part part, int number, Sample place, vec3 v, float cosine)
 {
 #ifdef LAYERED

@@ -116,7 +116,7 @@ static void bake_vertices(const struct tl_reference_scene *scene, int directions
     free(points);
 }
 
-/* What is baked, before it is sent. */
+/* Baked texels before they are sent. */
 struct bake {
     const struct tl_reference_scene *scene;
     int directions, side, layers;

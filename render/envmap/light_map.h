@@ -16,7 +16,7 @@
 /* A texel of the front and one of the back, RGBA32F. */
 #define TL_LIGHT_MAP_TEXEL_BYTES 32
 
-/* Where a surface's light is. */
+/* The place of a surface's light. */
 struct tl_light_map_place {
     int layer;                         /* of its front, the back follows; -1: at vertices */
     vec2s low, extent;                 /* of its UVs, which fill the layer */

@@ -20,7 +20,7 @@ enum tl_maps_fresnel { TL_MAPS_FRESNEL_OFF, TL_MAPS_FRESNEL_ADDITIVE, TL_MAPS_FR
 /* ONE: everything in one pass. SEVERAL: a pass for every texture [Heidrich and Seidel 1999, 4.2, 4.4]
  * (render/envmap/passes.c). */
 enum tl_maps_passes { TL_MAPS_PASSES_ONE, TL_MAPS_PASSES_SEVERAL };
-/* Where directions of look-ups and the cosine of Fresnel's term are computed: at pixels; or at vertices, from
+/* Places at which directions of look-ups and Fresnel's cosine are computed: at pixels; or at vertices, from
  * where they are interpolated without renormalisation, as texture coordinates were [Heidrich and Seidel
  * 1999, 4.1]. */
 enum tl_maps_vectors { TL_MAPS_VECTORS_PIXEL, TL_MAPS_VECTORS_VERTEX };

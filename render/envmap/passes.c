@@ -52,7 +52,7 @@ struct term_list {
     struct term items[PASSES_MAX];
 };
 
-/* What one draw over all samples does. */
+/* The work of one draw over all samples. */
 struct draw {
     const struct tl_envmap_request *request;
     int pass;

@@ -70,7 +70,7 @@ static uint32_t exponents_between(float least, float greatest)
 }
 
 /* The exponents of the lobes of light from inside threads: from as narrow as they are to as wide as bumps can
- * make any, where `low` says that there are such. */
+ * make any, where `low` states that there are such. */
 static uint32_t thread_exponents(const tl_material *material, float low, float high)
 {
     const float none[3] = {0, 0, 0}, all[3] = {1, 1, 0}, *widest = low < material->glossiness ? all : none;

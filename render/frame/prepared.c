@@ -118,7 +118,7 @@ static tl_prepared *begin(struct tl_prepared_request *request, const struct tl_l
     return prepared;
 }
 
-/* As many as the renderer will cut. */
+/* The number of regions that the renderer will cut. */
 static void make_usable(struct tl_prepared_request *request)
 {
     struct tl_render_settings settings = request->settings;

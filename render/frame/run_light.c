@@ -148,7 +148,7 @@ bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
     return true;
 }
 
-/* From light at samples to the picture. */
+/* Turns light at samples into the picture. */
 static void enlarge(const struct tl_shade_job *job, const float *shaded)
 {
     const struct tl_size_input *size = job->size;

@@ -37,7 +37,7 @@ bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
         .round = *(job)->round                                                                               \
     }
 
-/* While shadows move, as many maps a frame as light.refresh says; at rest all of them. */
+/* While shadows move, as many maps a frame as light.refresh states; at rest all of them. */
 bool tl_run_maps(const struct tl_maps_job *job, tl_error *error)
 {
     (void)error;

@@ -41,7 +41,7 @@ static double rays_of_rest(const struct tl_resources *resources, bool at_vertice
         return 1;
     if (resources->points_are_done)
         return 0;
-    return at_vertices && resources->round == 0 ? 0.5 : TL_REST_HASTE;
+    return at_vertices && resources->round == 0 ? 0.5 : TL_REST_RAY_FACTOR;
 }
 
 static bool is_glossy(const tl_material *material)

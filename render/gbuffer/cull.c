@@ -50,12 +50,12 @@ TL_CLONES static void place_vertices(const tl_surface *surface, const struct tl_
     }
 }
 
-TL_INLINE float least_of(float a, float b, float c)
+TL_INLINE float min3(float a, float b, float c)
 {
     return tl_minf(tl_minf(a, b), c);
 }
 
-TL_INLINE float greatest_of(float a, float b, float c)
+TL_INLINE float max3(float a, float b, float c)
 {
     return tl_maxf(tl_maxf(a, b), c);
 }
@@ -72,9 +72,9 @@ TL_INLINE bool box_of(const struct raster *raster, struct facet *facet)
 {
     const struct tl_cull_place *at = facet->corners;
     const float margin = raster->margin;
-    return span(least_of(at[0].x, at[1].x, at[2].x) - margin, greatest_of(at[0].x, at[1].x, at[2].x) + margin,
+    return span(min3(at[0].x, at[1].x, at[2].x) - margin, max3(at[0].x, at[1].x, at[2].x) + margin,
                 raster->request->width, &facet->first_x, &facet->last_x) &&
-           span(least_of(at[0].y, at[1].y, at[2].y) - margin, greatest_of(at[0].y, at[1].y, at[2].y) + margin,
+           span(min3(at[0].y, at[1].y, at[2].y) - margin, max3(at[0].y, at[1].y, at[2].y) + margin,
                 raster->request->height, &facet->first_y, &facet->last_y);
 }
 
@@ -110,8 +110,8 @@ TL_INLINE enum seen set_up(const struct raster *raster, const struct tl_cull_pla
     return SEEN_BY_SAMPLE;
 }
 
-/* How far inside all edges the middle of a sample lies, at least so, in lengths of which none is longer than
- * its edge's: above `margin` it is surely covered, below -margin surely not. */
+/* A lower bound of the distance of the middle of a sample inside all edges, in lengths of which none is
+ * longer than its edge's: above `margin` it is surely covered, below -margin surely not. */
 TL_INLINE bool is_within(const struct facet *facet, float x, float y, float margin)
 {
     bool within = true;
@@ -253,7 +253,7 @@ static void keep_covering(const struct raster *raster, struct tl_cull *out)
     }
 }
 
-TL_CLONES static void leave_out_hidden(const struct raster *raster, struct tl_cull *out)
+TL_CLONES static void drop_occluded(const struct raster *raster, struct tl_cull *out)
 {
     const struct tl_cull_request *request = raster->request;
     const struct tl_cull_place *places = out->places;
@@ -286,7 +286,7 @@ void tl_cull_make(const struct tl_cull_request *request, struct tl_cull *out)
         out->depths[i] = 1;
     keep_covering(&raster, out);
     if (request->nearest_only)
-        leave_out_hidden(&raster, out);
+        drop_occluded(&raster, out);
 }
 
 void tl_cull_release(struct tl_cull *cull)

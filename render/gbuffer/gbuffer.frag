@@ -1,5 +1,5 @@
 #version 450 core
-// What the light passes need of the nearest surface: point, shading normal, and the two colours of its material.
+// Outputs for the light passes, of the nearest surface: point, shading normal, and the two colours of its material.
 #include "material.glsl"
 #include "ground.glsl"
 
@@ -135,7 +135,7 @@ void main()
     vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);
     n = facing_normal(n, v);
-    // Of the mean normal: facets that turn away reflect more, but what lies below the surface's horizon.
+    // The mean normal's Fresnel term: facets that turn away reflect more, but what lies below the surface's horizon.
     vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
 #ifdef FRAMES
     if ((map_flags & FLAG_FACETED) != 0)

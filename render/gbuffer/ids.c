@@ -85,7 +85,7 @@ static void count_layers(struct tl_id_buffer *buffer)
             1 + buffer->depths[y] > buffer->layer_count ? 1 + buffer->depths[y] : buffer->layer_count;
 }
 
-/* ---- What is seen ---- */
+/* ---- Visible triangles ---- */
 
 /* Marks the triangles of a row and counts its covered pixels. Threads may mark one triangle at once: they
  * write the same. */
@@ -146,7 +146,7 @@ static void list_seen(struct tl_id_buffer *buffer, const struct tl_triangle_rang
         }
 }
 
-/* ---- By GL ---- */
+/* ---- GL ---- */
 
 /* Replaces places among the triangles that were drawn by the triangles' numbers. */
 static void number_row(uint32_t *row, int width, const uint32_t *numbers)

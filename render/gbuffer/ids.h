@@ -19,7 +19,7 @@ struct tl_id_buffer {
     int width, height;
     uint32_t *ids; /* [height][width], rows upwards: 0 nothing; else 1 + triangle, and TL_SAMPLE_BACK */
     size_t capacity;
-    /* What is seen behind open triangles, of up to layer_count - 1 layers, as `ids`; and how many of these
+    /* The layers behind open triangles, of up to layer_count - 1 layers, as `ids`; and how many of these
      * hold something in each row. Beyond them rows hold 0. */
     uint32_t *layers[TL_TRANSPARENCY_LAYERS];
     uint8_t *depths; /* [height] */

@@ -18,7 +18,7 @@
 /* Rows whose spans are computed together, and pixels that are filled together. */
 #define SPAN_LANES 4
 #define FILL_LANES 8
-/* What lies behind an open triangle is deeper than it by more than this, as in gbuffer.frag. */
+/* A surface behind an open triangle is deeper than it by more than this, as in gbuffer.frag. */
 #define DEPTH_ROUNDING 1.2e-7f
 /* Bit of an id while its band is filled: the triangle is open. */
 #define OPEN 0x40000000u
@@ -55,7 +55,7 @@ struct raster_chunk {
     size_t band_capacity, list_capacity;
 };
 
-/* Of a frame. */
+/* State of a frame. */
 struct raster_frame {
     const struct tl_raster_request *request;
     float half_width, half_height;

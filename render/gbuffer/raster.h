@@ -21,10 +21,10 @@ struct tl_raster_request {
 
 #define TL_RASTER_SIDE_MAX 16384
 
-/* Where the pixels are written: [height][width] each, rows upwards. */
+/* Destination of the pixels: [height][width] each, rows upwards. */
 struct tl_raster_layers {
     uint32_t *nearest;
-    /* Of a layered request: what is seen behind open triangles, layer by layer, and the number of these
+    /* Outputs of a layered request: layers behind open triangles, layer by layer, and the number of these
      * layers that hold something in each row. Rows of further layers hold 0, before the call and after it. */
     uint32_t *behind[TL_TRANSPARENCY_LAYERS];
     uint8_t *depths; /* [height] */

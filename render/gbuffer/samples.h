@@ -4,7 +4,7 @@
 
 #include "render/gbuffer/gbuffer.h"
 
-/* `triangle` counts through all surfaces in their order; its top bit says that the back is seen. */
+/* `triangle` counts through all surfaces in their order; its top bit marks that the back is seen. */
 #define TL_SAMPLE_BACK 0x80000000u
 
 typedef struct tl_sample {
@@ -53,7 +53,7 @@ const tl_surface *tl_triangle_find(const struct tl_triangle_ranges *ranges, uint
 /* The part that holds a surface's own triangle `number`. */
 const struct tl_mesh_part *tl_triangle_part(const tl_surface *surface, uint32_t number);
 
-/* How many the camera sees, through and through. */
+/* The number of layers that the camera sees. */
 static inline size_t tl_samples_seen(const struct tl_samples *samples)
 {
     return samples->primary_count + samples->behind_count + samples->other_count;

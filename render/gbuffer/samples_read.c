@@ -97,8 +97,8 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
     if (glms_vec3_distance(sample.normal, sample.smooth) < rounding)
         sample.normal = sample.smooth;
     vec3s view = normalized_or(glms_vec3_sub(eye, sample.point), sample.normal);
-    /* As in the light passes: where a normal turns away from the viewer, r passes straight on instead of
-     * flipping. */
+    /* The rule of the light passes: where a normal turns away from the viewer, r passes straight on instead
+     * of flipping. */
     float cosine = fmaxf(glms_vec3_dot(sample.normal, view), 0);
     sample.mirror =
         normalized_or(glms_vec3_sub(glms_vec3_scale(sample.normal, 2 * cosine), view), sample.normal);

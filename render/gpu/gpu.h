@@ -52,7 +52,7 @@ size_t tl_texture_bytes(const tl_texture *texture);
 /* Levels of a full mip chain down to one texel. */
 int tl_texture_full_levels(int width, int height);
 /* Fills a layer of a two-dimensional texture of the image's size, all levels: those below the first are the
- * CPU's averages (map_texture.h). `colour`: bytes are sRGB unless the image says linear. */
+ * CPU's averages (map_texture.h). `colour`: bytes are sRGB unless the image is marked linear. */
 void tl_texture_fill(const tl_texture *texture, int layer, const tl_image *image, bool colour);
 
 /* The target of a pass: up to six 2D colour textures of one size, and a 32-bit float depth texture. */

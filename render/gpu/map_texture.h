@@ -12,7 +12,7 @@
 
 struct tl_map_texture {
     const tl_image *image; /* level 0 */
-    bool colour;           /* sRGB unless the image says linear; one channel is a grey */
+    bool colour;           /* sRGB unless the image is marked linear; one channel is a grey */
     float decode[256];     /* linear values of bytes */
     int level_count;
     int widths[TL_TEXTURE_LEVELS_MAX], heights[TL_TEXTURE_LEVELS_MAX];

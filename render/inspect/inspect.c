@@ -33,25 +33,25 @@ void tl_inspect_legend(const struct tl_inspect_request *request, struct tl_legen
     tl_legend_make(&source, out);
 }
 
-void tl_inspect_paint(const struct tl_inspect_request *asked, float *light)
+void tl_inspect_paint(const struct tl_inspect_request *wanted, float *light)
 {
-    struct tl_legend_source source = legend_source(asked, asked->regions->count);
+    struct tl_legend_source source = legend_source(wanted, wanted->regions->count);
     struct tl_legend legend;
     struct tl_seen_regions regions;
     tl_legend_make(&source, &legend);
-    tl_seen_regions_make(asked->regions, asked->environment_yaw, &regions);
+    tl_seen_regions_make(wanted->regions, wanted->environment_yaw, &regions);
     struct tl_paint_request request = {.legend = &legend,
                                        .view = source.view,
-                                       .samples = asked->samples,
-                                       .ranges = asked->ranges,
-                                       .eye = asked->view->eye,
-                                       .texel = 2 * glms_vec3_norm(asked->view->up) /
-                                                (float)asked->samples->height,
+                                       .samples = wanted->samples,
+                                       .ranges = wanted->ranges,
+                                       .eye = wanted->view->eye,
+                                       .texel = 2 * glms_vec3_norm(wanted->view->up) /
+                                                (float)wanted->samples->height,
                                        .regions = &regions,
                                        .region = source.region};
     if (tl_view_is_visibility(source.view)) {
-        request.values = tl_points_values(asked->points, &request.stride);
-        request.taps = tl_points_taps(asked->points);
+        request.values = tl_points_values(wanted->points, &request.stride);
+        request.taps = tl_points_taps(wanted->points);
     }
     tl_paint(&request, light);
 }

@@ -49,7 +49,7 @@ struct tl_inspect_request {
     float environment_yaw; /* rad */
 };
 
-/* The range of a view of strain: as image.view_range says, or of what is drawn; `before` for other views. */
+/* The range of a view of strain: of image.view_range, or of what is drawn; `before` for other views. */
 float tl_inspect_strain_range(const struct tl_image_params *image, const tl_surface *const *drawn,
                               size_t count, float before);
 /* The legend of a view. */

@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* The distance at which a ray hits a triangle [Moeller and Trumbore 1997], or -1. */
-static float meet(vec3s origin, vec3s direction, const vec3s corners[3], float weights[3])
+static float intersect(vec3s origin, vec3s direction, const vec3s corners[3], float weights[3])
 {
     vec3s side = glms_vec3_sub(corners[1], corners[0]), other = glms_vec3_sub(corners[2], corners[0]);
     vec3s p = glms_vec3_cross(direction, other);
@@ -28,7 +28,7 @@ static void pick_surface(const tl_surface *surface, uint32_t first, vec3s origin
         const vec3s corners[3] = {surface->positions[index[0]], surface->positions[index[1]],
                                   surface->positions[index[2]]};
         float weights[3];
-        float distance = meet(origin, direction, corners, weights);
+        float distance = intersect(origin, direction, corners, weights);
         if (!(distance > 0 && distance < *nearest))
             continue;
         *nearest = distance;

@@ -20,7 +20,7 @@ struct frame {
     struct tl_exponent_blend blend;
 };
 
-/* By channel, of the diffuse and of the glossy lobe. */
+/* Sums by channel, of the diffuse and of the glossy lobe. */
 enum { DIFFUSE, GLOSSY };
 struct sums {
     float seen[2][3];
@@ -41,7 +41,7 @@ struct lobes {
     vec3s axis;                  /* along which its fibres stand, in the environment */
 };
 
-/* What a block of samples shares. */
+/* Values that a block of samples shares. */
 struct block {
     const struct tl_compose_request *request;
     float turn_cosine, turn_sine; /* of the environment's yaw */
@@ -322,8 +322,8 @@ static void add_coat(const struct block *block, const tl_sample *sample, const t
 }
 
 /* The lobes of a sample that has more than two, and what is left of the two. */
-static void part_lobes(const struct block *block, const tl_material *material, tl_sample *sample,
-                       struct lobes *lobes)
+static void split_material_lobes(const struct block *block, const tl_material *material, tl_sample *sample,
+                                 struct lobes *lobes)
 {
     vec3s view = glms_vec3_normalize(glms_vec3_sub(block->request->eye, sample->point));
     lobes->viewer = into_environment(block, view);
@@ -441,7 +441,7 @@ TL_INLINE void add_bounced(const struct block *block, const struct tl_bounced *b
             light[GLOSSY], bounced_through(block, bounced, frame->smooth, frame->gloss, frame->exponent));
 }
 
-/* What other surfaces send to a sample. */
+/* Light that other surfaces send to a sample. */
 static struct tl_bounced bounced_at(const struct block *block, const tl_sample *sample)
 {
     const struct tl_compose_request *request = block->request;
@@ -576,7 +576,7 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     struct lobes lobes = {0};
     if (rich) {
         rest = *sample;
-        part_lobes(block, rich, &rest, &lobes);
+        split_material_lobes(block, rich, &rest, &lobes);
         sample = &rest;
     } else if (request->any_layered) {
         rest = with_matt_threads(request, sample);
@@ -638,7 +638,7 @@ TL_CLONES static void compose_block(const struct tl_compose_request *request, si
 
 /* Adds up what is seen through cloth, layer by layer, and leaves what none of them keeps to the background.
  */
-static void look_through(const struct tl_compose_request *request, const vec3s *behind, float *light)
+static void blend_behind(const struct tl_compose_request *request, const vec3s *behind, float *light)
 {
     const float rounding = 1e-6f;
     const struct tl_samples *samples = request->samples;
@@ -679,7 +679,7 @@ TL_INLINE struct tl_light_ratio ratio_of_sample(struct block *block, size_t inde
     const tl_material *rich = rich_material(request, index);
     struct lobes lobes = {0};
     if (rich)
-        part_lobes(block, rich, &sample, &lobes);
+        split_material_lobes(block, rich, &sample, &lobes);
     struct frame frame = frame_of(block, &sample);
     struct kind kind = {.bumped = false, .glossy = is_glossy(request, &sample)};
     struct sums sums = sum_kind(block, index, &frame, kind);
@@ -735,6 +735,6 @@ void tl_compose(const struct tl_compose_request *request, float *light)
     compose_range(request, seen, count, light, further);
     compose_range(request, 0, seen, light, further);
     if (request->shares)
-        look_through(request, further, light);
+        blend_behind(request, further, light);
     free(further);
 }

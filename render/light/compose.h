@@ -30,7 +30,7 @@ struct tl_compose_request {
     const struct tl_region_lights *lights; /* whose weight suits the method */
     const struct tl_suns *suns;            /* none: count 0 */
     const struct tl_lobes *lobes;
-    /* As tl_points gives them; unused when the method is UNSHADOWED. */
+    /* Visibility as tl_points gives it; unused when the method is UNSHADOWED. */
     const uint16_t *values;
     size_t stride;
     const struct tl_taps *taps;

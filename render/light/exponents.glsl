@@ -1,4 +1,4 @@
-// Which of the lobes' exponents stand for s (env/lobes.h).
+// The lobes' exponents that stand for s (env/lobes.h).
 layout(binding = 5) uniform sampler2D exponent_levels; // fractional number of the exponent by log2(s) / LOG_RANGE
 
 const float EXPONENT_LOG_RANGE = 15.0; // of light.c

@@ -28,7 +28,7 @@ enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
 /* Values of the uniform in regions.frag. */
 enum composition { SUM, DIFFERENCE, RATIO, OCCLUSION, OCCLUSION_COLOUR, UNSHADOWED };
 
-/* exact.glsl: log2 of the largest exponent that the table of levels tells apart. */
+/* exact.glsl: log2 of the largest exponent that the table of levels distinguishes. */
 #define EXPONENT_LOG_RANGE 15.0f
 #define EXPONENT_STEPS     512
 

@@ -5,8 +5,8 @@
  *
  * chain.frag adds up P_i of the filter chains, some regions a pass, as the paper does. regions.frag takes all
  * regions at once: P_i from exact slices, or what stands for it, the region's power times a cosine lobe
- * broadened by its spread; and puts them together as light.composition says. Light is kept in RGBA32F, where
- * the rounds of a frame that rests are averaged. */
+ * broadened by its spread; and puts them together as light.composition states. Light is kept in RGBA32F,
+ * where the rounds of a frame that rests are averaged. */
 #ifndef TOILE_RENDER_LIGHT_LIGHT_H
 #define TOILE_RENDER_LIGHT_LIGHT_H
 

@@ -76,7 +76,7 @@ static const struct tl_option light_rows[] = {
         "rays: light that surfaces send on to each other: off: none; one: light that comes straight "
         "from the environment; all: light that bounced before, too"),
     TL_OPTION_INT(light_params, bounce_shares, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, 256, "",
-                  "bounced light is renewed at one in so many of the vertices that are seen in each frame of "
+                  "bounced light is renewed at every N-th of the vertices that are seen in each frame of "
                   "motion, at a fourth of that elsewhere; larger: faster, it lags"),
     TL_OPTION_INT(light_params, fan, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
                   "rays: maximum number of cosine lobes that approximate gloss of another shape; larger: "

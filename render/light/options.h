@@ -19,8 +19,8 @@ enum tl_cut { TL_CUT_FACES, TL_CUT_SPHERE };
 enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
 /* sum: VIS_i P_i [Knuth et al. 2014, eq. 5]. difference: E - (1 - VIS_i) P_i. ratio: E x sum VIS_i w_i / sum
  * w_i, w_i being P_i or what stands for it. E is the exact unshadowed light. */
-/* Where the ratio of seen to exact light is computed: for every sample, or at the vertices of the triangles
- * that are seen (render/shade), from where pixels interpolate it. */
+/* Places at which the ratio of seen to exact light is computed: for every sample, or at the vertices of the
+ * triangles that are seen (render/shade), from where pixels interpolate it. */
 enum tl_ratio_at { TL_RATIO_AT_SAMPLES, TL_RATIO_AT_VERTICES };
 /* Light that surfaces send on to each other (render/bounce), of rays: none, once, or as often as it likes. */
 enum tl_light_bounce { TL_BOUNCE_OFF, TL_BOUNCE_ONE, TL_BOUNCE_ALL };
@@ -46,7 +46,7 @@ struct tl_light_params { /* table "light" */
     float repair;        /* rays: share of the samples, the least certain, that get rays of their own */
     float repair_rest;   /* ... once nothing moves, when it is more */
     int bounce;          /* enum tl_light_bounce, of rays */
-    int bounce_shares;   /* ... in motion traced at one in so many of the vertices that are seen */
+    int bounce_shares;   /* ... in motion traced at every N-th of the vertices that are seen */
     int fan;             /* rays: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene;  /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black */
     int map_size;        /* texels, side of a shadow map */

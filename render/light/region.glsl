@@ -1,4 +1,4 @@
-// What the light passes know of a region or a sun (light.h: struct tl_region_light).
+// A region or a sun in the light passes (light.h: struct tl_region_light).
 struct Region {
     vec4 map_rows[3]; // world point -> map u, map v, depth (of depth maps: less the bias)
     vec4 direction;   // towards the light, as its map sees it, world; 1 where it is jittered, 0 for the region's own

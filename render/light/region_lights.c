@@ -112,7 +112,7 @@ void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_reg
     lights->is_exact = weight == TL_WEIGHT_POWER;
 }
 
-/* Of all that gains depend on but for the lobes. */
+/* A hash of all that gains depend on but for the lobes. */
 static struct tl_cache_key key_of(const struct tl_region_lights *lights, bool diffuse)
 {
     struct tl_cache_key key = tl_cache_key_begin();

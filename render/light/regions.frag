@@ -41,7 +41,7 @@ Light lobe_light(Region region, vec3 normal, Lobe gloss)
     return Light(0.31830989 * facing * region.power.rgb, lobe_cosine(exponent, shining) * region.power.rgb);
 }
 
-// Where nothing shines there is nothing to shadow.
+// Nothing is shadowed where nothing shines.
 vec3 share_seen(vec3 seen, vec3 all)
 {
     return mix(vec3(1.0), seen / max(all, vec3(1e-30)), greaterThan(all, vec3(1e-30)));

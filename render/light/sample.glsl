@@ -41,7 +41,8 @@ Sample read_sample(ivec2 texel)
     vec4 specular = texelFetch(speculars, texel, 0);
     vec3 to_eye = eye - point.xyz;
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30));
-    // Where an interpolated normal turns away from the viewer, r passes straight on instead of flipping.
+    // The mirror direction r, where an interpolated normal turns away from the viewer, passes straight on instead of
+    // flipping.
     vec3 r = 2.0 * max(dot(normal.xyz, v), 0.0) * normal.xyz - v;
     return Sample(point.xyz, point.w, normal.xyz, 1.0 - normal.w, from_octahedral(vec2(diffuse.a, specular.a)), r, diffuse.rgb,
                   specular.rgb);

@@ -24,7 +24,7 @@ TL_INLINE void tl_read_visibility(const uint16_t *values, size_t stride, const s
                            weights[2] * (float)rows[2][lane] + weights[3] * (float)rows[3][lane];
 }
 
-/* What the loops over the regions need of each lobe. */
+/* Values of each lobe for the loops over the regions. */
 struct tl_lobe_terms {
     vec3s direction;
     float exponent;
@@ -32,8 +32,8 @@ struct tl_lobe_terms {
     float reach_cosine, reach_sine; /* the lobe counts for nothing further from its axis */
 };
 
-/* Of a lobe's peak: what is less, 1e-12, is left out. Beside a sun, 1e5 times as bright as the rest where
- * suns stay in their regions, that is what a float's last digit is to the sum. */
+/* Share of a lobe's peak, 1e-12, below which it is left out. Beside a sun, 1e5 times as bright as the rest
+ * where suns stay in their regions, that is what a float's last digit is to the sum. */
 #define TL_NEGLIGIBLE_LOG2 -40.0f
 
 TL_INLINE void tl_find_lobe_terms(const struct tl_region_lights *lights, const struct tl_fitted_lobe *lobes,
@@ -88,7 +88,7 @@ TL_INLINE void tl_add_group_of_lobes(float sums[3][TL_LANES], const struct tl_re
             sums[c][lane] += group->power[c][lane] * through[c][lane] * above[lane];
 }
 
-/* What is seen of the regions through all lobes of a sample: light sent to the viewer. */
+/* The sum of the regions through all lobes of a sample: light sent to the viewer. */
 TL_INLINE vec3s tl_see_lobes(const struct tl_compose_request *request, size_t index,
                              const struct tl_fitted_lobe *lobes, int count, vec3s smooth)
 {

@@ -84,9 +84,9 @@ static bool append_behind(struct tl_transparency *transparency, const struct tl_
     return more;
 }
 
-static bool look_behind(struct tl_transparency *transparency, tl_gpu *gpu,
-                        const struct tl_transparency_request *request, struct tl_samples *samples,
-                        tl_error *error)
+static bool gather_behind(struct tl_transparency *transparency, tl_gpu *gpu,
+                          const struct tl_transparency_request *request, struct tl_samples *samples,
+                          tl_error *error)
 {
     struct tl_gbuffer_request draw = request->draw;
     bool more = true;
@@ -146,7 +146,7 @@ bool tl_transparency_find(struct tl_transparency *transparency, tl_gpu *gpu,
     samples->count = samples->primary_count;
     samples->behind_count = samples->other_count = 0;
     if (share_out_primary(transparency, request, samples) &&
-        !look_behind(transparency, gpu, request, samples, error))
+        !gather_behind(transparency, gpu, request, samples, error))
         return false;
     append_other_sides(transparency, request, samples);
     return true;

@@ -1,6 +1,6 @@
 // Visibility of a region at a sample, by its shadow map. VSM: variance shadow maps, as in the paper. DEPTH: plain depth
-// maps, which cannot tell a surface from itself where light grazes it, so the light is cut by a ramp at the horizon.
-// Neither: everything is seen.
+// maps, which cannot separate a surface from itself where light grazes it, so the light is cut by a ramp at the
+// horizon. Neither: everything is seen.
 #include "ground.glsl"
 #include "region.glsl"
 #include "terms.glsl"

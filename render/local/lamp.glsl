@@ -45,8 +45,9 @@ vec3 tangent_across(vec3 n, vec3 tangent)
     return direction_or(tangent - n * dot(n, tangent), normalize(any));
 }
 
-// As tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the front; `side`
-// is -1 on back faces. The sign of the bitangent matters to correlated slopes alone (plane_side in local.frag).
+// The frame of tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the
+// front; `side` is -1 on back faces. The sign of the bitangent matters to correlated slopes alone (plane_side in
+// local.frag).
 Frame frame_of(vec3 n, vec3 tangent, float side)
 {
     vec3 t = tangent_across(n, tangent);
@@ -93,7 +94,7 @@ Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, vec2 across, float
     return c;
 }
 
-// As cosines_from, computing the dot products.
+// Calls cosines_from with the dot products.
 Cosines cosines_near(Frame frame, vec3 l, vec3 v, vec3 h)
 {
     return cosines_from(vec4(dot(frame.n, l), dot(frame.n, v), dot(frame.n, h), dot(h, l)),

@@ -77,7 +77,7 @@ static float coat_of(const struct lit *lit, vec3s l)
            tl_lobe_cosine(tl_lobe_exponent(lit->material->coat_glossiness), glms_vec3_dot(axis, l));
 }
 
-/* As local.frag has it: emission times its map, below the coat. */
+/* The order of local.frag: emission times its map, below the coat. */
 static vec3s emitted(const struct tl_lamp_samples_request *request, const struct lit *lit)
 {
     uint32_t corners[3];

@@ -15,7 +15,7 @@
 #include "render/gpu/gpu.h"
 #include "render/local/shading.h"
 
-/* Where a part has its texels. */
+/* The place of a part's texels. */
 struct tl_lit_chart {
     size_t surface, part; /* with the next two lines the key */
     uint64_t revision;

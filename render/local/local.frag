@@ -1,6 +1,6 @@
 #version 450 core
-// The light of one lamp on the surfaces of the G-buffer, added to the light target. TEXELS: on the texels of a part, without
-// its shadows, to be mapped to it by LIT (lit_texture.h).
+// The light of one lamp on the surfaces of the G-buffer, added to the light target. TEXELS: on the texels of a part,
+// without its shadows, to be mapped to it by LIT (lit_texture.h).
 #if defined(TEXELS) || defined(LIT)
 layout(location = 99) uniform vec4 chart; // offset, factor on UV
 layout(location = 100) uniform float lit_scale; // of the gloss that texels hold
@@ -218,7 +218,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 }
 #endif
 
-// What maps and bumps add to squared widths along weft and warp, and to their product.
+// The sum of maps and bumps in squared widths along weft and warp, and to their product.
 vec3 thread_widening_here(float side)
 {
     float own_rough = 1.0 - material_scalars.x;

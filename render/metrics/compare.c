@@ -155,7 +155,7 @@ static bool frame_of(const tl_image *image, double pixels_per_degree, struct tl_
 }
 
 /* Besides the two images: both as colours and coverage, what FLIP takes, its map and the luminances. */
-static bool ask_for(const struct tl_flip_frame *frame, tl_error *error)
+static bool request_memory(const struct tl_flip_frame *frame, tl_error *error)
 {
     const uint64_t plain_bytes = 3 * sizeof(float) + sizeof(bool), map_bytes = 2 * sizeof(float);
     uint64_t pixels = (uint64_t)frame->width * (uint64_t)frame->height;
@@ -170,7 +170,7 @@ bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixe
     *out = (struct tl_comparison){0};
     struct tl_flip_frame frame;
     if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error) ||
-        !ask_for(&frame, error))
+        !request_memory(&frame, error))
         return false;
 
     struct plain test = {0}, reference = {0};
@@ -231,7 +231,7 @@ bool tl_image_compare_object(const tl_image *a, const tl_image *b, const tl_imag
     *out = (struct tl_object_error){.flip_mean = NAN, .flip_worst = NAN};
     struct tl_flip_frame frame;
     if (!check_sizes(a, b, error) || !frame_of(a, pixels_per_degree, &frame, error) ||
-        !ask_for(&frame, error))
+        !request_memory(&frame, error))
         return false;
     if (mask->width != a->width || mask->height != a->height)
         return tl_fail(error, TL_INPUT,

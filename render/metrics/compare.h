@@ -31,7 +31,7 @@ bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixe
                       struct tl_comparison *out, tl_error *error);
 
 /* The error of a picture in motion: LDR-FLIP over the pixels of one object, which is the garment. A mean over
- * all covered pixels says little about the garment, because most of them are the ground, which is easy. FLIP
+ * all covered pixels is no measure of the garment, because most of them are the ground, which is easy. FLIP
  * is taken of the whole picture at the size at which it is shown, one pixel of the images for one of the
  * screen, and then only the object's pixels are averaged. What a person notices first is where the error is
  * largest, so the mean of the largest 5 % stands beside the mean. */

@@ -9,7 +9,7 @@
  *     energy      = integral E dd / integral K dd
  *     same volume = integral |E / energy - K| dd / integral K dd
  *
- * The paper compares lobes of the same volume, seen from one fixed pixel, and does not say how it samples
+ * The paper compares lobes of the same volume, seen from one fixed pixel, and does not state how it samples
  * them. `error` measures the light of a pixel. `same volume` measures the shape alone, which is as close to
  * the paper as its text allows. */
 #ifndef TOILE_RENDER_PEM_LOBE_ERROR_H
@@ -61,8 +61,8 @@ struct tl_lobe_curve_point {
 /* Fills `out` [exponent_count]. */
 void tl_lobe_curve(const struct tl_lobe_curves *curves, int method, struct tl_lobe_curve_point *out);
 
-/* By exponent: the same-volume error of a chain at the level that fits best for each direction and exponent
- * separately. It is the limit of what the filter can reach if the calibration knew the direction. */
+/* Errors by exponent: the same-volume error of a chain at the level that fits best for each direction and
+ * exponent separately. It is the limit of what the filter can reach if the calibration knew the direction. */
 void tl_lobe_min_error(const struct tl_lobe_curves *curves, int method, double *mean, double *worst);
 
 /* Figure 4: the response and K_s along the great circle through a texel in the centre of a face, at `count`

@@ -13,7 +13,7 @@ layout(std430, binding = 2) readonly buffer Paraboloids
 layout(location = 8) uniform ivec2 paraboloid_density; // texels a unit of p at level 0; number of levels
 layout(binding = 11) uniform sampler2D paraboloid_maps;
 
-// Where a direction lies: in all regions alike.
+// The place of a direction, the same in all regions.
 struct ParaboloidPoint {
     vec2 p;
     int chart;

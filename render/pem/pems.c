@@ -112,7 +112,7 @@ static void upload_maps(struct tl_pems *pems, tl_gpu *gpu, int array, struct sam
         }
 }
 
-/* What is black has bounds that nothing lies within. */
+/* A black region has bounds that nothing lies within. */
 static struct gpu_paraboloid gpu_paraboloid_of(const struct tl_paraboloid_crop crops[TL_PARABOLOID_CHARTS])
 {
     struct gpu_paraboloid out;

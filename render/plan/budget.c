@@ -159,7 +159,8 @@ void tl_governor_learn(struct tl_governor *governor, double budget_ms, double to
 {
     if (!isfinite(took_ms))
         return;
-    /* In the first frames jobs do what is done once: their time says nothing of the frames that follow. */
+    /* In the first frames jobs do what is done once: their time predicts nothing of the frames that follow.
+     */
     bool is_over = took_ms > OVER * budget_ms && governor->age >= NEW;
     if (!is_over) {
         governor->share = fmin(governor->share + SHARE_STEP * OVER_RATE / (1 - OVER_RATE), SHARE_MAX);

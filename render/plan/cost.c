@@ -90,7 +90,7 @@ static void drift(struct tl_cost_job *job)
     }
 }
 
-/* What is done once, such as compiling, makes runs slower and never faster. So an early run that is much
+/* Work that is done once, such as compiling, makes runs slower and never faster. So an early run that is much
  * faster than predicted shows that those before it did such work, or that another program slowed them down:
  * they are forgotten. Averaged with the later ones, they would make all levels look expensive for ten runs
  * more. */

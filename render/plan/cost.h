@@ -29,7 +29,7 @@ struct tl_cost_job {
 /* Predicted ms. NaN for a job that never ran and has no work in the table. */
 double tl_cost_predict(const struct tl_cost_job *job, const struct tl_work *work, double load);
 
-/* How many times slower than the table's machine this one is, by jobs that ran and their work; jobs that
+/* The factor by which this machine is slower than the table's, by jobs that ran and their work; jobs that
  * never ran, or have no work in the table, are left out. 1 when none is left. */
 double tl_cost_slowness(const struct tl_cost_job *jobs, const struct tl_work *work, int count);
 /* tl_cost_predict for a frame to come. A job of fewer than TL_COST_KNOWN runs is not expected to take longer
@@ -42,9 +42,9 @@ double tl_cost_expect(const struct tl_cost_job *job, const struct tl_work *work,
  * negative. */
 void tl_cost_learn(struct tl_cost_job *job, const struct tl_work *work, double load, double ms);
 
-/* How much slower than usual the machine is: 1, or an empty struct, for not at all. Follows the ratio of
- * measured to predicted frame times, upwards within a few frames, downwards within some tens. A single slow
- * frame is ignored: it is over when it is measured. */
+/* The factor by which the machine is slower than usual: 1, or an empty struct, for not at all. Follows the
+ * ratio of measured to predicted frame times, upwards within a few frames, downwards within some tens. A
+ * single slow frame is ignored: it is over when it is measured. */
 struct tl_machine_load {
     double factor;
     bool was_sudden; /* the last frame was much slower than those before */

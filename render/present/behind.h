@@ -1,4 +1,4 @@
-/* What is seen behind the figure, on the CPU: the environment as it is, or blurred, in linear radiance. It is
+/* The background of the figure, on the CPU: the environment as it is, or blurred, in linear radiance. It is
  * evaluated in tiles, where one is asked for, and kept for as long as camera, environment and size stay. What
  * is smooth enough over TL_BEHIND_STEP pixels, blurred light or the place in the environment's picture, is
  * evaluated at every TL_BEHIND_STEP-th pixel and interpolated. Pure. */

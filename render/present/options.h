@@ -6,7 +6,7 @@
 
 enum tl_background { TL_BACKGROUND_ENVIRONMENT, TL_BACKGROUND_BLURRED, TL_BACKGROUND_GREY };
 
-/* What the image shows: render/inspect. */
+/* Views of the image: render/inspect. */
 enum tl_image_view {
     TL_VIEW_LIGHT,
     TL_VIEW_NORMAL, /* with bumps */

@@ -15,7 +15,7 @@ struct tl_picture {
     bool is_sent;                 /* the target holds the picture */
 };
 
-/* What of a picture is wanted: pixels, columns [first, end). */
+/* The part of a picture that is drawn: pixels, columns [first, end). */
 struct tl_picture_part {
     int width, height;
     int first_column, end_column;

@@ -1,5 +1,5 @@
-/* From samples to the linear image, and from the image to a screen: background, exposure, tone mapping
- * (Khronos PBR Neutral), sRGB. */
+/* Turns samples into the linear image, and the image into a screen's values: background, exposure, tone
+ * mapping (Khronos PBR Neutral), sRGB. */
 #ifndef TOILE_RENDER_PRESENT_PRESENT_H
 #define TOILE_RENDER_PRESENT_PRESENT_H
 

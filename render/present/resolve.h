@@ -1,4 +1,4 @@
-/* From samples to pixels on the CPU: the box filter of a whole number of samples a pixel side, as
+/* Turns samples into pixels on the CPU: the box filter of a whole number of samples a pixel side, as
  * resolve.frag has it; else resample.h. Pure; results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_PRESENT_RESOLVE_H
 #define TOILE_RENDER_PRESENT_RESOLVE_H

@@ -14,7 +14,7 @@
 #define FURTHER_STRATA   16
 #define HIT_LOBE_SAMPLES 1
 
-/* Of the paths that hits send on, those that carry less than this are followed by chance, with as much more
+/* Paths that carry less than this are followed by chance, with as much more
  * weight: lobes of a few per cent would multiply the paths from bounce to bounce. */
 #define FOLLOWED_WEIGHT 0.25f
 

@@ -11,7 +11,7 @@
 struct tl_view {
     mat4s view_projection;
     vec3s eye;
-    /* From the eye to the plane at distance 1: its middle, and from there to the right and upper edge. */
+    /* The plane at distance 1: its middle from the eye, and from there its right and upper edge. */
     vec3s forward, right, up;
     float near_m, far_m; /* depths along `forward` */
 };

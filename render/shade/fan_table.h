@@ -103,13 +103,13 @@ TL_INLINE void tl_fan_add_nodes(const struct tl_fan_table *table, const struct t
     }
 }
 
-/* Where the table is read. */
+/* The place at which the table is read. */
 struct tl_fan_place {
     struct tl_fan_between row, column, gloss;
     float side; /* 1 or -1, a factor on the x and y of directions: the frame is turned where y < 0 */
 };
 
-/* Of a viewer (x, y, cosine > 0) in the frame of the threads. */
+/* The place of a viewer (x, y, cosine > 0) in the frame of the threads. */
 TL_INLINE struct tl_fan_place tl_fan_place(const struct tl_fan_table *table, float x, float y, float cosine,
                                            float glossiness)
 {

@@ -6,7 +6,7 @@
 
 /* ---- Maps ---- */
 
-/* Where a map is read. */
+/* The place at which a map is read. */
 struct texel_lanes {
     float u[TL_LANES], v[TL_LANES], level[TL_LANES];
 };
@@ -56,7 +56,7 @@ TL_INLINE void multiply(tl_quad values[TL_LANES], const tl_quad factors[TL_LANES
         values[i] *= factors[i];
 }
 
-TL_INLINE void tell_yarns_apart(struct tl_look_lanes *lanes)
+TL_INLINE void vary_yarn_colour(struct tl_look_lanes *lanes)
 {
     const struct tl_shade_part *part = lanes->part;
     for (int i = 0; i < lanes->count; i++) {
@@ -117,7 +117,7 @@ TL_INLINE void read_colours(const struct tl_detail_params *detail, struct tl_loo
             lanes->glossiness[i] += texels[i][3];
     }
     if (part->yarns)
-        tell_yarns_apart(lanes);
+        vary_yarn_colour(lanes);
     show_backs(lanes);
     for (int i = 0; i < TL_LANES; i++)
         lanes->glossiness[i] = tl_maxf(tl_minf(lanes->glossiness[i], 1), 0);

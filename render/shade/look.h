@@ -21,7 +21,7 @@ struct tl_look_lanes {
     float tangent[4][TL_LANES]; /* along u, and handedness; read where the part has bumps or a fan */
     float viewer[3][TL_LANES];  /* unit, towards the eye */
     float side[TL_LANES];       /* 1: the front is seen; -1: the back, whose whole frame turns over */
-    /* Where the part has maps: */
+    /* Values of the part's maps: */
     float uv[2][TL_LANES];        /* must be finite */
     float change[2][2][TL_LANES]; /* of u and of v to the next sample across and up */
     float slopes[2][TL_LANES];    /* factors on a weave's slopes along u and v (tl_slope_factors) */

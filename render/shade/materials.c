@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What of an image was packed: its colours, its numbers, the moments of its normals, the mixed
+/* The packed form of an image: its colours, its numbers, the moments of its normals, the mixed
  * one apart; or a weave's tint with
  * its gloss. */
 enum packed { PACKED_COLOUR, PACKED_DATA, PACKED_MOMENTS, PACKED_CROSS, PACKED_WEAVE };

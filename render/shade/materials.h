@@ -1,7 +1,7 @@
 /* The materials of all parts of the surfaces, ready to be evaluated on the CPU at every pixel: what the
  * shader of the G-buffer (render/gbuffer/gbuffer.frag) reads from uniforms and textures, with the fit of its
  * facets as a table. Bumps bend normals and widen gloss (detail.mode normal, detail.minify any). Whatever
- * else a material can be is not evaluated here, and tl_shade_materials_fit says so.
+ * else a material can be is not evaluated here, and tl_shade_materials_fit reports so.
  *
  * Lifetime: owns its maps and tables; borrows the materials from the surfaces. Threads: pure once made. */
 #ifndef TOILE_RENDER_SHADE_MATERIALS_H

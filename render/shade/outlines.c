@@ -18,7 +18,7 @@
 /* Samples to each side among which one of any part is looked for. */
 #define REACH 8
 
-/* What is seen at a pixel or sample. */
+/* The surface at a pixel or sample. */
 struct shown {
     uint32_t part;            /* 0: nothing; else one number for each part and side */
     float nearness;           /* 1 / depth, 1/m */

@@ -146,7 +146,7 @@ TL_INLINE tl_quad schlick(tl_quad f0, float share)
     return f0 + (most - f0) * share;
 }
 
-/* As tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
+/* The frame of tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
 TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, vec3s n, vec3s t, float handedness,
                                         float side)
 {
@@ -404,7 +404,7 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
     }
 }
 
-/* Of other facets than Ward's: one by one, where the sun is seen. */
+/* Adds other facets than Ward's: one by one, where the sun is seen. */
 TL_INLINE void add_brdf(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
                         const struct tl_sun *sun, vec3s direction, const float seen[TL_LANES],
                         tl_quad lit[TL_LANES])

@@ -28,7 +28,7 @@ struct pixel_run {
     bool is_fading;                /* the ground where it fades */
 };
 
-/* Of one normal and one colour: the light at the corners is all that a pixel interpolates. */
+/* A part of one normal and one colour: the light at the corners is all that a pixel interpolates. */
 static void flatten(const struct tl_pixel_scene *scene, struct pixel_run *run)
 {
     const struct tl_pixels_request *request = scene->request;

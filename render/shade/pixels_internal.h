@@ -1,5 +1,5 @@
-/* What pixels.c, which walks over runs of pixels, and pixel_lanes.c, which evaluates those that have a gloss,
- * maps or more than one normal, share. */
+/* Shared by pixels.c, which walks over runs of pixels, and pixel_lanes.c, which evaluates those that have a
+ * gloss, maps or more than one normal, share. */
 #ifndef TOILE_RENDER_SHADE_PIXELS_INTERNAL_H
 #define TOILE_RENDER_SHADE_PIXELS_INTERNAL_H
 
@@ -9,7 +9,7 @@
 
 struct tl_pixel_blends;
 
-/* What all pixels of a layer share. */
+/* Values that all pixels of a layer share. */
 struct tl_pixel_scene {
     const struct tl_pixels_request *request;
     int layer;
@@ -51,7 +51,7 @@ TL_INLINE float tl_pixel_sun_above(const struct tl_sun *sun, float cosine)
     return disc_share(cosine / tl_maxf(sun->radius, 1e-3f));
 }
 
-/* What of a sun is seen at a pixel. */
+/* The visible share of a sun at a pixel. */
 TL_INLINE float tl_pixel_sun_seen(const struct tl_pixel_scene *scene, int sun, size_t pixel)
 {
     const float *visible = scene->request->sun_pixels->visible[scene->layer][sun];

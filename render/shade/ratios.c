@@ -254,7 +254,7 @@ static void fill_seen(struct tl_vertex_ratios *ratios, const struct tl_ratios_re
 
 /* ---- In motion: means over neighbours ---- */
 
-/* What a neighbour counts, where the vertex itself counts 1. Means take away the noise of single rays, but
+/* The weight of a neighbour, where the vertex itself has 1. Means take away the noise of single rays, but
  * blur what differs: a gloss whose direction, and so the normal, changes along a fold; and the more regions
  * there are, the less noise there is. Satin and cotton in flights of 48 and 96 regions have less FLIP for
  * it, satin at 192 as much (docs/notes/budgets.md). */

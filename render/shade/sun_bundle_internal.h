@@ -8,7 +8,7 @@
 
 #define TL_SUN_BUNDLE 16 /* rays */
 
-/* What a pixel sees of the sun. From FACED on: how much of it reaches a surface that faces it, in steps of
+/* The sun's state at a pixel. From FACED on: how much of it reaches a surface that faces it, in steps of
  * the root, because every open sheet on the way multiplies it. LISTED, a bit: it has been asked for more. */
 enum tl_sun_state {
     TL_SUN_UNKNOWN = 0,
@@ -30,7 +30,7 @@ static inline uint8_t tl_sun_state_of(float share)
     return (uint8_t)(TL_SUN_FACED + (int)(sqrtf(share) * TL_SUN_STEPS + 0.5f));
 }
 
-/* Of a state that is, or was before it was listed, that of a pixel which faces the sun; 0 of any other. */
+/* The share of a state that is, or was before it was listed, that of a pixel facing the sun; else 0. */
 static inline float tl_sun_share_of(uint8_t state)
 {
     const float root = (float)(state & (TL_SUN_FACED - 1)) / TL_SUN_STEPS; /* 1 of all of it */

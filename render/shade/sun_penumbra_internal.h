@@ -1,4 +1,4 @@
-/* How much of a sun the pixels near the edge of its shadow see. */
+/* The share of a sun that the pixels near the edge of its shadow see. */
 #ifndef TOILE_RENDER_SHADE_SUN_PENUMBRA_INTERNAL_H
 #define TOILE_RENDER_SHADE_SUN_PENUMBRA_INTERNAL_H
 

@@ -103,7 +103,8 @@ static bool is_ground(const struct tl_sun_pixels_request *request, struct id_ran
     return request->ground && surface.first == ranges->first[ranges->surface_count - 1] + 1;
 }
 
-/* How a cell's pixels got their answers; TRACED: by rays of their own, those of its surface at least. */
+/* The origin of the results of a cell's pixels; TRACED: by rays of their own, those of its surface at least.
+ */
 enum cell_state { FILLED, TRACED, BARE };
 
 /* A cell of a grid: its corners' state where they agree, and their surface. */
@@ -140,8 +141,8 @@ static struct cell cell_at(const struct tl_sun_pixels_request *request, const ui
 }
 
 /* Decides every pixel of a row at multiples of `step`, and the last one. */
-static size_t look_along(const struct tl_sun_pixels_request *request, vec3s direction, int y, int step,
-                         uint8_t *states)
+static size_t trace_row(const struct tl_sun_pixels_request *request, vec3s direction, int y, int step,
+                        uint8_t *states)
 {
     struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
     const int width = request->ids->width, cell_y = y - y % GROUND_CELL;
@@ -175,12 +176,12 @@ static size_t look_at_grid(const struct tl_sun_pixels_request *request, vec3s di
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
         for (int line = 0; line < lines; line++)
             rays +=
-                look_along(request, direction, line * step < height ? line * step : height - 1, step, states);
+                trace_row(request, direction, line * step < height ? line * step : height - 1, step, states);
     }
     return rays;
 }
 
-/* What is left of a cell: pixels on the lines at its ends belong to the next cell, but at the picture's ends.
+/* The rest of a cell: pixels on the lines at its ends belong to the next cell, but at the picture's ends.
  */
 static int last_of(int end, int size)
 {
@@ -338,9 +339,9 @@ static void find_rows(struct tl_sun_pixels *pixels, const struct tl_id_buffer *i
         pixels->end_row--;
 }
 
-/* Of one layer. */
-static void look_at_sun(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun,
-                        float *visible)
+/* State of one layer. */
+static void trace_sun(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun,
+                      float *visible)
 {
     const struct tl_sun *item = &request->suns->items[sun];
     vec3s direction = tl_turn_direction(item->sample_count > 0 ? item->samples[0] : item->direction,
@@ -365,7 +366,7 @@ void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixe
         find_rows(pixels, ids, layer);
         pixels->contrast = CONTRAST / weight;
         for (int sun = 0; sun < request->suns->count; sun++)
-            look_at_sun(pixels, &of_layer, sun, pixels->visible[layer][sun]);
+            trace_sun(pixels, &of_layer, sun, pixels->visible[layer][sun]);
     }
 }
 

@@ -17,8 +17,8 @@
 
 struct tl_sun_pixels {
     size_t capacity; /* pixels */
-    /* By layer of the ID buffer, [height][width], in [0, 1]; of pixels that face the sun, with either side
-     * where light comes through. */
+    /* Shares by layer of the ID buffer, [height][width], in [0, 1]; of pixels that face the sun, with either
+     * side where light comes through. */
     float *visible[1 + TL_TRANSPARENCY_LAYERS][TL_SUNS_MAX];
     uint8_t *states;       /* of a layer: what was seen */
     uint8_t *least, *most; /* ... there and in the rows above and below */
@@ -31,7 +31,7 @@ struct tl_sun_pixels {
     int row_capacity;
     size_t *block_counts; /* listed pixels by block of rows */
     size_t rays;          /* of the last update */
-    /* Of the layer at work: rows that hold something; the difference between shares of the sun that is
+    /* State of the layer at work: rows that hold something; the difference between shares of the sun that is
      * softened at the edge of a shadow. */
     int first_row, end_row;
     float contrast;

@@ -22,8 +22,8 @@ struct tl_texels {
     void *levels[TL_TEXTURE_LEVELS_MAX]; /* [height][width][4], uint16_t or float */
 };
 
-/* Packs an image. `colour`: bytes are sRGB unless the image says linear; grey spreads over red, green and
- * blue. Missing channels are 0, alpha 1. */
+/* Packs an image. `colour`: bytes are sRGB unless the image is marked linear; grey spreads over red, green
+ * and blue. Missing channels are 0, alpha 1. */
 struct tl_texels tl_texels_make(const tl_image *image, bool colour);
 void tl_texels_release(struct tl_texels *texels);
 size_t tl_texels_bytes(const struct tl_texels *texels);

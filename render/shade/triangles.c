@@ -34,7 +34,7 @@ static void set_origin(const struct corner corners[3], int width, int height,
     triangle->y0 = (float)floor(fmin(fmax(y, 0), height));
 }
 
-/* How cloth is stretched matters to weaves only. */
+/* The stretch of cloth matters to weaves only. */
 static void set_slopes(const struct tl_shade_part *part, struct tl_pixel_triangle *triangle)
 {
     triangle->slopes[0] = triangle->slopes[1] = 1;

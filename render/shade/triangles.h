@@ -21,7 +21,7 @@ struct tl_pixel_triangle {
     bool transmits;  /* light comes through it from its other side */
 };
 
-/* Of all layers, in the order of `ids->seen`. Owns its array, which is used again from frame to frame. */
+/* Triangles of all layers, in the order of `ids->seen`. Owns its array, which is reused by every frame. */
 struct tl_pixel_triangles {
     struct tl_pixel_triangle *items;
     size_t capacity;
@@ -33,8 +33,8 @@ void tl_pixel_triangles_make(struct tl_pixel_triangles *triangles, const struct 
                              const struct tl_shade_materials *materials);
 void tl_pixel_triangles_release(struct tl_pixel_triangles *triangles);
 
-/* Of a pixel: weights of the corners, which sum to 1. With e the edge functions' slopes their changes to the
- * next pixel are scale (e[i] - at[i] (e[0] + e[1] + e[2])). */
+/* Values of a pixel: weights of the corners, which sum to 1. With e the edge functions' slopes their changes
+ * to the next pixel are scale (e[i] - at[i] (e[0] + e[1] + e[2])). */
 struct tl_pixel_weights {
     float at[3], scale;
 };

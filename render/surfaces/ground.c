@@ -130,8 +130,8 @@ float tl_ground_cover(const struct tl_ground *ground, float x, float z)
 
 float tl_ground_distance(const struct tl_ground *ground, vec3s origin, vec3s direction)
 {
-    bool meets = ground && direction.y < 0 && origin.y >= ground->centre.y;
-    return meets ? (origin.y - ground->centre.y) / -direction.y : INFINITY;
+    bool is_hit = ground && direction.y < 0 && origin.y >= ground->centre.y;
+    return is_hit ? (origin.y - ground->centre.y) / -direction.y : INFINITY;
 }
 
 float tl_ground_visibility_to(const struct tl_ground *ground, vec3s point, vec3s direction, float distance_m)

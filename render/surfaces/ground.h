@@ -49,14 +49,14 @@ struct tl_ground {
 /* Fills `out` in place; it must not be moved while its surface is used. `colour` is its reflectance. */
 void tl_ground_make(const struct tl_casters *casters, vec3s colour, struct tl_ground *out);
 
-/* As in ground.glsl: the opacity of the disc at a point of its plane; and its transmittance for light from
- * `direction` at `point`. NULL: there is no ground. */
+/* The functions of ground.glsl: the opacity of the disc at a point of its plane; and its transmittance for
+ * light from `direction` at `point`. NULL: there is no ground. */
 float tl_ground_cover(const struct tl_ground *ground, float x, float z);
 float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction);
 /* The same for light that comes from `distance_m` away: what it meets beyond does not count. */
 float tl_ground_visibility_to(const struct tl_ground *ground, vec3s point, vec3s direction, float distance_m);
 
-/* How far a ray from above goes until it meets the plane of the ground; infinite when it never does. */
+/* The distance of a ray from above to the plane of the ground; infinite when it never does. */
 float tl_ground_distance(const struct tl_ground *ground, vec3s origin, vec3s direction);
 /* Intersects a ray from above with the disc: the point, the mesh's triangle there and the barycentric
  * weights. False when it misses or there is no ground. */

@@ -1,10 +1,10 @@
-// What a material's maps say at a point: shared by every pass that shades a surface while it draws it. The normal and
-// the tangent are those that rasterisation interpolated, as long as they come out.
+// The values of a material's maps at a point: shared by every pass that shades a surface while it draws it. The normal
+// and the tangent are those that rasterisation interpolated, as long as they come out.
 #include "detail.glsl"
 #include "construction.glsl"
 #include "direction.glsl"
 
-// A pass that draws something else than what is seen says which side it draws.
+// A pass that draws something else than what is seen states which side it draws.
 #ifndef SEES_FRONT
 #define SEES_FRONT gl_FrontFacing
 #endif

@@ -13,7 +13,7 @@ uint32_t *tl_uv_texels_triangles(const tl_surface *surface, int side);
 /* The barycentric coordinates of a texel's middle in a triangle. */
 vec3s tl_uv_texels_weights(const tl_surface *surface, uint32_t triangle, vec2s low, vec2s extent, int side,
                            int texel);
-/* Whether every point of the surface has a place of its own in UV, as far as texels of 1 / side tell. */
+/* Whether every point of the surface has a place of its own in UV, as far as texels of 1 / side resolve. */
 bool tl_uv_texels_fit(const tl_surface *surface, int side);
 
 #endif

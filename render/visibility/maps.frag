@@ -1,7 +1,7 @@
 #version 450 core
-// What a shadow map keeps of a surface. Variants: MOMENTS, of a variance shadow map [Donnelly and Lauritzen 2006], or
-// else its depth alone; MASKED, for parts with holes (apart, because a discard costs the early depth test and more than
-// half the speed).
+// The values that a shadow map keeps of a surface. Variants: MOMENTS, of a variance shadow map [Donnelly and Lauritzen
+// 2006], or else its depth alone; MASKED, for parts with holes (apart, because a discard costs the early depth test and
+// more than half the speed).
 #include "surface.glsl" // its uniforms are set for every program that draws surfaces
 
 #ifdef MASKED

@@ -469,7 +469,7 @@ static size_t bundles_of_a_frame(const tl_points *points, const struct tl_refres
     const struct tl_points_request *request = refresh->request;
     if (refresh->whole_rounds || request->moved)
         return SIZE_MAX;
-    size_t rays = TL_REST_HASTE * points->visible_count * (size_t)request->params->refresh;
+    size_t rays = TL_REST_RAY_FACTOR * points->visible_count * (size_t)request->params->refresh;
     return rays / ((size_t)request->regions->count * TL_CLUSTER) + 1;
 }
 

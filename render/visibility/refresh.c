@@ -108,7 +108,7 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
     uint32_t near = tl_trace_occluded_packet(refresh->request->trace, &up);
     for (int k = 0; k < up.count; k++) {
         int i = lane_of[k];
-        /* A vertex without a normal has no outside to look from. */
+        /* A vertex without a normal has no outside from which to trace. */
         bool lost = lanes->nx[i] == 0 && lanes->ny[i] == 0 && lanes->nz[i] == 0;
         bool covered = lost || (near >> k & 1 && !lift(refresh, &cluster->probes[i], lanes, i));
         *cluster->covered = (uint16_t)((*cluster->covered & ~(1u << i)) | (uint32_t)covered << i);
@@ -191,7 +191,7 @@ static void select_at_rest(const struct tl_refresh *refresh, const struct tl_clu
     float needs[TL_REGIONS_MAX], set[TL_REGIONS_MAX];
     int count = refresh->request->regions->count;
     int wanted = refresh->request->params->refresh;
-    wanted = refresh->request->only_camera ? (wanted + 1) / 2 : TL_REST_HASTE * wanted;
+    wanted = refresh->request->only_camera ? (wanted + 1) / 2 : TL_REST_RAY_FACTOR * wanted;
     measure_needs(refresh, cluster, lanes, needs, set);
     for (int i = 0; i < count; i++) {
         bool left = cluster->rounds[i] < refresh->request->params->rounds;
@@ -232,8 +232,8 @@ static float weight_of(float cosine)
 
 /* Adds the visibility of a direction from each of `lanes_wanted`; returns the number of rays. Members whose
  * surface faces away are left out. */
-static size_t look(const struct tl_refresh *refresh, const struct cluster_lanes *lanes, uint32_t lanes_wanted,
-                   vec3s direction, struct glance *glance)
+static size_t trace_direction(const struct tl_refresh *refresh, const struct cluster_lanes *lanes,
+                              uint32_t lanes_wanted, vec3s direction, struct glance *glance)
 {
     struct tl_ray_packet bundle = {.to_m = INFINITY, .coherent = true};
     int lane_of[TL_CLUSTER];
@@ -298,7 +298,8 @@ static size_t trace_region(const struct tl_refresh *refresh, const struct tl_clu
     struct glance glance = {0};
     size_t rays = 0;
     for (int k = 0; k < ray_count; k++)
-        rays += look(refresh, lanes, lanes_wanted, direction_of(refresh, cluster, region, round, k), &glance);
+        rays += trace_direction(refresh, lanes, lanes_wanted,
+                                direction_of(refresh, cluster, region, round, k), &glance);
     store(refresh, cluster, lanes_wanted, region, &glance);
     return rays;
 }

@@ -24,7 +24,7 @@ struct tl_refresh {
 
 /* Factor on the number of rays of a frame at rest. Such a frame saves the G-buffer, its read-back and the
  * BVH, and still costs a third less than one in motion. */
-#define TL_REST_HASTE 2
+#define TL_REST_RAY_FACTOR 2
 
 /* A cluster in use. */
 struct tl_cluster {

@@ -41,8 +41,8 @@ static void reserve(struct tl_sun_rays *rays, const struct tl_points_request *re
 
 /* Traces the visibility of a point of the sun at `count` samples; samples below whose horizon it lies are
  * left at -1. Returns the number of rays. */
-static size_t look(const struct tl_points_request *request, const struct tl_ray_origins *origins,
-                   const uint32_t samples[BUNDLE], int count, vec3s direction, float seen[BUNDLE])
+static size_t trace_samples(const struct tl_points_request *request, const struct tl_ray_origins *origins,
+                            const uint32_t samples[BUNDLE], int count, vec3s direction, float seen[BUNDLE])
 {
     struct tl_ray_packet bundle = {.to_m = INFINITY, .coherent = true};
     int place[BUNDLE];
@@ -80,8 +80,8 @@ static vec3s place_of(const struct tl_points_request *request, int sun, int roun
 }
 
 /* One ray a sample; marks what it sees. */
-static size_t look_once(struct tl_sun_rays *rays, const struct tl_points_request *request,
-                        const struct tl_ray_origins *origins, int sun)
+static size_t trace_first(struct tl_sun_rays *rays, const struct tl_points_request *request,
+                          const struct tl_ray_origins *origins, int sun)
 {
     size_t count = request->samples->count, ray_count = 0;
     vec3s direction = place_of(request, sun, rays->rounds, 0);
@@ -93,7 +93,7 @@ static size_t look_once(struct tl_sun_rays *rays, const struct tl_points_request
         for (int i = 0; i < size; i++)
             samples[i] = (uint32_t)first + (uint32_t)i;
         float *seen = rays->seen + first;
-        ray_count += look(request, origins, samples, size, direction, seen);
+        ray_count += trace_samples(request, origins, samples, size, direction, seen);
         for (int i = 0; i < size; i++) {
             /* Samples whose horizon hides the sun take no part: their share is zero. */
             if (seen[i] >= 0 && first + (size_t)i < request->samples->primary_count)
@@ -148,8 +148,8 @@ static size_t find_doubtful(struct tl_sun_rays *rays, const struct tl_samples *s
 }
 
 /* Traces more rays for the doubtful samples, whose visibility becomes the mean of all rays. */
-static size_t look_again(struct tl_sun_rays *rays, const struct tl_points_request *request,
-                         const struct tl_ray_origins *origins, int sun, size_t doubtful_count)
+static size_t trace_doubtful(struct tl_sun_rays *rays, const struct tl_points_request *request,
+                             const struct tl_ray_origins *origins, int sun, size_t doubtful_count)
 {
     size_t ray_count = 0;
     int places = request->suns->items[sun].sample_count, more = places - 1 < MORE ? places - 1 : MORE;
@@ -159,7 +159,8 @@ static size_t look_again(struct tl_sun_rays *rays, const struct tl_points_reques
         int size = doubtful_count - first < BUNDLE ? (int)(doubtful_count - first) : BUNDLE;
         for (int k = 1; k <= more; k++) {
             float seen[BUNDLE];
-            ray_count += look(request, origins, samples, size, place_of(request, sun, rays->rounds, k), seen);
+            ray_count +=
+                trace_samples(request, origins, samples, size, place_of(request, sun, rays->rounds, k), seen);
             for (int i = 0; i < size; i++)
                 rays->seen[samples[i]] += fmaxf(seen[i], 0);
         }
@@ -181,8 +182,8 @@ size_t tl_sun_rays_update(struct tl_sun_rays *rays, const struct tl_points_reque
     reserve(rays, request);
     size_t ray_count = 0;
     for (int sun = 0; sun < rays->count; sun++) {
-        ray_count += look_once(rays, request, origins, sun);
-        ray_count += look_again(rays, request, origins, sun, find_doubtful(rays, request->samples, sun));
+        ray_count += trace_first(rays, request, origins, sun);
+        ray_count += trace_doubtful(rays, request, origins, sun, find_doubtful(rays, request->samples, sun));
         for (size_t i = 0; i < request->samples->count; i++) {
             float *mean = &rays->visible[sun][i];
             *mean += (rays->seen[i] - *mean) / (float)(rays->rounds + 1);

@@ -1,4 +1,4 @@
-/* Commands of this room: invariants, frame by frame. app/cli/command.h says what a command is. */
+/* Commands of this room: invariants, frame by frame. app/cli/command.h defines a command. */
 #ifndef TOILE_APP_LAB_CHECK_COMMANDS_H
 #define TOILE_APP_LAB_CHECK_COMMANDS_H
 

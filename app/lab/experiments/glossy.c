@@ -137,7 +137,7 @@ static const struct tl_experiment experiments[] = {
          "A chain of levels is read at the one whose response to a texel has the volume of the material's "
          "lobe, s = 1 / (1 - g); or each region is convolved with the lobe itself. Gloss alone. The plots "
          "below have the level by the exponent, and the error of both over all directions. Errors "
-         "contain those of 24 plain shadow maps: arcs on the sphere, spots on the sheet.",
+         "contain those of 24 plain shadow maps: arcs on the sphere, patches on the sheet.",
      .exact_text = "ray traced",
      .claims = {{"exact lobes", "chain, level of equal volume", "The design of this program"}},
      .solid = "sphere",

@@ -10,7 +10,7 @@
 struct tl_flight_account { /* strings are borrowed */
     const struct tl_flight *flight;
     struct tl_flight_figures figures;
-    const struct tl_settings *settings; /* as they were read: a camera that frames itself still says so */
+    const struct tl_settings *settings; /* as they were read: a camera that frames itself is still marked */
     const char *scene, *path;           /* files, or "built-in" */
     const char *gl;                     /* what drew */
     int cores;

@@ -233,7 +233,7 @@ static void withhold(struct tl_flight_ratio *ratios, int count)
 int tl_flight_compare(const struct tl_flight *here, const struct tl_flight *there,
                       struct tl_flight_ratio out[TL_FLIGHT_RATIOS_MAX])
 {
-    const size_t fewest = 5;  /* of fewer pairs a median says nothing */
+    const size_t fewest = 5;  /* of fewer pairs a median means nothing */
     const double blocks = 10; /* at least, of a short flight */
     struct pairs pairs = {.here = TL_NEW_ARRAY(double, (size_t)here->count),
                           .there = TL_NEW_ARRAY(double, (size_t)here->count)};

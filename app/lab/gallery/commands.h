@@ -1,5 +1,5 @@
-/* Commands of this room: every technique compared with its exact evaluation. app/cli/command.h says what a
- * command is. */
+/* Commands of this room: every technique compared with its exact evaluation. app/cli/command.h defines a
+ * command. */
 #ifndef TOILE_APP_LAB_GALLERY_COMMANDS_H
 #define TOILE_APP_LAB_GALLERY_COMMANDS_H
 

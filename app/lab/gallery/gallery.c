@@ -121,7 +121,7 @@ static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry
     return done;
 }
 
-/* Of the pictures as shown: in linear light the small lamp of the studio would outweigh all else. */
+/* Compares the pictures as shown: in linear light the small lamp of the studio would outweigh all else. */
 static double measure_change(const struct tl_gallery_shot frames[])
 {
     size_t bytes = (size_t)3 * TL_STRIP_SIDE * TL_STRIP_SIDE;

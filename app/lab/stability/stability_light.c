@@ -183,7 +183,7 @@ static bool picture(struct tl_variant_run *variant, const struct tl_extreme *ext
     struct tl_variant_run changed = *variant;
     changed.settings.image.ground = scene->ground;
     /* Its surfaces reflect more light than they receive, as no cloth does: what that does to light that
-     * bounces is said by extremes of its own, and would hide what all others are about. */
+     * bounces has extremes of its own, and would hide what all others are about. */
     changed.settings.light.bounce = TL_BOUNCE_OFF;
     return assign(&changed.settings, extreme->assignments, error) &&
            assign(&changed.settings, remedy, error) &&

@@ -380,7 +380,7 @@ static double thorough_error(const struct comparison *comparison, const tl_image
     return tile_error(&sums, whole, 3);
 }
 
-/* Few rays are too noisy to tell which tile or block is the worst: those that seem to be are traced again. */
+/* Few rays are too noisy to find the worst tile or block: those that seem to be are traced again. */
 static void find_worst_tile(const struct comparison *comparison, const tl_image *image,
                             struct suspect *suspects, int count, const struct tile_sums *whole,
                             struct tl_truth *out)

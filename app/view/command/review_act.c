@@ -47,7 +47,7 @@ void tl_act_end(struct tl_review *review, int argument)
     else if (last > 0)
         tl_review_go_to_frame(review, last);
     else
-        tl_review_report(review, "nothing is played back that would have an end");
+        tl_review_report(review, "no recording is playing");
 }
 
 void tl_act_reset(struct tl_review *review, int argument)
@@ -362,7 +362,7 @@ void tl_act_pattern(struct tl_review *review, int argument)
 {
     bool *shown = &review->wanted.scene.pattern;
     if (!*shown && !tl_session_has_pattern(review->session)) {
-        tl_review_report(review, "no pattern is known of this garment (toile info tells why)");
+        tl_review_report(review, "no pattern is known of this garment (toile info states why)");
         return;
     }
     *shown = !*shown;
@@ -405,7 +405,7 @@ void tl_act_help(struct tl_review *review, int argument)
 void tl_act_recent(struct tl_review *review, int argument)
 {
     (void)argument;
-    tl_review_ask_recent(review);
+    tl_review_offer_recent(review);
 }
 
 void tl_act_quit(struct tl_review *review, int argument)

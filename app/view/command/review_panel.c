@@ -166,7 +166,7 @@ static bool is_worn(const struct tl_review *review)
     return strcmp(tl_settings_avatar(&tl_session_settings(review->session)->scene), "none") != 0;
 }
 
-/* How the garment stands; motion without input, and the key that ends it. */
+/* Prints the garment's state; motion without input, and the key that ends it. */
 static void describe_status(const struct tl_review *review, char *status, size_t size)
 {
     const struct tl_review_path *path = &review->path;

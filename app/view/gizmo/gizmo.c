@@ -31,7 +31,7 @@ static struct tl_view view_of(const struct tl_gizmo *gizmo)
     return tl_view_make(&gizmo->camera, gizmo->width, gizmo->height);
 }
 
-/* Where a point (w = 1), or the end of a direction at infinity (w = 0), is seen. False: behind the eye. */
+/* Pixel of a point (w = 1), or of the end of a direction at infinity (w = 0). False: behind the eye. */
 static bool see(const struct tl_gizmo *gizmo, const struct tl_view *view, vec3s point, float w, vec2s *pixel)
 {
     vec4s clip = glms_mat4_mulv(view->view_projection, (vec4s){{point.x, point.y, point.z, w}});
@@ -222,9 +222,9 @@ static vec2s tangent_at(const struct tl_gizmo *gizmo, vec2s from)
 
 static float drag_ring(const struct tl_gizmo *gizmo, const struct tl_view *view, vec2s from, vec2s to)
 {
-    vec3s sight = glms_vec3_normalize(glms_vec3_sub(gizmo->pivot, view->eye));
+    vec3s line_of_view = glms_vec3_normalize(glms_vec3_sub(gizmo->pivot, view->eye));
     float start, end;
-    if (fabsf(sight.y) < FLAT)
+    if (fabsf(line_of_view.y) < FLAT)
         return glm_deg(glms_vec2_dot(glms_vec2_sub(to, from), tangent_at(gizmo, from)) /
                        (RING * gizmo->scale));
     if (!angle_under(gizmo, from, &start) || !angle_under(gizmo, to, &end))

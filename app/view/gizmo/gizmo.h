@@ -56,7 +56,7 @@ struct tl_gizmo_change {
     float factor;
 };
 
-/* What a drag of the handle from one pixel position to another amounts to; the gizmo is that of its start.
+/* The change by a drag of the handle from one pixel position to another; the gizmo is that of its start.
  *
  * An arrow's drag is projected onto the axis as it is seen; the change is that of the axis's points under the
  * pointer. The ring's is the angle about the vertical between the points of the ring's plane under the
@@ -73,7 +73,7 @@ struct tl_gizmo_change tl_gizmo_snap(const struct tl_gizmo_change *change);
  * of length 1. False when they are parallel. */
 bool tl_gizmo_nearest_on_axis(const struct tl_ray *ray, vec3s point, vec3s axis, float *parameter);
 
-/* Where a ray meets the plane through `point`. False when it does not, or behind its origin. */
+/* Intersects a ray with the plane through `point`. False when it does not, or behind its origin. */
 bool tl_gizmo_on_plane(const struct tl_ray *ray, vec3s point, vec3s normal, vec3s *hit);
 
 #endif

@@ -1,5 +1,5 @@
-/* The handles of a gizmo as shapes of the panel's overlay, coloured by axis and lettered, so that they are
- * told apart without colours too. Pure. */
+/* The handles of a gizmo as shapes of the panel's overlay, coloured by axis and lettered, so that they differ
+ * without colours, too. Pure. */
 #ifndef TOILE_APP_VIEW_GIZMO_GIZMO_SHAPES_H
 #define TOILE_APP_VIEW_GIZMO_GIZMO_SHAPES_H
 

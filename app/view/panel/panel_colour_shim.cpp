@@ -33,7 +33,7 @@ channels linear_at(const tl_binding &binding, const tl_option &row)
     return linear;
 }
 
-/* As the widgets of ImGui and the screen have it. */
+/* The form of the widgets of ImGui and of the screen. */
 channels encoded(channels linear)
 {
     for (float &channel : linear.of)

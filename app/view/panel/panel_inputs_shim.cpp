@@ -16,7 +16,7 @@ struct tl_panel_inputs {
 namespace
 {
 
-/* What a frame has taken so far. */
+/* Inputs that a frame has taken so far. */
 struct taken {
     bool text = false, buttons = false, pressed = false; /* pressed: a key that writes nothing */
     std::bitset<GLFW_KEY_LAST + 1> keys;                 /* that changed */
@@ -34,7 +34,7 @@ bool is_button(const tl_window_event &event)
            event.button < 3;
 }
 
-/* Keys whose characters tell all that there is to know of them. */
+/* Keys whose characters carry all their information. */
 bool only_writes(const tl_window_event &event)
 {
     const int commands = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;

@@ -1,7 +1,7 @@
 /* Input on its way to ImGui 1.86, which samples keys and buttons when a frame begins. What is pressed and
  * released between two frames would be lost, and what is typed would overtake the click before it: after a
  * slow frame a whole word lies between two. So events wait here, and a frame takes as many of them as it can
- * tell apart. For the panel's C++ only.
+ * distinguish. For the panel's C++ only.
  *
  * Lifetime: from tl_panel_inputs_create until tl_panel_inputs_destroy. Threads: the window's. Nothing fails.
  */

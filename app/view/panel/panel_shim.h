@@ -133,7 +133,7 @@ struct tl_panel_input {
     int x, y, width, height; /* the panel's place, framebuffer pixels; width 0: hidden */
 };
 
-/* What is to be reported about a value that was typed. */
+/* The report about a value that was typed. */
 struct tl_panel_note {
     tl_error error;   /* it is refused; TL_OK: it is not */
     char remark[512]; /* tl_option_remark of one that was taken; "": none */

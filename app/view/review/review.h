@@ -57,7 +57,7 @@ struct tl_review_times {       /* of the last frame that had such a part */
     double longest_ms;
 };
 
-/* How images at rest are drawn. */
+/* The way in which images at rest are drawn. */
 struct tl_review_rest {
     struct tl_quality levels;
     int samples;     /* a pixel side */
@@ -90,7 +90,7 @@ struct tl_review_wipe {
     float place;                   /* of the line between A and B, as a share of the view's width */
 };
 
-/* How the file of a garment or a body was read; kept: what the user has accepted. */
+/* The reading of the file of a garment or a body; kept: what the user has accepted. */
 enum tl_reading_of { TL_READING_NONE, TL_READING_GARMENT, TL_READING_AVATAR, TL_READING_COUNT };
 struct tl_review_reading {
     enum tl_reading_of of;     /* whose reading is shown */

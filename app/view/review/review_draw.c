@@ -17,7 +17,7 @@
 
 #define REST_SIDE 2 /* samples a pixel side, unless they take too long */
 
-/* What an image is for, which limits its time, and so its quality: the budget, TL_REST_MS, or none. */
+/* The purpose of an image, which limits its time, and so its quality: the budget, TL_REST_MS, or none. */
 enum image_use { IMAGE_IN_MOTION, IMAGE_AT_REST, IMAGE_FIRST, IMAGE_SAVED };
 
 static const char *base_name(const char *path)
@@ -134,7 +134,7 @@ static bool is_step_due(const struct tl_review *review)
     return review->playing && tl_clock_s() >= review->next_step_s;
 }
 
-/* What is played back keeps its rate; cloth is simulated frame by frame. */
+/* Playback keeps its rate; cloth is simulated frame by frame. */
 static bool advance(struct tl_review *review, double late_s, tl_error *error)
 {
     int last = tl_session_last_frame(review->session), frame = tl_session_frame_number(review->session);
@@ -191,15 +191,15 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
 static void choose_rest(struct tl_review *review, struct tl_settings *settings, bool goes_on)
 {
     struct tl_review_rest *rest = &review->rest;
-    const int asked = settings->image.supersample;
+    const int requested = settings->image.supersample;
     const tl_frame coming = tl_session_frame(review->session);
     if (!goes_on) {
-        settings->image.supersample = asked > REST_SIDE ? asked : REST_SIDE;
+        settings->image.supersample = requested > REST_SIDE ? requested : REST_SIDE;
         struct tl_quality_rest chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
         *rest = (struct tl_review_rest){.samples = settings->image.supersample};
         if (chosen.is_slow && tl_settings_render(settings).light.visibility == TL_VISIBILITY_RAYS) {
-            *rest = (struct tl_review_rest){.samples = asked, .is_shifted = true};
-            settings->image.supersample = asked;
+            *rest = (struct tl_review_rest){.samples = requested, .is_shifted = true};
+            settings->image.supersample = requested;
             chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
         }
         rest->levels = chosen.levels;

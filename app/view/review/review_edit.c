@@ -151,7 +151,7 @@ void tl_review_next_environment(struct tl_review *review)
 }
 
 /* Asks about files that are dropped together one after the other. */
-static void ask_about(struct tl_review *review, const char *path)
+static void offer_kinds(struct tl_review *review, const char *path)
 {
     if (!review->dropped) {
         review->dropped = tl_copy_string(path);
@@ -235,7 +235,7 @@ static void open_again(struct tl_review *review, const char *path)
     use_as_garment(review, path);
 }
 
-void tl_review_ask_recent(struct tl_review *review)
+void tl_review_offer_recent(struct tl_review *review)
 {
     struct tl_review_recent *recent = &review->recent;
     recent->offered = tl_recent_count(&recent->files);
@@ -279,8 +279,8 @@ static void report_fields(struct tl_review *review, const tl_fabric_file *file)
     free(unused);
 }
 
-/* Uses a fabric of another program, or a folder of toile's own, and says what of it. False, without a report,
- * for a file that is none: a .json file may be a pattern. */
+/* Uses a fabric of another program, or a folder of toile's own, and reports what of it. False, without a
+ * report, for a file that is none: a .json file may be a pattern. */
 static bool use_foreign_fabric(struct tl_review *review, const char *path)
 {
     tl_error error;
@@ -362,7 +362,7 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
         use_as_garment(review, path);
     } else if (tl_model_is_file(path) || tl_path_has_extension(path, "yaml") ||
                tl_path_has_extension(path, "yml")) {
-        ask_about(review, path);
+        offer_kinds(review, path);
     } else {
         tl_error error;
         tl_fail(

@@ -31,7 +31,7 @@ void tl_review_answer(struct tl_review *review, size_t index);
 /* Drops the open question and its file; false: none was open. */
 bool tl_review_cancel_question(struct tl_review *review);
 /* Asks which of the recent garments to open again. */
-void tl_review_ask_recent(struct tl_review *review);
+void tl_review_offer_recent(struct tl_review *review);
 
 /* The environments that E cycles through: adds one, and goes to the next. */
 void tl_review_add_environment(struct tl_review *review, const char *name);

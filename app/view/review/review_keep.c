@@ -74,7 +74,7 @@ bool tl_review_restore_state(struct tl_review *review)
     return is_restored;
 }
 
-/* Of the words of the command line, and of the folder that they are read from. */
+/* A hash of the words of the command line, and of the folder that they are read from. */
 static uint64_t hash_of_command(const struct tl_arguments *arguments)
 {
     uint64_t hash = TL_HASH_START;

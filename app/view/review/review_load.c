@@ -12,7 +12,7 @@
 
 /* Whether an appearance must be loaded first: the session does not have it, and it was not loaded last.
  * Nothing can be prepared for an environment sequence, whose light changes with every frame. While a slider
- * is held, options whose rows say AT_ONCE are applied at once. */
+ * is held, options whose rows have AT_ONCE are applied at once. */
 static bool needs_appearance(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings present = *tl_session_settings(review->session);

@@ -53,7 +53,7 @@ static struct tl_box box_of_garment(const struct tl_review *review)
     return tl_box_of(mesh->positions, mesh->vertex_count);
 }
 
-/* Where the middle of the garment is to be, while the session may still have it elsewhere. */
+/* The intended middle of the garment, while the session may still have it elsewhere. */
 static vec3s wanted_middle(const struct tl_review *review)
 {
     struct tl_box box = box_of_garment(review);
@@ -218,7 +218,7 @@ bool tl_review_place_cancel(struct tl_review *review)
     return true;
 }
 
-/* ---- What is shown ---- */
+/* ---- Display ---- */
 
 void tl_review_place_shapes(const struct tl_review *review, struct tl_gizmo_shapes *out)
 {

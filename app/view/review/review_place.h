@@ -1,5 +1,5 @@
-/* Where the garment's file stands: the scene's options scale, turn_deg and move_m, set by handles over the
- * image or by drags with Ctrl and Shift held. Owns `placing`.
+/* The placement of the garment's file: the scene's options scale, turn_deg and move_m, set by handles over
+ * the image or by drags with Ctrl and Shift held. Owns `placing`.
  *
  * A drag moves the garment as it is drawn; when it ends, the scene is loaded with the new place. Only a
  * garment from a file that plays no motion can be placed. */
@@ -23,7 +23,7 @@ bool tl_review_place_catch(struct tl_review *review, float x, float y);
 bool tl_review_place_begin(struct tl_review *review, float x, float y, bool turns);
 /* A drag that was begun goes on: Shift makes it ten times as fine, Ctrl snaps to whole steps. */
 void tl_review_place_drag(struct tl_review *review, float dx, float dy, int modifiers);
-/* By view heights: turns the garment about the vertical through its middle. */
+/* Turns the garment by view heights about the vertical through its middle. */
 void tl_review_place_turn(struct tl_review *review, float dx);
 /* Sizes it about its middle. */
 void tl_review_place_scale(struct tl_review *review, float factor);
@@ -35,7 +35,7 @@ bool tl_review_place_cancel(struct tl_review *review);
 /* Draws the garment where it is wanted while the session still has it elsewhere; called every frame. */
 void tl_review_follow_place(struct tl_review *review);
 
-/* What is drawn over the view, and next to the pointer: "X +12.5 mm" in a drag, else "". */
+/* The overlay of the view, and the text next to the pointer: "X +12.5 mm" in a drag, else "". */
 void tl_review_place_shapes(const struct tl_review *review, struct tl_gizmo_shapes *out);
 void tl_review_place_amount(const struct tl_review *review, char *text, size_t size);
 

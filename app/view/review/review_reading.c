@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Which file ---- */
+/* ---- The file ---- */
 
 static const char *name_of(const struct tl_settings *settings, enum tl_reading_of of)
 {
@@ -28,7 +28,7 @@ bool tl_review_has_units(const struct tl_review *review, enum tl_reading_of of)
     return model && tl_option_is_file_name(name_of(&review->wanted, of)) && model->units.longest > 0;
 }
 
-/* As asked for, also while that is loading; else as it was guessed. */
+/* The requested value, also while that is loading; else the guessed one. */
 static enum tl_units units_of(const struct tl_review *review, enum tl_reading_of of)
 {
     const struct tl_scene_params *scene = &review->wanted.scene;
@@ -36,7 +36,7 @@ static enum tl_units units_of(const struct tl_review *review, enum tl_reading_of
     return units != TL_UNITS_AUTO ? units : model_of(review, of)->units.units;
 }
 
-/* What moves by a motion or a rig does so in its file's own axes. */
+/* A motion or a rig moves in its file's own axes. */
 static bool plays(const struct tl_review *review, enum tl_reading_of of)
 {
     return of == TL_READING_GARMENT ? strcmp(review->wanted.scene.motion, "none") != 0
@@ -121,7 +121,7 @@ static char *describe(const struct tl_review *review, enum tl_reading_of of)
     return text;
 }
 
-/* What is said about sizes is said about this garment on this body. */
+/* Notices about sizes hold for this garment on this body. */
 static const char *open_size_note(const struct tl_review *review)
 {
     const char *note = tl_session_size_note(review->session);
@@ -144,7 +144,7 @@ static void write_notice(struct tl_review *review)
 void tl_review_note_reading(struct tl_review *review)
 {
     struct tl_review_reading *reading = &review->reading;
-    bool was_asked = reading->of != TL_READING_NONE && reading->notice[0];
+    bool was_shown = reading->of != TL_READING_NONE && reading->notice[0];
     bool stays = reading->of != TL_READING_NONE && tl_review_has_units(review, reading->of) &&
                  strcmp(reading->name, name_of(&review->wanted, reading->of)) == 0;
     for (int of = TL_READING_GARMENT; of < TL_READING_COUNT && !stays; of++) {
@@ -154,7 +154,7 @@ void tl_review_note_reading(struct tl_review *review)
     }
     if (stays)
         snprintf(reading->name, sizeof reading->name, "%s", name_of(&review->wanted, reading->of));
-    if (stays && !was_asked) {
+    if (stays && !was_shown) {
         char *options = options_of(review, reading->of);
         tl_info("view: asks how %s is to be read: %s so far", reading->name, options);
         free(options);

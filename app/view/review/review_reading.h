@@ -1,4 +1,4 @@
-/* How the files of the scene were read: their units and the axis that points up. Owns `reading`.
+/* The readings of the scene's files: their units and the axis that points up. Owns `reading`.
  *
  * A reading that is in doubt (assets/base/units.h) is asked about, and a garment of another size than its
  * body is shown, until they are accepted. The answers, U and A set the scene's options units and up, which

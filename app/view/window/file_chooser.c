@@ -13,7 +13,7 @@
 
 extern char **environ;
 
-/* As long as paths get on Linux. */
+/* The longest path on Linux. */
 enum { PATH_BYTES = 4096 };
 
 struct tl_file_chooser {
@@ -64,7 +64,7 @@ tl_file_chooser *tl_file_chooser_open(const char *title, tl_error *error)
     return chooser;
 }
 
-/* Waits for the process, which has closed its output or was told to end. */
+/* Waits for the process, which has closed its output or was signalled to end. */
 static bool ended_well(pid_t process)
 {
     int status = 0;

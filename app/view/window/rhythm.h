@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* How fast the cloth plays, as a share of real time: a running mean over the last frames, of which the newest
+/* The speed of the cloth, as a share of real time: a running mean over the last frames, of which the newest
  * began `late_s` after it was due and stands for `frame_s` of cloth. */
 static inline double tl_play_speed(double before, double frame_s, double late_s)
 {

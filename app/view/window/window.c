@@ -88,7 +88,7 @@ static void on_button(GLFWwindow *handle, int button, int action, int modifiers)
     queue(window, event);
 }
 
-/* GLFW tells them of keys and buttons only. */
+/* GLFW reports keys and buttons only to them. */
 static int held_modifiers(GLFWwindow *handle)
 {
     static const int keys[][2] = {{GLFW_KEY_LEFT_CONTROL, GLFW_MOD_CONTROL},
@@ -159,7 +159,7 @@ static void listen_to(tl_window *window)
     glfwSetWindowCloseCallback(window->handle, on_close);
 }
 
-static void ask_for_context(void)
+static void set_context_hints(void)
 {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -203,7 +203,7 @@ tl_window *tl_window_create(const char *title, int width, int height, tl_error *
                 last_glfw_message);
         goto failed;
     }
-    ask_for_context();
+    set_context_hints();
     window->handle = glfwCreateWindow(width, height, title, NULL, NULL);
     if (!window->handle) {
         tl_fail(error, TL_DEVICE,

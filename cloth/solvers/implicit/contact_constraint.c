@@ -3,7 +3,7 @@
 /* A particle within this distance of its plane at the start keeps the contact state of the last step. */
 #define TOUCHING_M 1e-4
 
-/* By how much a step violates the plane, m; negative: not at all. */
+/* The violation of the plane by a step, m; negative: not at all. */
 static double violation(const struct tl_contact_plane *plane, vec3d step)
 {
     return plane->min_normal_step - vec3d_dot(step, plane->normal);

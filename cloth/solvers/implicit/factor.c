@@ -120,7 +120,7 @@ static void add_terms(struct sum *sum, const struct tl_energy *energy, const str
 
 /* ---- Panels ---- */
 
-/* How the columns of Eigen's factor are divided into panels and parts. */
+/* Divides the columns of Eigen's factor into panels and parts. */
 struct layout {
     const struct tl_sparse_factor *from;
     size_t panel_count;
@@ -135,7 +135,7 @@ static uint32_t column_size(const struct tl_sparse_factor *from, size_t column)
     return (uint32_t)(from->first[column + 1] - from->first[column]);
 }
 
-/* How many rows a panel has below its own columns. */
+/* The number of rows of a panel below its own columns. */
 static uint32_t rows_below(const struct layout *layout, size_t panel)
 {
     return column_size(layout->from, layout->columns[panel]) - (layout->widths[panel] - 1);

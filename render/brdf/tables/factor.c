@@ -10,7 +10,7 @@
 
 /* Samples below this share of the mean f_r cos a count by their own size against it. */
 #define DARK_SHARE 0.1
-/* What is 0 or almost has the logarithm of this share of the mean. */
+/* A value that is 0 or almost has the logarithm of this share of the mean. */
 #define BLACK_SHARE 1e-4
 /* Weight of second differences against the mean weight of the samples at a texel. */
 #define SMOOTHNESS 1e-3
@@ -24,7 +24,7 @@ static const int factor_inputs[FACTORS][2] = {[AT_LIGHT] = {TL_AXIS_L_U, TL_AXIS
 static const int factor_grids[FACTORS] = {GRID_DIRECTION, GRID_DIRECTION, GRID_HALF, GRID_ANGLE};
 static const struct tl_brdf_frame own_frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
 
-/* ---- Where samples lie in the tables ---- */
+/* ---- Places of samples in the tables ---- */
 
 static float low_of(int input)
 {

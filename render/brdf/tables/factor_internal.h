@@ -28,9 +28,10 @@ struct factor_problem {
     struct factor_row *rows;
 };
 
-/* What is fitted: errors are those of logarithms, which makes a first guess unnecessary, or of square roots,
- * by which the bright parts are right where the product cannot have the form of the samples. The square of an
- * error of the root of f is a quarter of (f^ - f)^2 / f, between an absolute and a relative error. */
+/* The fitted quantity: errors are those of logarithms, which makes a first guess unnecessary, or of square
+ * roots, by which the bright parts are right where the product cannot have the form of the samples. The
+ * square of an error of the root of f is a quarter of (f^ - f)^2 / f, between an absolute and a relative
+ * error. */
 enum factor_measure { FACTOR_LOGS, FACTOR_ROOTS };
 struct factor_aim {
     enum factor_measure measure;

@@ -30,7 +30,7 @@ static vec3s even_light(const struct tl_reflectance_samples *samples)
     return even;
 }
 
-/* What the samples have beyond the even light. */
+/* Gloss of the samples beyond the even light. */
 static struct tl_reflectance_samples rest_of(const struct tl_reflectance_samples *samples, vec3s even)
 {
     struct tl_reflectance_samples rest = {TL_NEW_ARRAY(struct tl_reflectance_sample, samples->count),

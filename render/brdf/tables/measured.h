@@ -20,7 +20,7 @@ struct tl_measured {
     double bridged;  /* share of directions that no sample reaches */
 };
 
-/* Of tables of the size that the samples determine (tl_factor_size). Release it. */
+/* Makes tables of the size that the samples determine (tl_factor_size). Release it. */
 struct tl_measured tl_measured_make(const struct tl_reflectance_samples *samples);
 void tl_measured_release(struct tl_measured *measured); /* frees and zeroes */
 

@@ -110,7 +110,7 @@ void tl_brdf_tables_release(struct tl_brdf_tables *tables);
 /* Size of all texels. */
 size_t tl_brdf_tables_bytes(const struct tl_brdf_tables *tables);
 
-/* From here to tl_brdf_tables_gloss: render/brdf/tables/tables_read.c.
+/* The functions from here to tl_brdf_tables_gloss: tables_read.c.
  * The value of every enum tl_table_input for unit vectors. Not clamped: T_DOT_L and the like may be
  * negative. */
 void tl_brdf_inputs(const struct tl_brdf_frame *frame, vec3s l, vec3s v, float inputs[TL_AXIS_COUNT]);

@@ -49,11 +49,11 @@ $TOILE plan $large --budget 100000 >loose.json
 check "budgets" python3 - <<'END'
 import json
 tight, loose = (json.load(open(f))["budget"] for f in ("tight.json", "loose.json"))
-assert loose["error"] == 0 and all(k["level"] == 0 and k["next_ms"] is None for k in loose["knobs"])
-assert tight["error"] > 0 and [k["name"] for k in tight["knobs"]] == ["ratio", "refresh", "regions", "relief", "scale"]
-for knob in tight["knobs"]: # much error is not accepted for little time, so that not each must be at its last level
-    assert knob["level"] == 0 or knob["next_error"] < 0, knob
-assert any(k["level"] > 0 for k in tight["knobs"][1:])
+assert loose["error"] == 0 and all(k["level"] == 0 and k["next_ms"] is None for k in loose["controls"])
+assert tight["error"] > 0 and [k["name"] for k in tight["controls"]] == ["ratio", "refresh", "regions", "relief", "scale"]
+for control in tight["controls"]: # much error is not accepted for little time, so that not each must be at its last level
+    assert control["level"] == 0 or control["next_error"] < 0, control
+assert any(k["level"] > 0 for k in tight["controls"][1:])
 END
 check "text" grep -q "levels for 50 ms" <($TOILE plan ${fast%--json} --budget 50)
 fast=${fast/--frame 4 --json/--fabric cotton_plain --budget 50}
