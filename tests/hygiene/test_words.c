@@ -2,8 +2,8 @@
  * keys and identifiers use the terms of the field, and comments begin with their subject. */
 #include "tests/hygiene/sources.h"
 
-#include "config/file.h"
-#include "config/memory.h"
+#include "config/base/file.h"
+#include "config/base/memory.h"
 #include "tests/hygiene/house.h"
 #include "tests/testing.h"
 
