@@ -3,9 +3,9 @@
 #include "app/batch/commands.h"
 #include "app/fabric/commands.h"
 #include "app/lab/check/commands.h"
+#include "app/lab/commands.h"
 #include "app/lab/flight/commands.h"
 #include "app/lab/gallery/commands.h"
-#include "app/lab/stability/commands.h"
 #include "app/lab/trade/commands.h"
 #include "app/manual/manual.h"
 #include "app/settings/settings.h"
@@ -49,11 +49,10 @@ static const struct tl_command commands[] = {
      "[OPTIONS]",
      "Measures error against time over many choices of settings: FOLDER/trade.csv and report.html.",
      TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_AXIS | TL_FLAGS_QUICK, tl_command_trade},
-    {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [-o FOLDER] [OPTIONS]",
+    {"stability", "stability [light|cloth|detail|shading] [--json] [--quick] [OPTIONS]",
      "Runs extreme inputs and settings, measures the error of each, and checks that it is exact, bounded by "
-     "25 %, "
-     "coarse with a remedy, or refused with a clear message; FOLDER gets a picture of the cloth's.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
+     "25 %, coarse with a remedy, or refused with a clear message.",
+     TL_FLAGS_SCENE | TL_FLAGS_JSON | TL_FLAGS_QUICK, tl_command_stability},
     {"gallery", "gallery [SECTION] -o FOLDER [--quick]",
      "Renders every technique and setting next to its exact evaluation, with its error and its time: "
      "pictures, FOLDER/gallery.html and gallery.csv. After an interruption the same command continues.",

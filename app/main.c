@@ -1,11 +1,8 @@
 /* toile COMMAND [SCENE] [OPTIONS]: finds the command, parses its flags, runs it, turns its error into one
  * line. */
 #include "app/commands.h"
-#include "config/base/file.h"
 #include "config/base/interrupt.h"
-#include "config/base/log.h"
 #include "config/base/memory.h"
-#include "config/cache/cache.h"
 
 #include <locale.h>
 #include <malloc.h>
@@ -14,14 +11,6 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <unistd.h>
-
-/* Drapes are kept between runs unless the user asks otherwise or has no folder for it. */
-static void use_cache(const struct tl_arguments *arguments)
-{
-    char *folder = arguments->no_cache ? NULL : tl_cache_folder();
-    tl_cache_use(folder, TL_CACHE_LIMIT_BYTES);
-    free(folder);
-}
 
 static bool run(int argc, char **argv, tl_error *error)
 {
@@ -40,16 +29,9 @@ static bool run(int argc, char **argv, tl_error *error)
     if (done && arguments.help) {
         done = tl_command_help(&(struct tl_arguments){.positionals = {name}, .positional_count = 1}, error);
     } else if (done) {
-        if (arguments.quiet)
-            tl_log_set_level(TL_LOG_QUIET);
-        else if (arguments.verbose)
-            tl_log_set_level(TL_LOG_DEBUG);
-        tl_memory_allow(arguments.memory_bytes);
-        if (arguments.allow_outside)
-            tl_path_allow_outside();
-        use_cache(&arguments);
+        arguments.command_line = argv + 1;
+        tl_arguments_apply(&arguments);
         done = command->run(&arguments, error);
-        tl_cache_use(NULL, 0);
     }
     tl_arguments_release(&arguments);
     return done;

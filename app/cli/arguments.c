@@ -1,8 +1,10 @@
 #include "app/cli/arguments.h"
 
 #include "config/base/file.h"
+#include "config/base/log.h"
 #include "config/base/memory.h"
 #include "config/base/words.h"
+#include "config/cache/cache.h"
 #include "config/options.h"
 
 #include <ctype.h>
@@ -379,6 +381,20 @@ void tl_arguments_release(struct tl_arguments *arguments)
         free(arguments->assignments[i]);
     free(arguments->assignments);
     *arguments = (struct tl_arguments){0};
+}
+
+void tl_arguments_apply(const struct tl_arguments *arguments)
+{
+    if (arguments->quiet)
+        tl_log_set_level(TL_LOG_QUIET);
+    else if (arguments->verbose)
+        tl_log_set_level(TL_LOG_DEBUG);
+    tl_memory_allow(arguments->memory_bytes);
+    if (arguments->allow_outside)
+        tl_path_allow_outside();
+    char *folder = arguments->no_cache ? NULL : tl_cache_folder();
+    tl_cache_use(folder, TL_CACHE_LIMIT_BYTES);
+    free(folder);
 }
 
 bool tl_arguments_flag(unsigned flags, size_t index, struct tl_flag_text *out)

@@ -69,10 +69,15 @@ struct tl_arguments {
     bool json, quiet, verbose, help;
     bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape, no_cache, clear;
     bool allow_outside, force, strict;
+    char **command_line; /* the command's name and what follows it, as given; NULL-terminated; borrowed */
 };
 
 bool tl_arguments_parse(int argc, char **argv, unsigned flags, struct tl_arguments *out, tl_error *error);
 void tl_arguments_release(struct tl_arguments *arguments);
+
+/* Applies the flags that every command takes to the whole process: how much is logged, the limit of memory,
+ * whether paths may leave a scene's folder, and where results are kept between runs. */
+void tl_arguments_apply(const struct tl_arguments *arguments);
 
 /* A flag as it is documented; strings are static. */
 struct tl_flag_text {

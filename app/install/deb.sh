@@ -27,7 +27,7 @@ printf 'toile (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.gz.\n\n -- %
 # dpkg-shlibdeps reads the names of source and package here. What is opened at run time it cannot see.
 mkdir debian
 printf 'Source: toile\n\nPackage: toile\nArchitecture: any\n' >debian/control
-depends=$(dpkg-shlibdeps -O root/usr/bin/toile root/usr/lib/*/libtoile.so.0 2>/dev/null | sed 's/^shlibs:Depends=//')
+depends=$(dpkg-shlibdeps -O root/usr/bin/toile root/usr/libexec/toile/* root/usr/lib/*/libtoile.so.0 2>/dev/null | sed 's/^shlibs:Depends=//')
 mkdir root/DEBIAN
 cat >root/DEBIAN/control <<TEXT
 Package: toile

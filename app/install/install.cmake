@@ -1,5 +1,6 @@
-# `cmake --install`: program, C library, man pages, completion, desktop entry, documents. Presets, scenes, fabrics and
-# shaders are compiled into the program, which reads no file of its own at run time; those installed are examples.
+# `cmake --install`: program, C library, man pages, completion, desktop entry, documents; libexec has what `toile stability`
+# executes (tests/app/stability). Presets, scenes, fabrics and shaders are compiled into the program, which reads no file of
+# its own at run time; those installed are examples.
 if(EXISTS /etc/debian_version AND CMAKE_LIBRARY_ARCHITECTURE)
   set(CMAKE_INSTALL_LIBDIR lib/${CMAKE_LIBRARY_ARCHITECTURE} CACHE PATH "where libraries are looked for") # /usr/local's too
 endif()

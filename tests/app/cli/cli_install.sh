@@ -23,6 +23,8 @@ else
     hidden() { "$@"; }
 fi
 check "the installed program renders" hidden env -i HOME="$room" PATH=/usr/bin "$toile" render scene.yaml --frame 3 --size 320x400 --quiet -o program.png
+hidden env -i HOME="$room" PATH=/usr/bin "$toile" stability shading --quiet >extremes
+check "... and toile-stability" grep -q ' 0 silent, 0 with NaN' extremes
 check "... and has its fabrics" sh -c "env -i '$toile' info fabrics | grep -q satin"
 
 if command -v man >/dev/null && command -v groff >/dev/null; then

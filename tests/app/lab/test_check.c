@@ -1,7 +1,7 @@
 /* Each fault, put into a frame on purpose, is named by the invariant that it breaks; a clean frame passes. */
 #include "tests/app/lab/verdicts.h"
 
-#include "app/lab/stability/extremes_light.h"
+#include "tests/app/stability/extremes_light.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "config/base/log.h"

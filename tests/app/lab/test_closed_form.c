@@ -2,7 +2,7 @@
  * a known outcome, and the baseline's sag. */
 #include "tests/testing.h"
 
-#include "app/lab/stability/envelope.h"
+#include "tests/app/stability/envelope.h"
 #include "app/lab/trade/baseline.h"
 #include "config/base/memory.h"
 

@@ -5,14 +5,13 @@
  * relief of one step assume one height for all that way, and may err by all of it; relief of 256 steps by
  * half of it where one step passes dozens of texels. The remedy of all is relief of 1024 steps, which has to
  * keep the stated share. */
-#include "app/lab/stability/stability.h"
 #include "config/base/memory.h"
 #include "render/detail/cones.h"
 #include "render/detail/detail_terms.h"
 #include "render/detail/field.h"
+#include "tests/app/stability/stability.h"
 
 #include <math.h>
-#include <stdio.h>
 
 #define SIDE_M      0.01f
 #define SHIFT_SLANT 20 /* 1 / 0.05 of detail_slant */
@@ -84,7 +83,7 @@ static struct detail_cell judge(const struct detail_view *view, vec2s to, float 
     return cell;
 }
 
-static void add(const struct detail_view *view, const char *way, const struct detail_cell *cell, bool prints,
+static void add(const struct detail_view *view, const char *way, const struct detail_cell *cell,
                 struct tl_stability *out)
 {
     const char *name = view->extreme->name;
@@ -96,17 +95,10 @@ static void add(const struct detail_view *view, const char *way, const struct de
     cJSON_AddNumberToObject(row, "bound_m", cell->bound_m);
     if (cell->outcome == TL_OUTCOME_COARSE)
         cJSON_AddStringToObject(row, "remedy", REMEDY);
-    if (!prints)
-        return;
-    printf("%-22s %-16s %6.1f degrees  %-8s", name, way, (double)view->tilt_deg,
-           tl_outcome_names[cell->outcome]);
-    tl_cell_error_print(&cell->error);
-    printf("  moved %9.3g m of %.3g%s\n", cell->moved_m, cell->bound_m,
-           cell->outcome == TL_OUTCOME_COARSE ? "; remedy: " REMEDY : "");
 }
 
 static void run_view(const struct detail_extreme *extreme, const struct tl_height_field *field,
-                     float tilt_deg, bool prints, struct tl_stability *out)
+                     float tilt_deg, struct tl_stability *out)
 {
     static const char *const relief_names[] = {"relief, 1 step", "relief, 256 steps", "relief, 1024 steps"};
     static const double relief_most[] = {1, 0.5, TL_STATED_SHARE};
@@ -119,18 +111,19 @@ static void run_view(const struct detail_extreme *extreme, const struct tl_heigh
     for (int limited = 0; limited < 2; limited++) {
         vec2s to = tl_field_parallax(field, view.uv, towards, limited);
         struct detail_cell cell = judge(&view, to, 1, limited ? height : SHIFT_SLANT * height, 1);
-        add(&view, limited ? "parallax_limited" : "parallax", &cell, prints, out);
+        add(&view, limited ? "parallax_limited" : "parallax", &cell, out);
     }
     for (size_t s = 0; s < TL_COUNT(steps); s++) {
         struct tl_relief relief = tl_field_relief(field, view.uv, towards, steps[s], 5);
         float lit = tl_field_lit(field, relief.uv, towards, steps[s]);
         struct detail_cell cell = judge(&view, relief.uv, lit, SHIFT_SLANT * height, relief_most[s]);
-        add(&view, relief_names[s], &cell, prints, out);
+        add(&view, relief_names[s], &cell, out);
     }
 }
 
 bool tl_stability_detail(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
+    (void)arguments;
     (void)error;
     for (size_t i = 0; i < TL_COUNT(extremes); i++) {
         tl_image heights = make_heights(&extremes[i]);
@@ -139,7 +132,7 @@ bool tl_stability_detail(const struct tl_arguments *arguments, struct tl_stabili
         tl_image cones = tl_bake_cones(&field, 1);
         field.cones = &cones;
         for (size_t t = 0; t < TL_COUNT(tilts_deg); t++)
-            run_view(&extremes[i], &field, tilts_deg[t], !arguments->json, out);
+            run_view(&extremes[i], &field, tilts_deg[t], out);
         tl_image_release(&cones);
         tl_image_release(&heights);
     }

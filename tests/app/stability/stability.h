@@ -1,11 +1,11 @@
 /* The axes of `toile stability`. Each runs its extreme cases and judges them by the contract in outcome.h. */
-#ifndef TOILE_APP_LAB_STABILITY_STABILITY_H
-#define TOILE_APP_LAB_STABILITY_STABILITY_H
+#ifndef TOILE_TESTS_APP_STABILITY_STABILITY_H
+#define TOILE_TESTS_APP_STABILITY_STABILITY_H
 
 #include "app/cli/arguments.h"
-#include "app/lab/stability/outcome.h"
+#include "tests/app/stability/outcome.h"
 
-/* One axis each. They add their cells to `out`, and print a table unless --json is given. */
+/* One axis each. They add their cells to `out`. */
 bool tl_stability_light(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 bool tl_stability_detail(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);
 bool tl_stability_shading(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error);

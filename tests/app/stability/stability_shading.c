@@ -3,12 +3,11 @@
  * compared with the formula (render/brdf/brdf.h) in double precision: the error is a share of that, and
  * absolute in 1/sr. Light below a millionth of the peak counts as none. */
 #include "app/lab/experiments/experiment.h"
-#include "app/lab/stability/stability.h"
 #include "config/base/memory.h"
 #include "render/brdf/brdf.h"
+#include "tests/app/stability/stability.h"
 
 #include <math.h>
-#include <stdio.h>
 
 #define ROUNDING 1e-3 /* of a float: the share of what is right within which it is exact */
 #define BLACK    1e-6 /* of the peak */
@@ -121,7 +120,7 @@ static struct tl_cell_error measure(double sent, double right, double peak)
 }
 
 static void run_cell(const struct shading_extreme *extreme, int model, const char *name, float glossiness,
-                     bool prints, struct tl_stability *out)
+                     struct tl_stability *out)
 {
     tl_material material = tl_material_default("extreme");
     material.gloss.model = model;
@@ -142,20 +141,16 @@ static void run_cell(const struct shading_extreme *extreme, int model, const cha
     cJSON_AddNumberToObject(row, "glossiness", (double)glossiness);
     cJSON_AddNumberToObject(row, "sent", isfinite(sent) ? sent : -1);
     cJSON_AddNumberToObject(row, "bound", peak);
-    if (!prints)
-        return;
-    printf("%-28s %-17s g %-9.7g %-8s", extreme->name, name, (double)glossiness, tl_outcome_names[outcome]);
-    tl_cell_error_print(&error);
-    printf("  %9.3g of %.3g\n", sent, peak);
 }
 
 bool tl_stability_shading(const struct tl_arguments *arguments, struct tl_stability *out, tl_error *error)
 {
     const char *const *models = tl_experiment_choices(&tl_material_options, "model");
+    (void)arguments;
     (void)error;
     for (size_t e = 0; e < TL_COUNT(extremes); e++)
         for (int model = 0; models[model]; model++)
             for (size_t g = 0; g < TL_COUNT(glossinesses); g++)
-                run_cell(&extremes[e], model, models[model], glossinesses[g], !arguments->json, out);
+                run_cell(&extremes[e], model, models[model], glossinesses[g], out);
     return true;
 }

@@ -1,8 +1,8 @@
-#include "app/lab/stability/extremes_cloth.h"
+#include "tests/app/stability/extremes_cloth.h"
 
-#include "app/lab/stability/envelope.h"
 #include "app/measure/cost.h"
 #include "config/base/memory.h"
+#include "tests/app/stability/envelope.h"
 
 #include <math.h>
 #include <omp.h>

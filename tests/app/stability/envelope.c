@@ -1,4 +1,4 @@
-#include "app/lab/stability/envelope.h"
+#include "tests/app/stability/envelope.h"
 
 #include "app/measure/cost.h"
 #include "config/base/memory.h"
@@ -257,7 +257,7 @@ static enum tl_outcome run_scrambled(struct subject *subject, struct tl_envelope
 struct tl_envelope_cell tl_envelope_run(const struct tl_envelope_case *tested)
 {
     struct subject subject = make_subject(tested);
-    struct tl_envelope_cell cell = {.run = true, .error = TL_CELL_NO_ERROR, .strayed = NAN, .growth = NAN};
+    struct tl_envelope_cell cell = {.error = TL_CELL_NO_ERROR, .strayed = NAN, .growth = NAN};
     struct tl_stopwatch watch = tl_stopwatch_start();
     omp_set_num_threads(
         tested->size->whole ? 1 : omp_get_num_procs()); /* threads cost more than they gain on small meshes */

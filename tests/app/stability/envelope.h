@@ -10,11 +10,11 @@
  * starts with every vertex displaced by a fifth of its cells: its energy must not exceed TL_ENVELOPE_GROWTH
  * times the initial energy (of `preview`: kinetic energy and the squared strain). A solver must refuse what
  * it cannot solve, with a message and the last good state. Times in CPU ms. */
-#ifndef TOILE_APP_LAB_STABILITY_ENVELOPE_H
-#define TOILE_APP_LAB_STABILITY_ENVELOPE_H
+#ifndef TOILE_TESTS_APP_STABILITY_ENVELOPE_H
+#define TOILE_TESTS_APP_STABILITY_ENVELOPE_H
 
 #include "app/lab/experiments/closed_form.h"
-#include "app/lab/stability/outcome.h"
+#include "tests/app/stability/outcome.h"
 
 /* Verlet keeps kinetic + elastic (1 - (omega h)^2 / 4) energy, not their sum, and takes up to 0.9 of the
  * critical step: the sum may swing by 1 / (1 - 0.9^2). */
@@ -36,7 +36,6 @@ extern const double tl_envelope_ratios[];
 enum { TL_ENVELOPE_STIFFNESSES = 12, TL_ENVELOPE_STEPS = 5, TL_ENVELOPE_RATIOS = 3 };
 
 struct tl_envelope_cell {
-    bool run; /* false: not part of this size */
     enum tl_outcome outcome;
     struct tl_cell_error error; /* mm that it strayed; of the tube's length as it hangs */
     double strayed;             /* displacement over the limit of exact */

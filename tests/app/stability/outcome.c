@@ -1,7 +1,6 @@
-#include "app/lab/stability/outcome.h"
+#include "tests/app/stability/outcome.h"
 
 #include <math.h>
-#include <stdio.h>
 
 const char *const tl_outcome_names[TL_OUTCOME_COUNT] = {"exact",   "bounded", "coarse",
                                                         "refused", "SILENT",  "NaN"};
@@ -17,9 +16,9 @@ enum tl_outcome tl_outcome_of(double share, double exact, double bound)
                                       : TL_OUTCOME_COARSE;
 }
 
-static cJSON *number_or_null(double number)
+void tl_stability_number(cJSON *row, const char *key, double number)
 {
-    return isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull();
+    cJSON_AddItemToObject(row, key, isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull());
 }
 
 cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome,
@@ -31,8 +30,8 @@ cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum t
     stability->counts[outcome]++;
     cJSON_AddStringToObject(row, "axis", axis);
     cJSON_AddStringToObject(row, "outcome", tl_outcome_names[outcome]);
-    cJSON_AddItemToObject(row, "error_percent", number_or_null(100 * error->share));
-    cJSON_AddItemToObject(row, "error", number_or_null(error->own));
+    tl_stability_number(row, "error_percent", 100 * error->share);
+    tl_stability_number(row, "error", error->own);
     cJSON_AddStringToObject(row, "unit", error->unit);
     cJSON_AddItemToArray(stability->rows, row);
     return row;
@@ -44,12 +43,4 @@ int tl_stability_cells(const struct tl_stability *stability)
     for (int i = 0; i < TL_OUTCOME_COUNT; i++)
         cells += stability->counts[i];
     return cells;
-}
-
-void tl_cell_error_print(const struct tl_cell_error *error)
-{
-    if (isfinite(error->share))
-        printf(" %8.3g%% %8.3g %-5s", 100 * error->share, error->own, error->unit);
-    else
-        printf(" %9s %14s", "", "");
 }

@@ -2,11 +2,11 @@
  * that jump, denormals, sizes from a millimetre to a hundred metres.
  *
  * Each starts from an ordinary trial, a sheet of 1 m that hangs by an edge, and changes one thing. */
-#ifndef TOILE_APP_LAB_STABILITY_EXTREMES_CLOTH_H
-#define TOILE_APP_LAB_STABILITY_EXTREMES_CLOTH_H
+#ifndef TOILE_TESTS_APP_STABILITY_EXTREMES_CLOTH_H
+#define TOILE_TESTS_APP_STABILITY_EXTREMES_CLOTH_H
 
-#include "app/lab/stability/outcome.h"
 #include "config/base/error.h"
+#include "tests/app/stability/outcome.h"
 
 extern const size_t tl_cloth_extreme_count;
 

@@ -1,8 +1,8 @@
-#include "app/lab/stability/extremes_light.h"
+#include "tests/app/stability/extremes_light.h"
 
-#include "app/lab/stability/outcome.h"
 #include "assets/image/exr.h"
 #include "config/base/memory.h"
+#include "tests/app/stability/outcome.h"
 
 #include <math.h>
 #include <stdlib.h>

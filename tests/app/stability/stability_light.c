@@ -2,15 +2,14 @@
 #include "app/cli/topic.h"
 #include "app/lab/experiments/experiment.h"
 #include "app/lab/experiments/experiments.h"
-#include "app/lab/stability/extremes_light.h"
-#include "app/lab/stability/stability.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
 #include "render/metrics/compare.h"
+#include "tests/app/stability/extremes_light.h"
+#include "tests/app/stability/stability.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -180,6 +179,7 @@ static bool picture(struct tl_variant_run *variant, const struct tl_extreme *ext
 {
     struct tl_taken unused;
     tl_frame frame = tl_extreme_frame(scene);
+    frame.still = true; /* else rays of one round, whose noise depends on how many frames were drawn before */
     struct tl_variant_run changed = *variant;
     changed.settings.image.ground = scene->ground;
     /* Its surfaces reflect more light than they receive, as no cloth does: what that does to light that
@@ -302,33 +302,6 @@ static const char *reason_of(const struct light_cell *cell, size_t extreme)
     return cell->message.message[0] ? cell->message.message : tl_extremes[extreme].why;
 }
 
-static void print_table(const struct light_suite *suite)
-{
-    printf("error: relative RMSE; mean of the pixels' stops, and what 19 of 20 pixels keep\n\n"
-           "%-31s %-6s %-8s %9s %14s %6s %7s  %s\n",
-           "extreme", "", "", "error", "stops", "95 %", "bound", "why");
-    for (size_t i = 0; i < tl_extreme_count; i += suite->stride)
-        for (int m = 0; m < TL_EXTREME_METHODS; m++) {
-            const struct light_cell *cell = &suite->cells[i * TL_EXTREME_METHODS + (size_t)m];
-            printf("%-31s %-6s %-8s", m == 0 ? tl_extremes[i].name : "", method_names[m],
-                   tl_outcome_names[cell->outcome]);
-            tl_cell_error_print(&cell->error.measured);
-            if (isfinite(cell->error.measured.share))
-                printf(" %6.3g %6.0f%%", cell->error.stops_95, 100 * cell->bound);
-            else
-                printf(" %6s %7s", "", "");
-            printf("  %s", reason_of(cell, i));
-            if (cell->outcome == TL_OUTCOME_COARSE)
-                printf("; %.1f %% with %s", 100 * cell->remedied, tl_extremes[i].remedies[m]);
-            putchar('\n');
-        }
-}
-
-static cJSON *number_or_null(double number)
-{
-    return isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull();
-}
-
 static void add_cells(const struct light_suite *suite, struct tl_stability *out)
 {
     for (size_t i = 0; i < tl_extreme_count; i += suite->stride)
@@ -337,8 +310,8 @@ static void add_cells(const struct light_suite *suite, struct tl_stability *out)
             cJSON *row = tl_stability_add(out, "light", cell->outcome, &cell->error.measured);
             cJSON_AddStringToObject(row, "extreme", tl_extremes[i].name);
             cJSON_AddStringToObject(row, "method", method_names[m]);
-            cJSON_AddItemToObject(row, "stops_95", number_or_null(cell->error.stops_95));
-            cJSON_AddItemToObject(row, "bound_percent", number_or_null(100 * cell->bound));
+            tl_stability_number(row, "stops_95", cell->error.stops_95);
+            tl_stability_number(row, "bound_percent", 100 * cell->bound);
             cJSON_AddStringToObject(row, "why", reason_of(cell, i));
             if (cell->outcome == TL_OUTCOME_COARSE) {
                 cJSON_AddStringToObject(row, "remedy", tl_extremes[i].remedies[m]);
@@ -353,8 +326,6 @@ bool tl_stability_light(const struct tl_arguments *arguments, struct tl_stabilit
     struct tl_arguments scene = *arguments;
     tl_topic_default_scene(&scene, "review");
     bool done = prepare(&suite, &scene, error) && run(&suite, error);
-    if (done && !arguments->json)
-        print_table(&suite);
     if (done)
         add_cells(&suite, out);
     release(&suite);

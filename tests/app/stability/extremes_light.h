@@ -2,8 +2,8 @@
  * its image must meet. Generated; metres, linear radiance.
  *
  * Ownership: a scene owns all that its frame points to. Threads: one scene at a time. */
-#ifndef TOILE_APP_LAB_STABILITY_EXTREMES_LIGHT_H
-#define TOILE_APP_LAB_STABILITY_EXTREMES_LIGHT_H
+#ifndef TOILE_TESTS_APP_STABILITY_EXTREMES_LIGHT_H
+#define TOILE_TESTS_APP_STABILITY_EXTREMES_LIGHT_H
 
 #include "render/renderer.h"
 

@@ -2,8 +2,8 @@
  * of its own. It is bounded where the error is at most TL_STATED_SHARE and the bound of its row; coarse where
  * its row states a wider bound, which only a row that names a remedy may do; or refused with a clear message.
  * Any other outcome is a failure of the program. */
-#ifndef TOILE_APP_LAB_STABILITY_OUTCOME_H
-#define TOILE_APP_LAB_STABILITY_OUTCOME_H
+#ifndef TOILE_TESTS_APP_STABILITY_OUTCOME_H
+#define TOILE_TESTS_APP_STABILITY_OUTCOME_H
 
 #include <cjson/cJSON.h>
 #include <stdbool.h>
@@ -36,7 +36,8 @@ enum tl_outcome tl_outcome_of(double share, double exact, double bound);
 
 struct tl_stability {
     int counts[TL_OUTCOME_COUNT];
-    cJSON *rows; /* one object a cell, for --json */
+    cJSON *rows; /* an object a cell: its axis, outcome, error_percent, error and unit, then members of its
+                    own */
 };
 
 /* Counts a cell and adds its row, which has the axis, the outcome and the error. A cell that is called exact
@@ -46,7 +47,7 @@ cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum t
 /* Number of all cells counted so far. */
 int tl_stability_cells(const struct tl_stability *stability);
 
-/* Prints an error in two columns of a table: "12.34 %" and "0.15 stops"; spaces where there is none. */
-void tl_cell_error_print(const struct tl_cell_error *error);
+/* Adds a number to a row; null where it is not finite. */
+void tl_stability_number(cJSON *row, const char *key, double number);
 
 #endif

@@ -1,12 +1,11 @@
-/* The rule of `toile stability` that nothing above the stated share is called bounded; that wide bounds name
- * remedies; and an extreme of cloth that `toile stability cloth --quick` leaves out, since it is
- * slow. */
-#include "app/lab/stability/extremes_cloth.h"
-#include "app/lab/stability/extremes_light.h"
-#include "app/lab/stability/outcome.h"
+/* The rules of `toile stability`: nothing above the stated share is called bounded, and wide bounds name
+ * remedies. And an extreme of cloth that `toile stability cloth --quick` leaves out because it is slow. */
 #include "cloth/cloth.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
+#include "tests/app/stability/extremes_cloth.h"
+#include "tests/app/stability/extremes_light.h"
+#include "tests/app/stability/outcome.h"
 #include "tests/testing.h"
 
 #include <math.h>
