@@ -12,8 +12,7 @@ check "its files" test -s measured/trade.csv -a -s measured/fit.csv -a -s measur
 check "nothing else" test "$(ls measured | wc -l)" -eq 3
 
 status=0
-$TOILE stability cloth --quick --json --quiet -o extremes >extremes.json || status=$?
-check "a picture" test "$(head -c 4 extremes/cloth.png | tail -c 3)" = PNG
+$TOILE stability cloth --quick --json --quiet >extremes.json || status=$?
 
 if ! command -v python3 >/dev/null; then
     echo "skipped: files are not parsed: python3 is absent"

@@ -33,6 +33,7 @@ struct tl_extreme {
     const char *remedies[TL_EXTREME_METHODS];
     bool refused;   /* a clear message is the promise */
     bool from_file; /* the environment comes from a file */
+    bool slow;      /* takes seconds: left out by --quick */
 };
 
 extern const struct tl_extreme tl_extremes[];
