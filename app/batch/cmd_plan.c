@@ -64,16 +64,11 @@ static void print_budget(const struct budgeted *budgeted)
     }
 }
 
-static cJSON *number_or_null(double value)
-{
-    return isfinite(value) ? cJSON_CreateNumber(value) : cJSON_CreateNull();
-}
-
 static void add_budget(cJSON *object, const struct budgeted *budgeted)
 {
     cJSON *budget = cJSON_AddObjectToObject(object, "budget");
     cJSON_AddNumberToObject(budget, "budget_ms", budgeted->budget_ms);
-    cJSON_AddItemToObject(budget, "predicted_ms", number_or_null(budgeted->choice.predicted_ms));
+    tl_json_add_number(budget, "predicted_ms", budgeted->choice.predicted_ms);
     cJSON_AddNumberToObject(budget, "error", budgeted->choice.error);
     cJSON *controls = cJSON_AddArrayToObject(budget, "controls");
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
@@ -83,8 +78,8 @@ static void add_budget(cJSON *object, const struct budgeted *budgeted)
         cJSON_AddNumberToObject(control, "level", step->level);
         cJSON_AddNumberToObject(control, "levels", step->level_count);
         cJSON_AddNumberToObject(control, "value", step->value);
-        cJSON_AddItemToObject(control, "next_ms", number_or_null(step->ms));
-        cJSON_AddItemToObject(control, "next_error", number_or_null(-step->error));
+        tl_json_add_number(control, "next_ms", step->ms);
+        tl_json_add_number(control, "next_error", -step->error);
         cJSON_AddItemToArray(controls, control);
     }
 }
@@ -127,9 +122,7 @@ static void add_cloth(cJSON *object, const struct tl_settings *settings, const s
     describe_self_contact(settings, report, self_contact, sizeof self_contact);
     cJSON *cloth = cJSON_AddObjectToObject(object, "cloth");
     cJSON_AddNumberToObject(cloth, "vertices", (double)report->vertex_count);
-    cJSON_AddItemToObject(cloth, "critical_step_s",
-                          isfinite(report->critical_step_s) ? cJSON_CreateNumber(report->critical_step_s)
-                                                            : cJSON_CreateNull());
+    tl_json_add_number(cloth, "critical_step_s", report->critical_step_s);
     cJSON_AddStringToObject(cloth, "solver", tl_cloth_solver_names[settings->cloth.solver]);
     cJSON_AddNumberToObject(cloth, "substeps", substeps_per_frame(settings, report));
     cJSON_AddNumberToObject(cloth, "substep_s", report->substep_s);
@@ -152,7 +145,7 @@ static void add_jobs(cJSON *object, const tl_plan *plan, const tl_plan *drawn)
         cJSON_AddNumberToObject(job, "level", row->level);
         cJSON_AddStringToObject(job, "action", tl_job_action_names[row->action]);
         cJSON_AddStringToObject(job, "reason", row->reason);
-        cJSON_AddItemToObject(job, "predicted_ms", number_or_null(row->predicted_ms));
+        tl_json_add_number(job, "predicted_ms", row->predicted_ms);
         cJSON_AddNumberToObject(job, "work_ms", drawn->rows[i].work_ms);
         cJSON_AddItemToArray(jobs, job);
     }
@@ -195,8 +188,8 @@ static void add_back_end(cJSON *object, const struct tl_back_end *back_end)
 {
     cJSON *visibility = cJSON_AddObjectToObject(object, "visibility");
     cJSON_AddStringToObject(visibility, "reason", back_end->reason);
-    cJSON_AddItemToObject(visibility, "rays_ms", number_or_null(back_end->rays_ms));
-    cJSON_AddItemToObject(visibility, "maps_ms", number_or_null(back_end->maps_ms));
+    tl_json_add_number(visibility, "rays_ms", back_end->rays_ms);
+    tl_json_add_number(visibility, "maps_ms", back_end->maps_ms);
 }
 
 static void print_report(const struct tl_headless *headless, const tl_plan *plan,

@@ -1,5 +1,7 @@
 #include "tests/app/stability/outcome.h"
 
+#include "app/cli/json.h"
+
 #include <math.h>
 
 const char *const tl_outcome_names[TL_OUTCOME_COUNT] = {"exact",   "bounded", "coarse",
@@ -16,11 +18,6 @@ enum tl_outcome tl_outcome_of(double share, double exact, double bound)
                                       : TL_OUTCOME_COARSE;
 }
 
-void tl_stability_number(cJSON *row, const char *key, double number)
-{
-    cJSON_AddItemToObject(row, key, isfinite(number) ? cJSON_CreateNumber(number) : cJSON_CreateNull());
-}
-
 cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum tl_outcome outcome,
                         const struct tl_cell_error *error)
 {
@@ -30,8 +27,8 @@ cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum t
     stability->counts[outcome]++;
     cJSON_AddStringToObject(row, "axis", axis);
     cJSON_AddStringToObject(row, "outcome", tl_outcome_names[outcome]);
-    tl_stability_number(row, "error_percent", 100 * error->share);
-    tl_stability_number(row, "error", error->own);
+    tl_json_add_number(row, "error_percent", 100 * error->share);
+    tl_json_add_number(row, "error", error->own);
     cJSON_AddStringToObject(row, "unit", error->unit);
     cJSON_AddItemToArray(stability->rows, row);
     return row;

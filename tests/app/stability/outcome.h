@@ -47,7 +47,4 @@ cJSON *tl_stability_add(struct tl_stability *stability, const char *axis, enum t
 /* Number of all cells counted so far. */
 int tl_stability_cells(const struct tl_stability *stability);
 
-/* Adds a number to a row; null where it is not finite. */
-void tl_stability_number(cJSON *row, const char *key, double number);
-
 #endif

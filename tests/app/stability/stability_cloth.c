@@ -1,4 +1,5 @@
 /* The extremes of cloth: the envelope over stiffness, step, mass ratio and size, then single extremes. */
+#include "app/cli/json.h"
 #include "app/measure/cost.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
@@ -59,8 +60,8 @@ static void run_place(struct place at, struct tl_stability *out)
     cJSON_AddNumberToObject(row, "stiffness", tested.stiffness);
     cJSON_AddNumberToObject(row, "dt", tested.dt);
     cJSON_AddNumberToObject(row, "mass_ratio", tested.mass_ratio);
-    tl_stability_number(row, "strayed", cell.strayed);
-    tl_stability_number(row, "growth", cell.growth);
+    tl_json_add_number(row, "strayed", cell.strayed);
+    tl_json_add_number(row, "growth", cell.growth);
     cJSON_AddNumberToObject(row, "cpu_ms", cell.cpu_ms);
     cJSON_AddStringToObject(row, "why", cell.message.message);
 }

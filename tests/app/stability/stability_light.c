@@ -1,4 +1,5 @@
 /* The extremes of light, drawn by two methods and compared with the ray-traced reference. */
+#include "app/cli/json.h"
 #include "app/cli/topic.h"
 #include "app/lab/experiments/experiment.h"
 #include "app/lab/experiments/experiments.h"
@@ -309,8 +310,8 @@ static void add_cells(const struct light_suite *suite, bool quick, struct tl_sta
             cJSON *row = tl_stability_add(out, "light", cell->outcome, &cell->error.measured);
             cJSON_AddStringToObject(row, "extreme", tl_extremes[i].name);
             cJSON_AddStringToObject(row, "method", method_names[m]);
-            tl_stability_number(row, "stops_95", cell->error.stops_95);
-            tl_stability_number(row, "bound_percent", 100 * cell->bound);
+            tl_json_add_number(row, "stops_95", cell->error.stops_95);
+            tl_json_add_number(row, "bound_percent", 100 * cell->bound);
             cJSON_AddStringToObject(row, "why", reason_of(cell, i));
             if (cell->outcome == TL_OUTCOME_COARSE) {
                 cJSON_AddStringToObject(row, "remedy", tl_extremes[i].remedies[m]);
