@@ -10,7 +10,6 @@ add_library(toile_light STATIC
   brdf/coat.c
   brdf/fuzz.c
   brdf/ggx/ggx_lobes.c
-  brdf/ggx/ggx_lobes_table.c
   brdf/sample.c
   brdf/lobe_fit.c
   brdf/fresnel.c

@@ -7,6 +7,10 @@
 
 #define FINEST (1 / 1000.0f)
 
+const short tl_ggx_table[] = {
+#include "render/brdf/ggx/ggx_lobes_table.inc"
+};
+
 /* A place between two rows: the first, and the share of the second. */
 struct between_rows {
     int first;

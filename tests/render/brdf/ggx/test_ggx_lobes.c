@@ -1,7 +1,7 @@
 /* The table of lobes for GGX facets against fits by brute force (ggx_fitter.h): its lobes miss little more of
  * the gloss than the same lobes moved to where they miss the least, and hold its energy, at rows and between.
  *
- *     test_ggx_lobes --write render/brdf/ggx/ggx_lobes_table.c
+ *     test_ggx_lobes --write render/brdf/ggx/ggx_lobes_table.inc
  *
  * makes the table, in some minutes. One row is fitted from a start that is given here, the others from their
  * neighbours, so that the lobes of neighbours correspond and can be interpolated. Then each is fitted again
@@ -209,13 +209,8 @@ static int write_table(const char *path)
     FILE *file = fopen(path, "w");
     if (!file)
         return 1;
-    fprintf(file, "/* Made by tests/render/brdf/ggx/test_ggx_lobes.c. */\n"
-                  "#include \"render/brdf/ggx/ggx_lobes_internal.h\"\n\n"
-                  "const short tl_ggx_table[TL_GGX_ROUGHNESSES * TL_GGX_ELEVATIONS *"
-                  " TL_GGX_LOBES_ALL * TL_GGX_FIGURES] = {\n");
     for (size_t i = 0; i < TL_COUNT(table); i++)
         fprintf(file, "%d,%s", table[i], i % 16 == 15 ? "\n" : " ");
-    fprintf(file, "};\n");
     return fclose(file) == 0 ? 0 : 1;
 }
 
