@@ -113,59 +113,11 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     return renderer;
 }
 
-static void release_environment(struct tl_resources *resources)
-{
-    tl_prepared_destroy(&resources->prepared);
-    tl_resampling_release(&resources->resampling);
-    tl_resampling_release(&resources->map_resampling);
-    tl_cube_release(&resources->cube);
-    tl_regions_release(&resources->regions);
-    tl_pems_release(&resources->pems);
-    tl_texture_destroy(&resources->lobe_levels);
-    tl_texture_destroy(&resources->exact.maps.lobes);
-    tl_slices_release(&resources->slices.slices);
-    tl_slice_maps_release(&resources->slices.maps);
-    tl_light_cache_release(&resources->light_cache);
-    tl_cube_release(&resources->envmap_source.cube);
-    tl_lobes_release(&resources->envmap_source.lobes);
-}
-
-static void release_scene(struct tl_resources *resources)
-{
-    tl_surfaces_destroy(&resources->surfaces);
-    tl_detail_maps_release(&resources->detail);
-    tl_triangle_ranges_release(&resources->shapes.ranges);
-    free(resources->shapes.drawn);
-    tl_samples_release(&resources->samples);
-    tl_transparency_release(&resources->transparency);
-    tl_mirrors_release(&resources->mirrors);
-    tl_trace_destroy(&resources->trace);
-    tl_points_destroy(&resources->points);
-    tl_bounce_release(&resources->bounce);
-    tl_shadow_maps_destroy(&resources->maps);
-}
-
 void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
-    struct tl_resources *resources = &(*renderer)->resources;
-    release_environment(resources);
-    release_scene(resources);
-    tl_gbuffer_release(&resources->gbuffer);
-    tl_ids_release(&resources->ids);
-    tl_ids_release(&resources->pixel_ids);
-    tl_shade_materials_release(&resources->shade_materials);
-    tl_ratios_release(&resources->ratios);
-    tl_pixel_triangles_release(&resources->pixel_triangles);
-    tl_sun_pixels_release(&resources->sun_pixels);
-    tl_light_buffer_release(&resources->light);
-    tl_lighting_release(&resources->lighting);
-    tl_envmap_release(&resources->envmap);
-    tl_light_map_release(&resources->light_map);
-    tl_local_release(&resources->local);
-    tl_capture_release(&resources->capture);
-    tl_present_release(&resources->present);
+    tl_resources_release(&(*renderer)->resources);
     free(*renderer);
     *renderer = NULL;
 }
@@ -242,11 +194,6 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     return renderer->resources.trace != NULL;
 }
 
-static struct tl_work work_of(int job, const struct tl_work_sizes *sizes)
-{
-    return tl_frame_jobs[job].work ? tl_frame_jobs[job].work(sizes) : (struct tl_work){{0}};
-}
-
 static double predict_job(const tl_renderer *renderer, int job, const struct tl_work *work)
 {
     double slowness = renderer->slowness > 0 ? renderer->slowness : 1;
@@ -259,10 +206,10 @@ static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *i
     double predicted_ms[TL_JOBS_MAX];
     const struct tl_work_sizes sizes =
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, settings);
-    for (int i = 0; i < tl_frame_job_count; i++) {
-        struct tl_work work = work_of(i, &sizes);
-        predicted_ms[i] = predict_job(renderer, i, &work);
-    }
+    struct tl_work work[TL_JOB_COUNT];
+    tl_work_estimate(&sizes, work);
+    for (int i = 0; i < TL_JOB_COUNT; i++)
+        predicted_ms[i] = predict_job(renderer, i, &work[i]);
     tl_plan_make(tl_frame_jobs, tl_frame_job_count, input, predicted_ms, plan);
 }
 
@@ -274,12 +221,13 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, &renderer->settings);
     sizes.new_regions = new_regions; /* counted before the jobs made them */
     double predicted_ms = 0, took_ms = 0, load = tl_machine_load_factor(&renderer->load);
-    struct tl_work work[TL_JOBS_MAX] = {{{0}}}; /* of the jobs that ran */
+    struct tl_work all[TL_JOB_COUNT], work[TL_JOB_COUNT] = {{{0}}}; /* the second: of the jobs that ran */
+    tl_work_estimate(&sizes, all);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
             continue;
         struct tl_cost_job *cost = &renderer->costs[i];
-        work[i] = work_of(i, &sizes);
+        work[i] = all[i];
         plan->rows[i].work_ms = tl_work_sum(&work[i]);
         if (cost->runs >= TL_COST_KNOWN) {
             predicted_ms += tl_cost_predict(cost, &work[i], load);
@@ -564,11 +512,12 @@ double tl_renderer_predict_ms(const tl_renderer *renderer, const struct tl_rende
     double sum_ms = 0;
     const struct tl_work_sizes sizes =
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, settings);
-    for (int i = 0; i < tl_frame_job_count; i++) {
+    struct tl_work work[TL_JOB_COUNT];
+    tl_work_estimate(&sizes, work);
+    for (int i = 0; i < TL_JOB_COUNT; i++) {
         if (!(jobs & (tl_bits)1 << i))
             continue;
-        struct tl_work work = work_of(i, &sizes);
-        double ms = predict_job(renderer, i, &work);
+        double ms = predict_job(renderer, i, &work[i]);
         sum_ms += isfinite(ms) ? ms : 0;
     }
     return sum_ms;

@@ -16,21 +16,27 @@
 struct tl_resources;
 
 struct tl_environment_input {
-    const tl_environment *map; /* borrowed from the frame */
+    /* Borrowed from the frame. */
+    const tl_environment *map;
+    /* Differs for each environment; 0 is a revision like any other. */
     uint64_t revision;
 };
 
-/* Topology, UVs, materials. Borrowed from the frame; the list and the ranges are owned. */
+/* Topology, UVs, materials. */
 struct tl_shapes_input {
+    /* Borrowed from the frame. */
     const tl_surface *surfaces;
     size_t surface_count;
-    const tl_surface **drawn; /* the same, with the ground last when it is drawn */
+    /* The same surfaces, with the ground last when it is drawn. The list is owned, the surfaces are not. */
+    const tl_surface **drawn;
     size_t drawn_count;
-    struct tl_triangle_ranges ranges; /* of these */
+    /* The triangles of these. Owned. */
+    struct tl_triangle_ranges ranges;
+    /* The hash of this input. */
     uint64_t revision;
 };
 
-/* Positions, normals, tangents: of the same surfaces. */
+/* Positions, normals, tangents: of the same surfaces, borrowed. */
 struct tl_motion_input {
     const tl_surface *surfaces;
     size_t surface_count;
@@ -38,18 +44,22 @@ struct tl_motion_input {
 
 struct tl_camera_input {
     struct tl_camera camera;
-    struct tl_view view; /* of an image of this size */
+    /* Of an image of this size, not shifted. */
+    struct tl_view view;
 };
 
-/* The camera's view of the image that is drawn, and how many were averaged before it. */
+/* The camera's view of the image that is drawn, shifted by a part of a pixel, and the number of images that
+ * it is averaged with; 0: it replaces them. */
 struct tl_shift_input {
     struct tl_view view;
     int before;
 };
 
 struct tl_size_input {
-    struct tl_image_params options; /* width, height ... */
-    int columns, rows;              /* samples; fewer than pixels where options.scale is below 1 */
+    /* Width and height in pixels, samples a pixel side ... */
+    struct tl_image_params options;
+    /* Samples of the image; fewer than pixels where options.scale x options.supersample is below 1. */
+    int columns, rows;
 };
 
 /* True when there are fewer samples than pixels, so that pixels need ids of their own. */
@@ -61,23 +71,30 @@ static inline bool tl_size_has_outlines(const struct tl_size_input *size)
 struct tl_ground_input {
     struct tl_image_params options;
     bool is_drawn;
-    vec3s colour; /* reflectance: the options', else the environment's, else TL_GROUND_GREY */
+    /* Reflectance, linear: the options', else the environment's, else TL_GROUND_GREY. */
+    vec3s colour;
 };
 
 struct tl_lobes_input {
-    bool all;         /* of a material; else the diffuse and the glossy one */
-    bool are_blended; /* into one between the two: TL_LOBE_SINGLE */
+    /* All lobes of a material are drawn; else the diffuse and the glossy one. */
+    bool all;
+    /* They are blended into one between the two: TL_LOBE_SINGLE. */
+    bool are_blended;
 };
 
 struct tl_shadow_input {
-    struct tl_light_params options; /* visibility, moments, map_size, blur_m ... */
-    bool in_passes;                 /* maps in an array: as many as PEMs in a pass */
+    /* Visibility, moments, map_size, blur_m ... */
+    struct tl_light_params options;
+    /* Maps lie in arrays of as many as there are PEMs in a pass; else all in one array. */
+    bool in_passes;
 };
 
 struct tl_rays_input {
     struct tl_light_params options;
+    /* What tl_light_ray_params makes of the options: for the back-end of rays. */
     struct tl_ray_params params;
-    bool averages; /* rounds at rest change the image */
+    /* Rounds at rest change the image. */
+    bool averages;
 };
 
 /* Lamps that shine, and how surfaces are shaded under them. */
@@ -88,27 +105,37 @@ struct tl_lamps_input {
 };
 
 struct tl_envmap_input {
-    struct tl_maps_params options; /* size, light_map */
-    bool is_captured;              /* maps show the scene */
+    /* Size in texels, light_map ... */
+    struct tl_maps_params options;
+    /* Maps show the scene; else the environment alone. */
+    bool is_captured;
 };
 
 /* What moves in this frame. Not an input: no job runs because of it. */
 struct tl_motion_state {
-    bool still;         /* as tl_frame.still */
-    bool moves_shadows; /* surfaces or the environment's yaw differ from the last frame */
-    bool moves_lamps;   /* lamps do */
+    /* As tl_frame.still: the image takes all its rounds at once. */
+    bool still;
+    /* Surfaces or the environment's yaw differ from the last frame. */
+    bool moves_shadows;
+    /* Lamps do. */
+    bool moves_lamps;
 };
 
-/* How many frames have been drawn since something changed: anything, and anything but the camera. */
+/* The frames since something changed, and what they have averaged. A zeroed struct: there was no frame. */
 struct tl_rest {
+    /* Frames since anything changed, and since anything but the camera did: the number of the round. */
     int image, scene;
-    bool is_done;      /* rays: all rounds of this image are in */
-    int shift_set;     /* images of a set that are shifted; 0: none */
-    int shifts;        /* ... that there were in this rest */
-    int shifts_left;   /* ... that are to come once all rounds are in */
-    uint64_t captured; /* environment maps: the hash of the scene that they show; 0: none */
-    int capture_age;   /* ... frames ago */
-    bool is_captured;  /* ... and it is the one that is there */
+    /* Rays: all rounds of this image are in. */
+    bool is_done;
+    /* Images of a set that are shifted; 0: none. Those of them drawn in this rest, and those to come once all
+     * rounds are in. */
+    int shift_set, shifts, shifts_left;
+    /* Environment maps: the hash of the scene that they show; 0: none. */
+    uint64_t captured;
+    /* Frames since that capture. */
+    int capture_age;
+    /* It is the capture that is there. */
+    bool is_captured;
 };
 
 /* Computes one number for each input: an input has changed when its number has. `facts` are the frame's

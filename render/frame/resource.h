@@ -1,108 +1,124 @@
-/* The resources of a frame and the facts about its scene, by bit, for render/plan. The first resources are
- * inputs, which no job writes. */
+/* The resources of a frame and the facts about its scene, by bit, for render/plan. A resource is an input,
+ * which no job writes, or is made by jobs. Threads: constants. */
 #ifndef TOILE_RENDER_FRAME_RESOURCE_H
 #define TOILE_RENDER_FRAME_RESOURCE_H
 
 #include "render/plan/plan.h"
 
-enum tl_resource {
-    TL_INPUT_ENVIRONMENT,
-    TL_INPUT_YAW,
-    TL_INPUT_SHAPES, /* topology, UVs, materials */
-    TL_INPUT_MOTION, /* positions, normals, tangents */
-    TL_INPUT_CAMERA,
-    TL_INPUT_SIZE, /* image size and samples per pixel */
-    TL_INPUT_GROUND,
-    TL_INPUT_LOBES, /* which lobes of a material are drawn */
-    TL_INPUT_PEM_SIZE,
-    TL_INPUT_FILTER,
-    TL_INPUT_SUN,
-    TL_INPUT_REGIONS,
-    TL_INPUT_PASSES,      /* how PEMs are stored */
-    TL_INPUT_MAPS,        /* size and blur of the shadow maps */
-    TL_INPUT_RAYS,        /* how rays are spent */
-    TL_INPUT_ROUND,       /* which of the jittered frames that are averaged while nothing changes */
-    TL_INPUT_SCENE_ROUND, /* ... while nothing but the camera does */
-    TL_INPUT_SHIFT,       /* which of the images that are shifted by parts of a pixel */
-    TL_INPUT_LIGHT,       /* how light is composed */
-    TL_INPUT_LAMPS,       /* and how surfaces are shaded under them */
-    TL_INPUT_REFERENCE,
-    TL_INPUT_DETAIL,      /* how its maps are read */
-    TL_INPUT_DETAIL_MAPS, /* which there are */
-    TL_INPUT_SHOW,        /* exposure and background */
-    TL_INPUT_ENVMAP,      /* size of environment maps, and whether they show the scene */
-    TL_INPUT_LAYOUT,      /* their layout; for a sphere map the view's turn */
-    TL_INPUT_LOOK_UP,     /* how they are looked up */
-    TL_INPUT_CAPTURE,     /* the scene as it was when it was to be captured last */
-    TL_INPUT_VIEW,        /* what is shown in place of light */
-    TL_INPUT_RATIO,       /* where the ratio of seen to exact light is computed */
-    TL_INPUT_COUNT,
-    TL_MADE_CUBE = TL_INPUT_COUNT, /* and the suns taken from it */
-    TL_MADE_REGIONS,
-    TL_MADE_LOBE,
-    TL_MADE_PEMS,
-    TL_MADE_LOBES,
-    TL_MADE_SLICES,
-    TL_MADE_LIGHTS, /* regions as lights */
-    TL_MADE_SURFACES,
-    TL_MADE_DETAIL, /* maps derived from the materials' own */
-    TL_MADE_DEPTHS,
-    TL_MADE_MAPS,
-    TL_MADE_GBUFFER,
-    TL_MADE_IDS,             /* the number of the nearest triangle at every pixel */
-    TL_MADE_SHADE_MATERIALS, /* materials and their maps on the CPU */
-    TL_MADE_RATIOS,          /* of seen to exact light, at vertices */
-    TL_MADE_SUN_PIXELS,      /* what every pixel sees of the suns */
-    TL_MADE_SAMPLES,
-    TL_MADE_TRANSPARENCY, /* samples behind open cloth */
-    TL_MADE_MIRRORS,      /* samples that near mirrors reflect */
-    TL_MADE_TRACE,        /* the surfaces as a BVH */
-    TL_MADE_POINTS,
-    TL_MADE_BOUNCE, /* light that surfaces send on to each other, at vertices */
-    TL_MADE_ENVMAP_LOBES,
-    TL_MADE_CAPTURE,
-    TL_MADE_ENVMAP,
-    TL_MADE_LIGHT_MAP,
-    TL_MADE_LIGHT,
-    TL_MADE_LAMP_MAPS,
-    TL_MADE_LAMP_RAYS,
-    TL_MADE_LAMPLIGHT, /* added to the light */
-    TL_MADE_IMAGE,
-    TL_MADE_BACKDROP,
-    TL_MADE_SHOWN,
-    TL_RESOURCE_COUNT
-};
-#define TL_BIT(resource) ((tl_bits)1 << (resource))
+/* clang-format off */
+/* BIT(resource, name): the name is what `toile plan` prints. */
+#define TL_INPUT_BITS(BIT)                                                                                   \
+    BIT(TL_INPUT_ENVIRONMENT, "environment")                                                                 \
+    BIT(TL_INPUT_YAW, "environment yaw")                                                                     \
+    BIT(TL_INPUT_SHAPES, "shapes and materials") /* topology, UVs, materials */                              \
+    BIT(TL_INPUT_MOTION, "motion") /* positions, normals, tangents */                                        \
+    BIT(TL_INPUT_CAMERA, "camera")                                                                           \
+    BIT(TL_INPUT_SIZE, "image size") /* image size and samples per pixel */                                  \
+    BIT(TL_INPUT_GROUND, "ground option")                                                                    \
+    BIT(TL_INPUT_LOBES, "lobes drawn") /* which lobes of a material are drawn */                             \
+    BIT(TL_INPUT_PEM_SIZE, "PEM size")                                                                       \
+    BIT(TL_INPUT_FILTER, "filter option")                                                                    \
+    BIT(TL_INPUT_SUN, "sun option")                                                                          \
+    BIT(TL_INPUT_REGIONS, "regions options")                                                                 \
+    BIT(TL_INPUT_PASSES, "PEM storage") /* how PEMs are stored */                                            \
+    BIT(TL_INPUT_MAPS, "shadow map options") /* size and blur of the shadow maps */                          \
+    BIT(TL_INPUT_RAYS, "ray options") /* how rays are spent */                                               \
+    BIT(TL_INPUT_ROUND, "round") /* which of the jittered frames that are averaged while nothing changes */  \
+    BIT(TL_INPUT_SCENE_ROUND, "round of the scene") /* the same while the camera alone moves */              \
+    /* which of the images that are shifted by parts of a pixel */                                           \
+    BIT(TL_INPUT_SHIFT, "shift by a part of a pixel")                                                        \
+    BIT(TL_INPUT_LIGHT, "light options") /* how light is composed */                                         \
+    BIT(TL_INPUT_LAMPS, "lamps and shading options") /* and how surfaces are shaded under them */            \
+    BIT(TL_INPUT_REFERENCE, "reference options")                                                             \
+    BIT(TL_INPUT_DETAIL, "detail steps") /* how its maps are read */                                         \
+    BIT(TL_INPUT_DETAIL_MAPS, "detail options") /* which there are */                                        \
+    BIT(TL_INPUT_SHOW, "exposure and background")                                                            \
+    /* size of environment maps, and whether they show the scene */                                          \
+    BIT(TL_INPUT_ENVMAP, "environment map options")                                                          \
+    BIT(TL_INPUT_LAYOUT, "layout") /* their layout; for a sphere map the view's turn */                      \
+    BIT(TL_INPUT_LOOK_UP, "look-up options") /* how they are looked up */                                    \
+    BIT(TL_INPUT_CAPTURE, "captured scene") /* the scene as it was when it was to be captured last */        \
+    BIT(TL_INPUT_VIEW, "view") /* what is shown in place of light */                                         \
+    BIT(TL_INPUT_RATIO, "place of the ratios") /* where the ratio of seen to exact light is computed */
 
-/* Facts about the scene, by bit. */
-enum tl_scene_fact {
-    TL_SCENE_RASTER,       /* samples become the image */
-    TL_SCENE_SHADOWS,      /* the method needs visibility */
-    TL_SCENE_MAPS,         /* ... of shadow maps */
-    TL_SCENE_RAYS,         /* visibility comes from rays */
-    TL_SCENE_TRANSPARENCY, /* ... and something is seen through, or is lit from behind */
-    TL_SCENE_MIRRORS,      /* ... and something is so glossy that rays follow what it shows */
-    TL_SCENE_PASSES,       /* passes on the GPU light the samples */
-    TL_SCENE_CHAINS,       /* ... and read filter chains */
-    TL_SCENE_SLICES,       /* ... and read exact slices of the regions */
-    TL_SCENE_EXACT,        /* exact light of the whole environment is read */
-    TL_SCENE_BLUR,         /* shadow maps are variance maps */
-    TL_SCENE_DETAIL,       /* a material's bumps need maps of their own */
-    TL_SCENE_REFERENCE,
-    TL_SCENE_ENVMAP,    /* environment maps light the image */
-    TL_SCENE_CAPTURE,   /* ... and show the scene */
-    TL_SCENE_LIGHT_MAP, /* ... beside diffuse light that is baked */
-    TL_SCENE_LAMPS,
-    TL_SCENE_LAMP_MAPS,     /* ... and depth maps shadow one of them */
-    TL_SCENE_LAMP_RAYS,     /* ... and rays do */
-    TL_SCENE_SAMPLES,       /* rays start from what is seen */
-    TL_SCENE_COMPOSED,      /* light is composed from visibility by rays */
-    TL_SCENE_BOUNCE,        /* surfaces send light on to each other */
-    TL_SCENE_RATIOS,        /* ratios at vertices light the pixels, in one pass */
-    TL_SCENE_INSPECT,       /* something else than light is shown */
-    TL_SCENE_FITS_VERTICES, /* ratios at vertices could light the pixels; no job asks, work.c does */
-    TL_SCENE_FACT_COUNT
+/* BIT(resource, name, use): `use` is the member of struct tl_render_memory that its bytes count to. */
+#define TL_MADE_BITS(BIT)                                                                                    \
+    BIT(TL_MADE_CUBE, "cube", other) /* and the suns taken from it */                                        \
+    BIT(TL_MADE_REGIONS, "regions", other)                                                                   \
+    BIT(TL_MADE_LOBE, "lobe table", other)                                                                   \
+    BIT(TL_MADE_PEMS, "PEMs", pems)                                                                          \
+    BIT(TL_MADE_LOBES, "lobes", pems)                                                                        \
+    BIT(TL_MADE_SLICES, "slices", pems)                                                                      \
+    BIT(TL_MADE_LIGHTS, "regions as lights", pems) /* regions as lights */                                   \
+    BIT(TL_MADE_SURFACES, "surfaces", surfaces)                                                              \
+    BIT(TL_MADE_DETAIL, "detail maps", surfaces) /* maps derived from the materials' own */                  \
+    BIT(TL_MADE_DEPTHS, "depths", maps)                                                                      \
+    BIT(TL_MADE_MAPS, "shadow maps", other)                                                                  \
+    BIT(TL_MADE_GBUFFER, "G-buffer", targets)                                                                \
+    BIT(TL_MADE_IDS, "ID buffer", targets) /* the number of the nearest triangle at every pixel */           \
+    BIT(TL_MADE_SHADE_MATERIALS, "materials on the CPU", surfaces) /* materials and their maps on the CPU */ \
+    BIT(TL_MADE_RATIOS, "ratios at vertices", rays) /* of seen to exact light, at vertices */                \
+    BIT(TL_MADE_SUN_PIXELS, "suns at pixels", rays) /* what every pixel sees of the suns */                  \
+    BIT(TL_MADE_SAMPLES, "samples", rays)                                                                    \
+    BIT(TL_MADE_TRANSPARENCY, "what is seen through cloth", transparency) /* samples behind open cloth */    \
+    BIT(TL_MADE_MIRRORS, "what mirrors show", other) /* samples that near mirrors reflect */                 \
+    BIT(TL_MADE_TRACE, "surfaces for rays", rays) /* the surfaces as a BVH */                                \
+    BIT(TL_MADE_POINTS, "visibility at points", rays)                                                        \
+    BIT(TL_MADE_BOUNCE, "bounced light", rays) /* light that surfaces send on to each other, at vertices */  \
+    BIT(TL_MADE_ENVMAP_LOBES, "lobes of the maps", pems)                                                     \
+    BIT(TL_MADE_CAPTURE, "capture", pems)                                                                    \
+    BIT(TL_MADE_ENVMAP, "environment maps", pems)                                                            \
+    BIT(TL_MADE_LIGHT_MAP, "light maps", pems)                                                               \
+    BIT(TL_MADE_LIGHT, "light", targets)                                                                     \
+    BIT(TL_MADE_LAMP_MAPS, "lamps' shadow maps", maps)                                                       \
+    BIT(TL_MADE_LAMP_RAYS, "lamps' shadows by rays", other)                                                  \
+    BIT(TL_MADE_LAMPLIGHT, "light of lamps", other) /* added to the light */                                 \
+    BIT(TL_MADE_IMAGE, "image", targets)                                                                     \
+    BIT(TL_MADE_BACKDROP, "backdrop", other)                                                                 \
+    BIT(TL_MADE_SHOWN, "shown image", other)
+
+/* FACT(fact, name). */
+#define TL_SCENE_FACTS(FACT)                                                                                 \
+    FACT(TL_SCENE_RASTER, "drawn image") /* samples become the image */                                      \
+    FACT(TL_SCENE_SHADOWS, "shadows") /* the method needs visibility */                                      \
+    FACT(TL_SCENE_MAPS, "shadow maps") /* visibility comes from shadow maps */                               \
+    FACT(TL_SCENE_RAYS, "rays") /* visibility comes from rays */                                             \
+    /* rays; something is seen through, or is lit from behind */                                             \
+    FACT(TL_SCENE_TRANSPARENCY, "cloth that lets light through, by rays")                                    \
+    /* rays; something is so glossy that rays follow what it shows */                                        \
+    FACT(TL_SCENE_MIRRORS, "near mirrors by rays")                                                           \
+    FACT(TL_SCENE_PASSES, "light passes") /* passes on the GPU light the samples */                          \
+    FACT(TL_SCENE_CHAINS, "filter chains") /* the passes read filter chains */                               \
+    FACT(TL_SCENE_SLICES, "exact slices") /* the passes read exact slices */                                 \
+    FACT(TL_SCENE_EXACT, "exact light") /* exact light of the whole environment is read */                   \
+    FACT(TL_SCENE_BLUR, "variance maps") /* shadow maps are variance maps */                                 \
+    FACT(TL_SCENE_DETAIL, "fabric detail") /* a material's bumps need maps of their own */                   \
+    FACT(TL_SCENE_REFERENCE, "reference")                                                                    \
+    FACT(TL_SCENE_ENVMAP, "environment maps") /* environment maps light the image */                         \
+    FACT(TL_SCENE_CAPTURE, "captured scene") /* environment maps show the scene */                           \
+    FACT(TL_SCENE_LIGHT_MAP, "light maps") /* diffuse light is baked */                                      \
+    FACT(TL_SCENE_LAMPS, "lamps")                                                                            \
+    FACT(TL_SCENE_LAMP_MAPS, "lamps with shadow maps") /* depth maps shadow a lamp */                        \
+    FACT(TL_SCENE_LAMP_RAYS, "lamps with shadow rays") /* rays shadow a lamp */                              \
+    FACT(TL_SCENE_SAMPLES, "rays from samples") /* rays start from what is seen */                           \
+    FACT(TL_SCENE_COMPOSED, "light from rays") /* light is composed from visibility by rays */               \
+    FACT(TL_SCENE_BOUNCE, "bounced light") /* surfaces send light on to each other */                        \
+    FACT(TL_SCENE_RATIOS, "ratios at vertices") /* ratios at vertices light the pixels, in one pass */       \
+    FACT(TL_SCENE_INSPECT, "view of something else than light") /* something else than light is shown */     \
+    /* ratios at vertices could light the pixels; no job asks, work.c does */                                \
+    FACT(TL_SCENE_FITS_VERTICES, "light that vertices can hold")
+/* clang-format on */
+
+#define TL_NUMBER(bit, ...) bit,
+enum tl_resource {
+    TL_INPUT_BITS(TL_NUMBER) TL_INPUT_COUNT,
+    TL_LAST_INPUT = TL_INPUT_COUNT - 1, /* the next one follows it */
+    TL_MADE_BITS(TL_NUMBER) TL_RESOURCE_COUNT
 };
+enum tl_scene_fact { TL_SCENE_FACTS(TL_NUMBER) TL_SCENE_FACT_COUNT };
+#undef TL_NUMBER
+
+#define TL_BIT(resource) ((tl_bits)1 << (resource))
 
 extern const char *const tl_resource_names[TL_RESOURCE_COUNT + 1];
 extern const char *const tl_scene_fact_names[TL_SCENE_FACT_COUNT + 1];

@@ -52,7 +52,7 @@ bool tl_run_lobes(const struct tl_lobes_job *job, tl_error *error)
     struct tl_exact_light *exact = job->exact;
     exact->lobes = &cache->lobes;
     if (exact->sent != cache->lobes.made || exact->sent_revision != cache->revision)
-        tl_exact_maps_upload(&exact->maps, *job->gpu, &cache->lobes);
+        tl_exact_maps_upload(&exact->maps, job->gpu, &cache->lobes);
     exact->sent = cache->lobes.made;
     exact->sent_revision = cache->revision;
     return true;
@@ -66,7 +66,7 @@ bool tl_run_slices(const struct tl_slices_job *job, tl_error *error)
     tl_slices_release(&job->slices->slices);
     tl_slices_make(&job->slices->slices, job->cube, job->regions,
                    tl_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options));
-    tl_slice_maps_upload(&job->slices->maps, *job->gpu, &job->slices->slices);
+    tl_slice_maps_upload(&job->slices->maps, job->gpu, &job->slices->slices);
     return true;
 }
 
@@ -75,7 +75,7 @@ bool tl_run_lobe(const struct tl_lobe_job *job, tl_error *error)
     (void)error;
     struct tl_lobe_table table;
     tl_lobe_calibrate(job->pem_options->pem_size, (enum tl_chain_filter)job->filter_options->filter, &table);
-    tl_lobe_levels_upload(job->lobe_levels, *job->gpu, &table);
+    tl_lobe_levels_upload(job->lobe_levels, job->gpu, &table);
     return true;
 }
 
@@ -84,7 +84,7 @@ bool tl_run_pems(const struct tl_pems_job *job, tl_error *error)
     (void)error;
     const struct tl_pem_storage storage = {job->storage_options->pems_per_pass,
                                            job->storage_options->pem_layout};
-    tl_pems_build(job->pems, *job->gpu, job->cube, job->regions, job->filter_options->filter, storage);
+    tl_pems_build(job->pems, job->gpu, job->cube, job->regions, job->filter_options->filter, storage);
     return true;
 }
 

@@ -52,7 +52,7 @@ bool tl_run_capture(const struct tl_capture_job *job, tl_error *error)
         .lamp_count = job->lamps->count,
         .near_m = 1e-3f * casters->radius,
         .far_m = glms_vec3_norm(offset) + 100 * casters->radius};
-    return tl_capture_draw(job->capture, *job->gpu, &request, error);
+    return tl_capture_draw(job->capture, job->gpu, &request, error);
 }
 
 /* A captured scene is in world axes, the environment alone in its own. Materials may have changed since the
@@ -66,10 +66,10 @@ bool tl_run_envmap(const struct tl_envmap_job *job, tl_error *error)
         tl_lobes_make(&job->capture->lobes, &job->capture->cube,
                       tl_map_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options));
     mat3s into_world = environment_into_world(captured ? 0 : *job->yaw);
-    tl_envmap_fill(job->envmap, *job->gpu, job->layout_options,
+    tl_envmap_fill(job->envmap, job->gpu, job->layout_options,
                    captured ? &job->capture->lobes : &job->envmap_source->lobes, &into_world,
                    &job->camera->view);
-    tl_envmap_set_parts(job->envmap, *job->gpu, &shapes->ranges, job->ground_input->is_drawn);
+    tl_envmap_set_parts(job->envmap, job->gpu, &shapes->ranges, job->ground_input->is_drawn);
     return true;
 }
 
@@ -83,8 +83,7 @@ bool tl_run_light_map(const struct tl_light_map_job *job, tl_error *error)
                                                  .ground = job->ground_input->is_drawn ? job->ground : NULL,
                                                  .params = job->reference_options,
                                                  .detail = job->detail_steps};
-    return tl_light_map_bake(job->light_map, *job->gpu, &request, job->envmap_input->options.light_map,
-                             error);
+    return tl_light_map_bake(job->light_map, job->gpu, &request, job->envmap_input->options.light_map, error);
 }
 
 bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
@@ -92,7 +91,7 @@ bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
     bool baked = job->look_up_options->light_map > 0;
     if (!baked)
         tl_light_map_release(job->light_map);
-    else if (!tl_light_map_draw(job->light_map, *job->gpu, &job->gbuffer->target, &job->shift->view,
+    else if (!tl_light_map_draw(job->light_map, job->gpu, &job->gbuffer->target, &job->shift->view,
                                 job->surfaces, job->shapes->drawn_count, error))
         return false;
     const struct tl_envmap_request request = {.gbuffer = &job->gbuffer->target,
@@ -102,8 +101,8 @@ bool tl_run_look_up(const struct tl_look_up_job *job, tl_error *error)
                                               .surface_count = job->shapes->drawn_count,
                                               .baked = baked ? &job->light_map->target.colours[0] : NULL,
                                               .params = job->look_up_options};
-    bool fine = tl_envmap_draw(job->envmap, *job->gpu, &request, job->light, error);
-    tl_gpu_reset_state(*job->gpu);
+    bool fine = tl_envmap_draw(job->envmap, job->gpu, &request, job->light, error);
+    tl_gpu_reset_state(job->gpu);
     return fine;
 }
 
@@ -166,7 +165,7 @@ bool tl_run_resolve(const struct tl_resolve_job *job, tl_error *error)
                                   job->size->options.width, job->size->options.height, job->shift->before);
         return true;
     }
-    tl_present_resolve(job->present, *job->gpu, &job->light->target.colours[0],
+    tl_present_resolve(job->present, job->gpu, &job->light->target.colours[0],
                        &job->gbuffer->target.colours[TL_GBUFFER_POINT], job->size->options.width,
                        job->size->options.height, job->shift->before);
     return true;
@@ -179,5 +178,5 @@ bool tl_run_show(const struct tl_show_job *job, tl_error *error)
                                             .environment = job->environment->map,
                                             .params = job->show_options,
                                             .part = *job->show_part};
-    return tl_present_show(job->present, *job->gpu, &request, error);
+    return tl_present_show(job->present, job->gpu, &request, error);
 }

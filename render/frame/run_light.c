@@ -28,7 +28,7 @@ bool tl_run_light(const struct tl_light_job *job, tl_error *error)
                                              .eye = job->camera->view.eye,
                                              .round = *job->round,
                                              .params = job->light_options};
-    return tl_lighting_draw(job->lighting, *job->gpu, &request, job->light, error);
+    return tl_lighting_draw(job->lighting, job->gpu, &request, job->light, error);
 }
 
 /* A still image takes all its rounds before it is lit. */
@@ -255,7 +255,7 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
     tl_compose(&request, job->light->texels);
     add_lamps(job, &request);
     if (*job->facts & TL_BIT(TL_SCENE_LAMPS)) /* the rest of their light is added on the GPU */
-        tl_light_buffer_send(job->light, *job->gpu, &job->gbuffer->target);
+        tl_light_buffer_send(job->light, job->gpu, &job->gbuffer->target);
     else
         tl_light_buffer_finish(job->light, job->samples);
     return true;
@@ -279,7 +279,7 @@ bool tl_run_lamp_maps(const struct tl_lamp_maps_job *job, tl_error *error)
                                                  .casters = *job->casters,
                                                  .surfaces = job->surfaces,
                                                  .map_size = job->shadows->options.map_size};
-    return tl_lamp_maps_draw(&job->local->shadows, *job->gpu, &request, error);
+    return tl_lamp_maps_draw(&job->local->shadows, job->gpu, &request, error);
 }
 
 bool tl_run_lamp_rays(const struct tl_lamp_rays_job *job, tl_error *error)
@@ -295,7 +295,7 @@ bool tl_run_lamp_rays(const struct tl_lamp_rays_job *job, tl_error *error)
             continue;
         tl_lamp_rays(&job->lamps->items[i], job->trace, samples, &job->shapes->ranges,
                      job->ground_input->is_drawn ? job->ground : NULL, visible);
-        tl_lamp_shadows_set(shadows, *job->gpu, samples->width, samples->height, i, count, visible);
+        tl_lamp_shadows_set(shadows, job->gpu, samples->width, samples->height, i, count, visible);
     }
     free(visible);
     return true;
@@ -321,5 +321,5 @@ bool tl_run_lamps(const struct tl_lamps_job *job, tl_error *error)
                                              .depth_bias_m = tl_casters_scale(job->casters) *
                                                              job->light_options->depth_bias_m,
                                              .weight = passes ? 1 / (float)(*job->round + 1) : 1};
-    return tl_local_draw(job->local, *job->gpu, &request, error);
+    return tl_local_draw(job->local, job->gpu, &request, error);
 }

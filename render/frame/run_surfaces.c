@@ -13,7 +13,7 @@ bool tl_run_surfaces(const struct tl_surfaces_job *job, tl_error *error)
 
 bool tl_run_detail(const struct tl_detail_job *job, tl_error *error)
 {
-    return tl_detail_maps_make(job->detail, *job->gpu, job->shapes->drawn, job->shapes->drawn_count,
+    return tl_detail_maps_make(job->detail, job->gpu, job->shapes->drawn, job->shapes->drawn_count,
                                job->detail_steps, error);
 }
 
@@ -77,7 +77,7 @@ bool tl_run_blur(const struct tl_blur_job *job, tl_error *error)
 bool tl_run_gbuffer(const struct tl_gbuffer_job *job, tl_error *error)
 {
     const struct tl_gbuffer_request request = GBUFFER_REQUEST(job);
-    return tl_gbuffer_draw(job->gbuffer, *job->gpu, &request, error);
+    return tl_gbuffer_draw(job->gbuffer, job->gpu, &request, error);
 }
 
 bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
@@ -91,12 +91,12 @@ bool tl_run_ids(const struct tl_ids_job *job, tl_error *error)
                                          .surface_count = SEEN_COUNT(job),
                                          .ground = SEEN_GROUND(job),
                                          .only_triangle = true};
-    if (!tl_ids_draw(job->ids, *job->gpu, &request, &job->shapes->ranges, error))
+    if (!tl_ids_draw(job->ids, job->gpu, &request, &job->shapes->ranges, error))
         return false;
     request.width = size->options.width;
     request.height = size->options.height;
     return !tl_size_has_outlines(size) ||
-           tl_ids_draw_nearest(job->pixel_ids, *job->gpu, &request, &job->shapes->ranges, error);
+           tl_ids_draw_nearest(job->pixel_ids, job->gpu, &request, &job->shapes->ranges, error);
 }
 
 bool tl_run_shade_materials(const struct tl_shade_materials_job *job, tl_error *error)
@@ -118,7 +118,7 @@ bool tl_run_transparency(const struct tl_transparency_job *job, tl_error *error)
 {
     const struct tl_transparency_request request = {
         .gbuffer = job->gbuffer, .draw = GBUFFER_REQUEST(job), .ranges = &job->shapes->ranges};
-    return tl_transparency_find(job->transparency, *job->gpu, &request, job->samples, error);
+    return tl_transparency_find(job->transparency, job->gpu, &request, job->samples, error);
 }
 
 bool tl_run_trace(const struct tl_trace_job *job, tl_error *error)

@@ -4,10 +4,12 @@
 #include "render/frame/work.h"
 
 #include "render/frame/facts.h"
+#include "render/frame/job_io.h"
 #include "render/inspect/legend.h"
 #include "render/visibility/refresh.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The assumed share of covered samples while no frame has been drawn. */
 #define COVERED_AT_FIRST 0.5
@@ -105,30 +107,6 @@ struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources
         .new_regions = tl_light_cache_has(&resources->light_cache, light) ? 0 : light->regions};
 }
 
-struct tl_work tl_lights_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{1e-3, sizes->new_regions > 0 ? 40 : 0, 2 * sizes->new_regions}};
-}
-
-struct tl_work tl_gbuffer_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    const struct tl_detail_params *detail = &sizes->settings->detail;
-    const double enough = 24; /* steps from cone to cone, for most rays */
-    double steps = !sizes->is_bumpy                   ? 0
-                   : detail->mode == TL_DETAIL_RELIEF ? 5 + fmin(detail->steps, enough)
-                                                      : 5;
-    return (struct tl_work){
-        {0.5, 0.039 * sqrt(sizes->texels), 2e-6 * sizes->texels, 2e-5 * steps * sizes->covered}};
-}
-
-struct tl_work tl_samples_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{1e-5 * sizes->texels, 4e-5 * sizes->covered}};
-}
-
 /* Pixels that have ids beside those of the samples; 0 where there are as many samples. */
 static double outlined(const struct tl_work_sizes *sizes)
 {
@@ -136,106 +114,53 @@ static double outlined(const struct tl_work_sizes *sizes)
     return image->scale * (float)image->supersample < 1 ? (double)image->width * image->height : 0;
 }
 
-struct tl_work tl_ids_work(const void *context)
+/* Steps from cone to cone through the heights of a bumpy material, and constant work beside them. */
+static double detail_steps(const struct tl_work_sizes *sizes)
 {
-    const struct tl_work_sizes *sizes = context;
-    double pixels = outlined(sizes), draws = pixels > 0 ? 2 : 1;
-    return (struct tl_work){{0.3 * draws, 5e-5 * draws * sizes->triangles, 1.5e-6 * (sizes->texels + pixels),
-                             1.5e-6 * sizes->covered}};
+    const struct tl_detail_params *detail = &sizes->settings->detail;
+    const double enough = 24; /* for most rays */
+    if (!sizes->is_bumpy)
+        return 0;
+    return detail->mode == TL_DETAIL_RELIEF ? 5 + fmin(detail->steps, enough) : 5;
 }
 
-struct tl_work tl_ratios_work(const void *context)
+void tl_work_estimate(const struct tl_work_sizes *s, struct tl_work out[TL_JOB_COUNT])
 {
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){
-        {0.5, 1e-5 * sizes->triangles, 1e-5 * sizes->groups * sizes->lobes * sizes->points}};
-}
-
-struct tl_work tl_sun_pixels_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{0.1, 1e-5 * sizes->triangles, (1e-5 * sizes->suns) * sizes->covered,
-                             0.02 * sizes->suns * sqrt(sizes->covered)}};
-}
-
-struct tl_work tl_shade_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){
-        {0.5, 2e-6 * sizes->texels, 2e-5 * (4 + sizes->lobes) * sizes->covered, 1.2e-5 * outlined(sizes)}};
-}
-
-struct tl_work tl_trace_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{1e-4 * sizes->triangles}};
-}
-
-struct tl_work tl_points_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    double samples = sizes->at_vertices ? 0 : (4e-5 + 1e-4 * sizes->suns) * sizes->covered;
-    return (struct tl_work){
-        {1e-4 * sizes->triangles, samples, 2e-4 * sizes->points, 8e-5 * sizes->points * sizes->refreshed}};
-}
-
-struct tl_work tl_bounce_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    const double shares = sizes->settings->light.bounce_shares;
-    return (struct tl_work){{3e-5 * sizes->triangles, 4e-3 * sizes->points / shares}};
-}
-
-struct tl_work tl_compose_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){
-        {3e-6 * sizes->texels, 2e-4 * sizes->covered, 1e-5 * sizes->groups * sizes->lobes * sizes->covered}};
-}
-
-struct tl_work tl_inspect_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    double groups = tl_view_is_visibility(sizes->settings->image.view) ? sizes->groups : 0;
-    return (struct tl_work){{3e-6 * sizes->texels, 1e-4 * sizes->covered, 3e-5 * groups * sizes->covered}};
-}
-
-struct tl_work tl_passes_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{1e-4 * sizes->texels, 5e-5 * sizes->settings->light.regions * sizes->covered}};
-}
-
-struct tl_work tl_maps_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    double maps = sizes->refreshed, side = sizes->settings->light.map_size;
-    return (struct tl_work){{1e-4 * maps * sizes->triangles, 1e-5 * maps * side * side}};
-}
-
-struct tl_work tl_resolve_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    const struct tl_image_params *image = &sizes->settings->image;
-    double pixels = (double)image->width * image->height;
-    bool is_resampled = image->scale < 1;
-    return (struct tl_work){{1e-5 * sizes->texels, 1e-5 * pixels, is_resampled ? 2e-5 * pixels : 0}};
-}
-
-struct tl_work tl_lamps_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{5, 1e-4 * (sizes->lamps + 1) * sizes->covered}};
-}
-
-struct tl_work tl_lamp_maps_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{5, 1e-4 * sizes->lamps * sizes->triangles}};
-}
-
-struct tl_work tl_sample_rays_work(const void *context)
-{
-    const struct tl_work_sizes *sizes = context;
-    return (struct tl_work){{1e-4 * sizes->triangles, 1e-4 * sizes->covered}};
+    const struct tl_light_params *light = &s->settings->light;
+    const struct tl_image_params *image = &s->settings->image;
+    const double outline = outlined(s), draws = outline > 0 ? 2 : 1, side = light->map_size;
+    const double pixels = (double)image->width * image->height;
+    const double inspected = tl_view_is_visibility(image->view) ? s->groups : 0;
+    const struct tl_work sample_rays = {{1e-4 * s->triangles, 1e-4 * s->covered}};
+    const struct tl_work shadow_maps = {
+        {1e-4 * s->refreshed * s->triangles, 1e-5 * s->refreshed * side * side}};
+    const struct tl_work table[TL_JOB_COUNT] = {
+#define ROW(job, ...) [TL_JOB_NUMBER_##job] = { {__VA_ARGS__} }
+        ROW(lights, 1e-3, s->new_regions > 0 ? 40 : 0, 2 * s->new_regions),
+        [TL_JOB_NUMBER_maps] = shadow_maps,
+        [TL_JOB_NUMBER_blur] = shadow_maps,
+        ROW(gbuffer, 0.5, 0.039 * sqrt(s->texels), 2e-6 * s->texels, 2e-5 * detail_steps(s) * s->covered),
+        ROW(ids, 0.3 * draws, 5e-5 * draws * s->triangles, 1.5e-6 * (s->texels + outline),
+            1.5e-6 * s->covered),
+        ROW(samples, 1e-5 * s->texels, 4e-5 * s->covered),
+        [TL_JOB_NUMBER_transparency] = sample_rays,
+        ROW(trace, 1e-4 * s->triangles),
+        [TL_JOB_NUMBER_mirrors] = sample_rays,
+        ROW(points, 1e-4 * s->triangles, s->at_vertices ? 0 : (4e-5 + 1e-4 * s->suns) * s->covered,
+            2e-4 * s->points, 8e-5 * s->points * s->refreshed),
+        ROW(bounce, 3e-5 * s->triangles, 4e-3 * s->points / light->bounce_shares),
+        ROW(ratios, 0.5, 1e-5 * s->triangles, 1e-5 * s->groups * s->lobes * s->points),
+        ROW(sun_pixels, 0.1, 1e-5 * s->triangles, (1e-5 * s->suns) * s->covered,
+            0.02 * s->suns * sqrt(s->covered)),
+        ROW(shade, 0.5, 2e-6 * s->texels, 2e-5 * (4 + s->lobes) * s->covered, 1.2e-5 * outline),
+        ROW(light, 1e-4 * s->texels, 5e-5 * light->regions * s->covered),
+        ROW(compose, 3e-6 * s->texels, 2e-4 * s->covered, 1e-5 * s->groups * s->lobes * s->covered),
+        ROW(inspect, 3e-6 * s->texels, 1e-4 * s->covered, 3e-5 * inspected * s->covered),
+        ROW(lamp_maps, 5, 1e-4 * s->lamps * s->triangles),
+        [TL_JOB_NUMBER_lamp_rays] = sample_rays,
+        ROW(lamps, 5, 1e-4 * (s->lamps + 1) * s->covered),
+        ROW(resolve, 1e-5 * s->texels, 1e-5 * pixels, image->scale < 1 ? 2e-5 * pixels : 0),
+#undef ROW
+    };
+    memcpy(out, table, sizeof table);
 }

@@ -1,31 +1,49 @@
-/* Estimates the work of each job of the next frame from the last frame's counts, at other settings. Reads the
- * renderer's state and changes nothing. */
+/* Estimates the work of each job of the next frame from the last frame's counts, at other settings, for the
+ * cost model (render/plan/cost.h).
+ *
+ * Reads the renderer's state and changes nothing. Counts are doubles: they are estimates. Threads: the
+ * renderer's. Errors: none. */
 #ifndef TOILE_RENDER_FRAME_WORK_H
 #define TOILE_RENDER_FRAME_WORK_H
 
-#include "render/frame/resources.h"
+#include "render/frame/job_io.h"
 
 /* The quantities that the jobs' work depends on, estimated for the next frame. */
 struct tl_work_sizes {
+    /* Borrowed: the settings of the next frame. */
     const struct tl_render_settings *settings;
-    double texels, covered; /* samples of the frame; those covered by a surface */
-    double points;          /* visible points that visibility is stored at */
-    double groups;          /* of TL_LANES regions; 0 where light is unshadowed */
-    double lobes;           /* max a sample sums the regions' light through */
-    double refreshed;       /* rays a point */
+    /* Samples of the frame, and those of them that a surface covers. */
+    double texels, covered;
+    /* Visible points that visibility is stored at. */
+    double points;
+    /* Groups of TL_LANES regions; 0: light is unshadowed. */
+    double groups;
+    /* The most lobes through which a sample sums the regions' light; at least 1. */
+    double lobes;
+    /* Rays a point; 0: visibility is complete. */
+    double refreshed;
     double triangles;
-    bool at_vertices;   /* ratios at vertices light the pixels */
-    bool is_bumpy;      /* a material has a normal or a height map */
-    double lamps, suns; /* lamps that are lit; suns that are separate from the regions */
-    double new_regions; /* regions whose light is not cached from an earlier frame */
+    /* Ratios at vertices light the pixels. */
+    bool at_vertices;
+    /* A material has a normal or a height map. */
+    bool is_bumpy;
+    /* Lamps that are lit, and suns that are separate from the regions. */
+    double lamps, suns;
+    /* Regions whose light is not cached from an earlier frame; 0: all are. */
+    double new_regions;
 };
+
 /* Counts of a frame, kept because its surfaces may be freed after the draw. */
 struct tl_work_counts {
     double triangles;
+    /* Lamps that are lit. */
     int lamps;
-    bool fits_vertices;                   /* ratios at vertices can light the pixels */
-    bool is_glossy, is_faceted, is_bumpy; /* any material */
+    /* Ratios at vertices could light the pixels. */
+    bool fits_vertices;
+    /* Any material is. */
+    bool is_glossy, is_faceted, is_bumpy;
 };
+
 /* `facts` are the frame's (facts.h). */
 struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts);
 /* `resources` and `counts` are those of the last frame; `settings` are those of the next. */
@@ -33,24 +51,8 @@ struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources
                                             const struct tl_work_counts *counts,
                                             const struct tl_render_settings *settings);
 
-/* The work of the jobs of the same names; `context` is a struct tl_work_sizes. */
-struct tl_work tl_lights_work(const void *context);
-struct tl_work tl_gbuffer_work(const void *context);
-struct tl_work tl_samples_work(const void *context);
-struct tl_work tl_ids_work(const void *context);
-struct tl_work tl_ratios_work(const void *context);
-struct tl_work tl_sun_pixels_work(const void *context);
-struct tl_work tl_shade_work(const void *context);
-struct tl_work tl_trace_work(const void *context);
-struct tl_work tl_points_work(const void *context);
-struct tl_work tl_bounce_work(const void *context);
-struct tl_work tl_compose_work(const void *context);
-struct tl_work tl_inspect_work(const void *context);
-struct tl_work tl_passes_work(const void *context); /* light */
-struct tl_work tl_maps_work(const void *context);   /* and blur */
-struct tl_work tl_resolve_work(const void *context);
-struct tl_work tl_lamps_work(const void *context);
-struct tl_work tl_lamp_maps_work(const void *context);
-struct tl_work tl_sample_rays_work(const void *context); /* transparency, mirrors, lamp_rays */
+/* Computes the work of every job in the order of the table; 0 for those whose work is always the same. The
+ * parts of a job's row in work.c are ms on the machine described there. */
+void tl_work_estimate(const struct tl_work_sizes *sizes, struct tl_work out[TL_JOB_COUNT]);
 
 #endif

@@ -11,22 +11,17 @@ struct entry {
     int reads, writes;
     bool is_field;
 };
-#define NONE                              (-1)
-#define ENTRY_READS(member)               {TL_RESOURCE_OF_##member, NONE, true},
-#define ENTRY_READS_HANDLE(member)        ENTRY_READS(member)
-#define ENTRY_AFTER(bit)                  {bit, NONE, false},
-#define ENTRY_SEES(member)                {NONE, NONE, true},
-#define ENTRY_SEES_HANDLE(member)         ENTRY_SEES(member)
-#define ENTRY_WRITES(member)              {NONE, TL_RESOURCE_OF_##member, true},
-#define ENTRY_WRITES_HANDLE(member)       ENTRY_WRITES(member)
-#define ENTRY_WRITES_IN(member, bit)      {NONE, bit, true},
-#define ENTRY_EXTENDS(member, bit)        {TL_RESOURCE_OF_##member, bit, true},
-#define ENTRY_EXTENDS_HANDLE(member, bit) ENTRY_EXTENDS(member, bit)
-#define ENTRY_USES(member)                {NONE, NONE, true},
-#define ENTRY_USES_HANDLE(member)         ENTRY_USES(member)
-#define ENTRY(kind, ...)                  ENTRY_##kind(__VA_ARGS__)
+#define NONE                         (-1)
+#define ENTRY_READS(member)          {TL_RESOURCE_OF_##member, NONE, true},
+#define ENTRY_AFTER(bit)             {bit, NONE, false},
+#define ENTRY_SEES(member)           {NONE, NONE, true},
+#define ENTRY_WRITES(member)         {NONE, TL_RESOURCE_OF_##member, true},
+#define ENTRY_WRITES_IN(member, bit) {NONE, bit, true},
+#define ENTRY_EXTENDS(member, bit)   {TL_RESOURCE_OF_##member, bit, true},
+#define ENTRY_USES(member)           {NONE, NONE, true},
+#define ENTRY(kind, ...)             ENTRY_##kind(__VA_ARGS__)
 
-#define LIST_OF(name, LIST) static const struct entry name##_entries[] = {LIST(ENTRY)};
+#define LIST_OF(name, facts, what) static const struct entry name##_entries[] = {TL_JOB_##name(ENTRY)};
 TL_JOBS(LIST_OF)
 
 static const struct {
@@ -34,7 +29,8 @@ static const struct {
     const struct entry *entries;
     size_t count, struct_size;
 } lists[] = {
-#define ROW(name, LIST) {#name, name##_entries, TL_COUNT(name##_entries), sizeof(struct tl_##name##_job)},
+#define ROW(name, facts, what)                                                                               \
+    {#name, name##_entries, TL_COUNT(name##_entries), sizeof(struct tl_##name##_job)},
     TL_JOBS(ROW)};
 
 static struct tl_resources all;
@@ -47,27 +43,21 @@ static const char *ran; /* the last job whose run function was called */
 #define CHECK_MUTABLE(member, address)                                                                       \
     assert_true(_Generic(job->member, __typeof__(*(address)) * : true, default : false));                    \
     assert_ptr_equal(job->member, address);
-#define CHECK_READS(member)        CHECK_CONST(member, &all.member)
-#define CHECK_READS_HANDLE(member) CHECK_CONST(member, all.member)
+#define CHECK_READS(member) CHECK_CONST(member, tl_resource_##member(&all))
 #define CHECK_AFTER(bit)
-#define CHECK_SEES(member)                CHECK_READS(member)
-#define CHECK_SEES_HANDLE(member)         CHECK_READS_HANDLE(member)
-#define CHECK_WRITES(member)              CHECK_MUTABLE(member, &all.member)
-#define CHECK_WRITES_HANDLE(member)       CHECK_MUTABLE(member, all.member)
-#define CHECK_WRITES_IN(member, bit)      CHECK_WRITES(member)
-#define CHECK_EXTENDS(member, bit)        CHECK_WRITES(member)
-#define CHECK_EXTENDS_HANDLE(member, bit) CHECK_WRITES_HANDLE(member)
-#define CHECK_USES(member)                CHECK_WRITES(member)
-#define CHECK_USES_HANDLE(member)         CHECK_WRITES_HANDLE(member)
-#define CHECK(kind, ...)                  CHECK_##kind(__VA_ARGS__)
+#define CHECK_SEES(member)           CHECK_READS(member)
+#define CHECK_WRITES(member)         CHECK_MUTABLE(member, tl_resource_##member(&all))
+#define CHECK_WRITES_IN(member, bit) CHECK_WRITES(member)
+#define CHECK_EXTENDS(member, bit)   CHECK_WRITES(member)
+#define CHECK_USES(member)           CHECK_WRITES(member)
+#define CHECK(kind, ...)             CHECK_##kind(__VA_ARGS__)
 
-#define CHECK_FIELDS(name, LIST)                                                                             \
+#define CHECK_FIELDS(name, facts, what)                                                                      \
     bool tl_run_##name(const struct tl_##name##_job *job, tl_error *error)                                   \
     {                                                                                                        \
         (void)error;                                                                                         \
         ran = #name;                                                                                         \
-        LIST(CHECK)                                                                                          \
-        return true;                                                                                         \
+        TL_JOB_##name(CHECK) return true;                                                                    \
     }
 TL_JOBS(CHECK_FIELDS)
 
@@ -91,14 +81,20 @@ static void a_jobs_bits_are_those_of_its_list(void **state)
     }
 }
 
+/* Lists give a job the address of a member, or the handle that it holds. */
+#define CHECK_ADDRESS(member, ...) assert_ptr_equal(tl_resource_##member(&all), &all.member);
+#define CHECK_HANDLE(member, ...)                                                                            \
+    all.member = (void *)&handles[count++];                                                                  \
+    assert_ptr_equal(tl_resource_##member(&all), all.member);
+
 static void a_field_points_to_the_resource_of_its_name(void **state)
 {
     (void)state;
-    static char handles[4]; /* four addresses that differ, never read */
-    all.surfaces = (void *)&handles[0];
-    all.maps = (void *)&handles[1];
-    all.trace = (void *)&handles[2];
-    all.points = (void *)&handles[3];
+    static char handles[8]; /* addresses that differ, never read */
+    size_t count = 0;
+    TL_INPUT_RESOURCES(CHECK_ADDRESS)
+    TL_MADE_RESOURCES(CHECK_ADDRESS, CHECK_ADDRESS, CHECK_HANDLE)
+    TL_OTHER_RESOURCES(CHECK_ADDRESS, CHECK_ADDRESS, CHECK_HANDLE)
     for (int i = 0; i < tl_frame_job_count; i++) {
         ran = "";
         assert_true(tl_frame_jobs[i].run(&all, 0, NULL));
