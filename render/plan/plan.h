@@ -2,7 +2,9 @@
  *
  * plan = f(jobs, what changed, what the scene requires, what is wanted). A job is dropped when the scene does
  * not require it or no job reads its results, reused when nothing that it reads has changed, and run
- * otherwise. */
+ * otherwise.
+ *
+ * Lifetime: plans hold no pointers but to names, which must be constants. Threads: any. */
 #ifndef TOILE_RENDER_PLAN_PLAN_H
 #define TOILE_RENDER_PLAN_PLAN_H
 
@@ -21,33 +23,46 @@ enum tl_job_action { TL_JOB_RUN, TL_JOB_REUSE, TL_JOB_DROP };
 extern const char *const tl_job_action_names[]; /* run reuse drop */
 
 typedef struct tl_job {
-    const char *name; /* "regions", "maps", "light" ... */
-    const char *what; /* one line for people */
-    tl_bits reads;    /* bits of resources; a resource that no job writes is an input of the frame */
+    /* "regions", "maps", "light" ..., and one line for people. */
+    const char *name;
+    const char *what;
+    /* Resources by bit. One that no job writes is an input of the frame; 0: the job runs once. */
+    tl_bits reads;
     tl_bits writes;
-    tl_bits requires_scene;                /* bits of scene facts that must all hold, else dropped */
-    const char *levels[TL_JOB_LEVELS_MAX]; /* names, cost grows and error falls; at least one */
+    /* Facts about the scene, by bit, that must all hold, else the job is dropped; 0: it is always allowed. */
+    tl_bits requires_scene;
+    /* Names: cost grows and error falls from each to the next. At least one; NULL ends them. */
+    const char *levels[TL_JOB_LEVELS_MAX];
+    /* False, with `error` set, when the job failed. */
     bool (*run)(void *context, int level, tl_error *error);
-    struct tl_work (*work)(const void *seen); /* of a frame to come; NULL: always the same */
 } tl_job;
 
 struct tl_plan_input {
-    tl_bits changed;                     /* resources (inputs of the frame) that differ from the last frame */
-    tl_bits valid;                       /* resources that an earlier frame left behind */
-    tl_bits scene;                       /* facts about the scene */
-    tl_bits wanted;                      /* resources that the caller reads afterwards */
-    const char *const *scene_fact_names; /* by bit, for reasons */
-    const char *const *resource_names;   /* by bit */
+    /* Inputs of the frame that differ from the last one. */
+    tl_bits changed;
+    /* Resources that an earlier frame left behind; 0: there was none. */
+    tl_bits valid;
+    /* Facts about the scene. */
+    tl_bits scene;
+    /* Resources that the caller reads afterwards; 0: every job is dropped. */
+    tl_bits wanted;
+    /* Names by bit, for reasons; NULL: "?". */
+    const char *const *scene_fact_names;
+    const char *const *resource_names;
 };
 
 struct tl_plan_row {
     const char *name;
     enum tl_job_action action;
     int level;
+    /* Why, for people: "changed: camera". */
     char reason[120];
-    double predicted_ms; /* by the cost model; NaN while unknown, 0 for what does not run */
-    double took_ms;      /* once carried out; 0 for what did not run */
-    double work_ms;      /* ... the same by the table's costs, on the table's machine; 0 where it has none */
+    /* By the cost model; NaN while it is unknown, 0 for what does not run. */
+    double predicted_ms;
+    /* Once carried out; 0 for what did not run. */
+    double took_ms;
+    /* The same by the table's costs, on the table's machine; 0 where it has none. */
+    double work_ms;
 };
 
 typedef struct tl_plan {

@@ -13,19 +13,18 @@ enum { GLOSSY, OPEN_SKY };
 static const char *const facts[] = {"glossy material", "open sky"};
 
 static const tl_job jobs[] = {
-    {"regions", "cut", BIT(ENVIRONMENT), BIT(REGIONS), 0, {"only"}, NULL, NULL},
-    {"pems", "filter", BIT(ENVIRONMENT) | BIT(REGIONS), BIT(PEMS), 0, {"only"}, NULL, NULL},
-    {"slices", "glossy slices", BIT(ENVIRONMENT), BIT(SLICES), BIT(GLOSSY), {"only"}, NULL, NULL},
-    {"maps", "shadow maps", BIT(REGIONS) | BIT(SURFACES), BIT(MAPS), 0, {"128", "256", "512"}, NULL, NULL},
+    {"regions", "cut", BIT(ENVIRONMENT), BIT(REGIONS), 0, {"only"}, NULL},
+    {"pems", "filter", BIT(ENVIRONMENT) | BIT(REGIONS), BIT(PEMS), 0, {"only"}, NULL},
+    {"slices", "glossy slices", BIT(ENVIRONMENT), BIT(SLICES), BIT(GLOSSY), {"only"}, NULL},
+    {"maps", "shadow maps", BIT(REGIONS) | BIT(SURFACES), BIT(MAPS), 0, {"128", "256", "512"}, NULL},
     {"light",
      "sum",
      BIT(PEMS) | BIT(SLICES) | BIT(MAPS) | BIT(SURFACES) | BIT(CAMERA),
      BIT(IMAGE),
      0,
      {"only"},
-     NULL,
      NULL},
-    {"chart", "for people", BIT(IMAGE), BIT(CHART), 0, {"only"}, NULL, NULL},
+    {"chart", "for people", BIT(IMAGE), BIT(CHART), 0, {"only"}, NULL},
 };
 #define JOBS ((int)(sizeof jobs / sizeof *jobs))
 #define ALL  (BIT(REGIONS) | BIT(PEMS) | BIT(SLICES) | BIT(MAPS) | BIT(IMAGE))
@@ -182,9 +181,9 @@ static void tables_out_of_order_are_refused(void **state)
     assert_non_null(strstr(error.message, "regions"));
 
     /* its own result of the last frame, and a second writer that comes before, are fine */
-    const tl_job history[] = {{"accumulate", "", BIT(IMAGE), BIT(IMAGE), 0, {"only"}, NULL, NULL}, jobs[4]};
+    const tl_job history[] = {{"accumulate", "", BIT(IMAGE), BIT(IMAGE), 0, {"only"}, NULL}, jobs[4]};
     assert_ok(tl_jobs_check(history, 2, &error), error);
-    const tl_job unlevelled[] = {{"bare", "", 0, BIT(IMAGE), 0, {NULL}, NULL, NULL}};
+    const tl_job unlevelled[] = {{"bare", "", 0, BIT(IMAGE), 0, {NULL}, NULL}};
     assert_false(tl_jobs_check(unlevelled, 1, &error));
     assert_false(tl_jobs_check(jobs, TL_JOBS_MAX + 1, &error));
 }
@@ -196,7 +195,7 @@ static void long_reasons_are_cut(void **state)
     const char *names[64];
     for (int i = 0; i < 64; i++)
         names[i] = "a resource of quite some name";
-    const tl_job greedy[] = {{"greedy", "", 0x7fffffffffffffff, (tl_bits)1 << 63, 0, {"only"}, NULL, NULL}};
+    const tl_job greedy[] = {{"greedy", "", 0x7fffffffffffffff, (tl_bits)1 << 63, 0, {"only"}, NULL}};
     struct tl_plan_input input = {0x7fffffffffffffff, (tl_bits)1 << 63, 0, (tl_bits)1 << 63, NULL, names};
     tl_plan plan;
     tl_plan_make(greedy, 1, &input, NULL, &plan);
