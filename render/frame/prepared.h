@@ -14,13 +14,17 @@
 typedef struct tl_prepared tl_prepared;
 
 struct tl_prepared_request {
-    const tl_environment *environment; /* borrowed while it is made */
-    tl_prepared *known; /* of the same environment, from tl_renderer_copy_prepared, and taken: what it has is
-                           not made again; NULL: nothing */
+    /* Borrowed until tl_prepared_make returns. */
+    const tl_environment *environment;
+    /* Of the same environment, from tl_renderer_copy_prepared: what it has is not made again. It is taken
+     * over and set to NULL. NULL: everything is made. */
+    tl_prepared *known;
+    /* Of the frames to come. */
     struct tl_render_settings settings;
-    int region_counts[TL_PREPARED_COUNTS_MAX]; /* light.regions of the frames to come; what is 0 is left out
-                                                */
-    uint32_t exponents;                        /* tl_prepared_exponents */
+    /* light.regions of the frames to come; 0: none. */
+    int region_counts[TL_PREPARED_COUNTS_MAX];
+    /* Exponents of the lobes to make: tl_prepared_exponents. 0: none. */
+    uint32_t exponents;
 };
 
 /* The exponents of the lobes that the frame's materials need, as bits of render/env/lobes.h. */

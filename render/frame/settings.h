@@ -1,4 +1,7 @@
-/* The options of a frame, table by table, as its jobs use them. */
+/* The options of a frame, table by table.
+ *
+ * Units and the meaning of 0 stand in each table's rows (options.c). Lifetime: plain values. Threads: any.
+ * Errors: none; values come from tl_options_set, which checks them. */
 #ifndef TOILE_RENDER_FRAME_SETTINGS_H
 #define TOILE_RENDER_FRAME_SETTINGS_H
 
@@ -10,16 +13,23 @@
 #include "render/reference/options.h"
 #include "render/reference/reference.h"
 
+/* A zeroed struct is no valid value: begin with tl_options_reset on its bindings. */
 struct tl_render_settings {
+    /* Light and shadows of the environment. */
     struct tl_light_params light;
+    /* Bumps of the fabric. */
     struct tl_detail_params detail;
+    /* Environment maps, read with light.method maps alone. */
     struct tl_maps_params maps;
-    struct tl_shading_params shading; /* under lamps */
+    /* Shading of surfaces by lamps. */
+    struct tl_shading_params shading;
+    /* Size and content of the image, and how it is shown. */
     struct tl_image_params image;
+    /* The ray-traced reference, read with light.method reference, and by light maps. */
     struct tl_reference_params reference;
 };
 
-/* The option tables of these settings, bound to them. */
+/* Binds the option tables to the members of `settings`, which the bindings point into and write through. */
 #define TL_RENDER_TABLES 6
 void tl_render_settings_bind(struct tl_render_settings *settings,
                              struct tl_binding bindings[TL_RENDER_TABLES]);
