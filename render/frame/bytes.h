@@ -13,7 +13,7 @@ struct tl_render_memory {
     size_t pems;
     /* Shadow maps of regions, suns and lamps. */
     size_t maps;
-    /* What rays need and find: samples, the BVH, visibility and bounced light at vertices. */
+    /* Rays, and their results: samples, the BVH, visibility and bounced light at vertices. */
     size_t rays;
     /* Layers behind open cloth. */
     size_t transparency;

@@ -44,7 +44,7 @@ struct tl_motion_input {
 
 struct tl_camera_input {
     struct tl_camera camera;
-    /* Of an image of this size, not shifted. */
+    /* The view of an image of this size, not shifted. */
     struct tl_view view;
 };
 
@@ -91,7 +91,7 @@ struct tl_shadow_input {
 
 struct tl_rays_input {
     struct tl_light_params options;
-    /* What tl_light_ray_params makes of the options: for the back-end of rays. */
+    /* Options of the back-end of rays: tl_light_ray_params of the table. */
     struct tl_ray_params params;
     /* Rounds at rest change the image. */
     bool averages;
@@ -111,7 +111,7 @@ struct tl_envmap_input {
     bool is_captured;
 };
 
-/* What moves in this frame. Not an input: no job runs because of it. */
+/* Movement in this frame. It is not an input: no job runs because of it. */
 struct tl_motion_state {
     /* As tl_frame.still: the image takes all its rounds at once. */
     bool still;

@@ -282,7 +282,7 @@
 
 /* ---- How lists become structs; not needed to read or to add a job ---- */
 
-/* What a kind means: EMIT(field, member, bits read, bits written); a field is CONST, MUTABLE or NONE. */
+/* The meaning of a kind: EMIT(field, member, bits read, bits written); a field is CONST, MUTABLE or NONE. */
 #define TL_IO_READS(EMIT, member)          EMIT(CONST, member, TL_BIT(TL_RESOURCE_OF_##member), 0)
 #define TL_IO_AFTER(EMIT, bit)             EMIT(NONE, bit, TL_BIT(bit), 0)
 #define TL_IO_SEES(EMIT, member)           EMIT(CONST, member, 0, 0)

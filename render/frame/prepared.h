@@ -16,10 +16,10 @@ typedef struct tl_prepared tl_prepared;
 struct tl_prepared_request {
     /* Borrowed until tl_prepared_make returns. */
     const tl_environment *environment;
-    /* Of the same environment, from tl_renderer_copy_prepared: what it has is not made again. It is taken
+    /* Results for the same environment (tl_renderer_copy_prepared), which are not made again. They are taken
      * over and set to NULL. NULL: everything is made. */
     tl_prepared *known;
-    /* Of the frames to come. */
+    /* The settings of the frames to come. */
     struct tl_render_settings settings;
     /* light.regions of the frames to come; 0: none. */
     int region_counts[TL_PREPARED_COUNTS_MAX];

@@ -141,7 +141,7 @@ struct tl_envmap_source {
     OWNED(light_cache, 0, struct tl_light_cache, no_bytes, tl_light_cache_release)                           \
     /* Prepared for the environment to come; NULL: nothing. */                                               \
     OWNED(prepared, 0, tl_prepared *, no_bytes, tl_prepared_destroy)                                         \
-    /* From environments of one size to the cube, and to the size of environment maps. */                    \
+    /* Resampling from environments of one size to the cube, and to the size of environment maps. */         \
     OWNED(resampling, 0, struct tl_resampling, no_bytes, tl_resampling_release)                              \
     OWNED(map_resampling, 0, struct tl_resampling, no_bytes, tl_resampling_release)                          \
     /* Values of the frame whose change is no reason to run. */                                              \
@@ -151,7 +151,7 @@ struct tl_envmap_source {
 /* clang-format on */
 
 struct tl_resources {
-#define TL_VALUE_MEMBER(member, bit, type)  type member;
+#define TL_VALUE_MEMBER(member, bit, type)       type member;
 #define TL_OWNED_MEMBER(member, bit, type, ...)  type member;
 #define TL_HANDLE_MEMBER(member, bit, type, ...) type *member;
     TL_INPUT_RESOURCES(TL_VALUE_MEMBER)
@@ -160,7 +160,7 @@ struct tl_resources {
     tl_bits valid; /* resources that hold what their inputs call for */
 };
 
-/* What a job gets of a member: a HANDLE itself, the address of any other. */
+/* Access to a member as a job gets it: a HANDLE itself, the address of any other. */
 /* NOLINTBEGIN(bugprone-macro-parentheses): a name in parentheses is not one */
 #define TL_ACCESS(member, bit, type, ...)                                                                    \
     static inline __typeof__(type) *tl_resource_##member(struct tl_resources *all)                           \
@@ -179,8 +179,7 @@ TL_OTHER_RESOURCES(TL_ACCESS, TL_ACCESS, TL_ACCESS_HANDLE)
 /* A member's bit: TL_RESOURCE_OF_cube is TL_MADE_CUBE. */
 enum {
 #define TL_RESOURCE_BIT(member, bit, ...) TL_RESOURCE_OF_##member = bit,
-    TL_INPUT_RESOURCES(TL_RESOURCE_BIT)
-    TL_MADE_RESOURCES(TL_RESOURCE_BIT, TL_RESOURCE_BIT, TL_RESOURCE_BIT)
+    TL_INPUT_RESOURCES(TL_RESOURCE_BIT) TL_MADE_RESOURCES(TL_RESOURCE_BIT, TL_RESOURCE_BIT, TL_RESOURCE_BIT)
 };
 /* NOLINTEND(bugprone-macro-parentheses) */
 

@@ -55,9 +55,9 @@ struct tl_plan_row {
     const char *name;
     enum tl_job_action action;
     int level;
-    /* Why, for people: "changed: camera". */
+    /* The reason, for people: "changed: camera". */
     char reason[120];
-    /* By the cost model; NaN while it is unknown, 0 for what does not run. */
+    /* Time by the cost model; NaN while it is unknown, 0 for what does not run. */
     double predicted_ms;
     /* Once carried out; 0 for what did not run. */
     double took_ms;
