@@ -205,8 +205,8 @@ static void the_rules_tell_good_from_bad(void **state)
         {"Knuth et al. 2014 have", true, false},
         {"[Blinn 1979]", true, false},
         {"[Nobody and Blinn, 1978]", true, false},
-        {"of [004] and", true, false},
-        {"of [000, 3.1] and", true, false},
+        {"of [" "004] and", true, false},
+        {"of [" "000, 3.1] and", true, false},
         {"The 2014 algorithm, and CIE 1976, VERTICES 2048, Rec. 2020", false, true},
         {"2000 vertices, [2000]", false, true},
     };
