@@ -12,14 +12,14 @@ shoot() {
     logged "screenshot saved: shots/toile-$(printf %04d $shots).png"
 }
 
-fast="--preset draft --set cloth.edge_m=0.05"
+fast="--preset draft --set cloth.edge_m=0.05 $cheap_light"
 $TOILE render $fast --size 64x32 --quiet -o light.exr # any picture is an environment
 
 open_display
 
 : >log
 scene() {
-    printf 'scene: {garment: %s, environment: light.exr, preset: draft}\ncloth: {edge_m: 0.05}\n' "$1" >new.yaml
+    printf 'scene: {garment: %s, environment: light.exr, preset: draft}\ncloth: {edge_m: 0.05}\nlight: {regions: 24, pem_size: 16, rounds: 4, bounce: off}\n' "$1" >new.yaml
     mv new.yaml scene.yaml
 }
 scene dress
