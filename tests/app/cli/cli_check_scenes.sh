@@ -14,13 +14,15 @@ sound() { # NAME ARGUMENTS...
 
 for scene in "$folder"/scenes/*.yaml; do
     scene=$(basename "$scene" .yaml)
-    sound "scene $scene" "$scene" --set light.pem_size=32 --frames 3 --every 3
+    solver=
+    case $scene in # each solver has a scene
+        skirt) solver="--set cloth.solver=settle" ;;
+        trousers) solver="--set cloth.solver=reference" ;;
+    esac
+    sound "scene $scene" "$scene" --set light.pem_size=32 --set detail.angles=8 $solver --frames 2 --every 2
 done
 # With their own sizes of cubes: the bounds of light are tightest there.
 for preset in "$folder"/presets/*.yaml; do
     preset=$(basename "$preset" .yaml)
     sound "preset $preset" gallery --preset "$preset" --frames 2 --every 2 --furnace
-done
-for solver in settle reference; do
-    sound "solver $solver" skirt --set light.pem_size=32 --set cloth.solver=$solver --frames 3 --every 3
 done
