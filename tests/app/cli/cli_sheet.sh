@@ -47,15 +47,14 @@ grep -q '1 cells drawn, 1 kept, 0 refused' log || fail "only the new one: $(cat 
 [ -s one.png ] && [ ! -e one.png.cells ] || fail "complete: $(ls)"
 
 # Stopped, it goes on.
-"$TOILE" sheet -o later $fast --fabrics satin,denim,wool --views front,back 2>log &
+"$TOILE" sheet -o later $fast --fabrics satin,denim --views front,back 2>log &
 job=$!
 for _ in $(seq 300); do [ -e later/manifest.json ] && break; sleep 0.1; done
 kill -INT $job
 wait $job
 status=$?
 done_before=$(ls later/*.png | wc -l)
-[ $status -eq 130 ] || [ "$done_before" -eq 6 ] || fail "stopped: exit $status: $(cat log)"
-"$TOILE" sheet -o later $fast --fabrics satin,denim,wool --views front,back 2>log || fail "goes on: $(cat log)"
-grep -q "$((6 - done_before)) cells drawn, $done_before kept" log || fail "goes on where it was ($done_before): $(cat log)"
-"$TOILE" sheet -o whole $fast --fabrics satin,denim,wool --views front,back --quiet || fail "in one go"
-for cell in whole/*.png; do cmp -s "$cell" "later/${cell#whole/}" || fail "$cell differs from an uninterrupted run"; done
+[ $status -eq 130 ] || [ "$done_before" -eq 4 ] || fail "stopped: exit $status: $(cat log)"
+"$TOILE" sheet -o later $fast --fabrics satin,denim --views front,back 2>log || fail "goes on: $(cat log)"
+grep -q "$((4 - done_before)) cells drawn, $done_before kept" log || fail "goes on where it was ($done_before): $(cat log)"
+for cell in before/*.png; do cmp -s "$cell" "later/${cell#before/}" || fail "$cell differs from an uninterrupted run"; done
