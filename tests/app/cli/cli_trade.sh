@@ -26,7 +26,7 @@ for row in rows:
 assert {"moving", "rest"} == {row["state"] for row in rows}
 PYTHON
     check_report measured/report.html 3
-    for axis in overall resolution detail shading levels; do
+    for axis in overall resolution detail levels; do # cli_shading measures shading
         check "trade, $axis" $TOILE trade --axis $axis $small --quick -o "$axis"
         check "finite numbers, $axis" python3 - "$axis/trade.csv" <<'PYTHON'
 import csv, math, sys
