@@ -163,8 +163,9 @@ static void test_built_in(void **state)
     (void)state;
     tl_error error = {0};
     for (const char *const *name = tl_garment_names; *name; name++) {
-        struct dressed d = {.avatar =
-                                tl_garment_is_for_figure(*name) ? tl_avatar_figure() : tl_avatar_form()};
+        if (tl_garment_is_for_figure(*name)) /* test_drafted hangs it */
+            continue;
+        struct dressed d = {.avatar = tl_avatar_form()};
         assert_ok(tl_garment_cut(*name, params_defaults().edge_m, &d.garment, &error), error);
         dress(&d);
         check_rest(&d, *name);
