@@ -10,7 +10,7 @@ mv first moved # nothing may remember where it was installed
 root=$room/moved/usr
 lib=$(dirname "$(find "$root/lib" -name 'libtoile.so.0')")
 toile=$root/bin/toile
-printf 'scene: {garment: sheet, avatar: ball, fabric: none, preset: draft}\ncloth: {settle_s: 0.2}\nlight: {regions: 24, pem_size: 16}\n' >scene.yaml
+printf 'scene: {garment: sheet, avatar: ball, fabric: none, preset: draft}\ncloth: {settle_s: 0.2}\nlight: {regions: 24, pem_size: 16, rounds: 4, bounce: off}\n' >scene.yaml
 
 # In a mount namespace of its own, in which sources and build are empty folders.
 hidden() {
