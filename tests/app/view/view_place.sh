@@ -13,7 +13,7 @@ awk 'BEGIN {
 
 open_display
 : >log
-$TOILE view --fresh --preset draft --garment sheet.obj --set light.regions=24 --set light.pem_size=16 \
+$TOILE view --fresh --preset draft --garment sheet.obj $cheap_light \
     --set camera.yaw_deg=0 --set camera.pitch_deg=0 --set camera.distance_m=3 --set camera.target=0,1,0 >out 2>log &
 viewer=$!
 logged "view: ready"
@@ -72,7 +72,7 @@ closed
 
 # 36 units are 36 cm, or 0.91 m in inches.
 awk '/^v / { print "v", 36 * $2, 36 * $3, 0; next } { print }' sheet.obj >doubt.obj
-ask() { $TOILE view --preset draft --garment doubt.obj --set light.regions=24 --set light.pem_size=16 >>out 2>log & viewer=$!; logged "view: ready"; }
+ask() { $TOILE view --preset draft --garment doubt.obj $cheap_light >>out 2>log & viewer=$!; logged "view: ready"; }
 : >log
 ask
 grep -q "view: asks how doubt.obj is to be read: --units in --up y so far" log || fail "nothing is asked"
