@@ -388,16 +388,14 @@ static void test_threads(void **state)
     open_scene(&drawn, WIDTH, HEIGHT);
     edit(&drawn, be_woven);
     const int threads = omp_get_max_threads();
-    tl_image images[3];
-    for (int i = 0; i < 3; i++) {
-        omp_set_num_threads(i + 1);
-        images[i] = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
-    }
+    omp_set_num_threads(1);
+    tl_image alone = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
+    omp_set_num_threads(3);
+    tl_image together = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
     omp_set_num_threads(threads);
-    for (int i = 1; i < 3; i++)
-        assert_memory_equal(images[i].texels, images[0].texels, 16 * (size_t)WIDTH * HEIGHT);
-    for (int i = 0; i < 3; i++)
-        tl_image_release(&images[i]);
+    assert_memory_equal(together.texels, alone.texels, 16 * (size_t)WIDTH * HEIGHT);
+    tl_image_release(&alone);
+    tl_image_release(&together);
     close_scene(&drawn);
 }
 
@@ -644,7 +642,6 @@ static void test_fewer_samples(void **state)
         edit(&drawn, editors[i]);
         tl_image full = draw(*state, &drawn, TL_RATIO_AT_VERTICES), mask = mask_of(*state, &drawn);
         check_scale(*state, &drawn, &full, &mask, 0.841f);
-        check_scale(*state, &drawn, &full, &mask, 0.595f);
         check_scale(*state, &drawn, &full, &mask, 0.5f);
         tl_image_release(&mask);
         tl_image_release(&full);
