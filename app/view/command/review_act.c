@@ -1,6 +1,7 @@
 #include "app/view/command/review_act.h"
 
 #include "app/scene/orbit.h"
+#include "app/view/review/review.h"
 #include "app/view/review/review_draw.h"
 #include "app/view/review/review_edit.h"
 #include "app/view/review/review_hand.h"
@@ -27,7 +28,7 @@
 void tl_act_play(struct tl_review *review, int argument)
 {
     (void)argument;
-    tl_review_set_playing(review, !review->playing);
+    tl_review_set_playing(review, !review->play.is_on);
 }
 
 void tl_act_step(struct tl_review *review, int argument)
@@ -56,7 +57,7 @@ void tl_act_reset(struct tl_review *review, int argument)
     tl_error error;
     if (!tl_session_reset(review->session, &error))
         tl_review_report_error(review, &error);
-    review->image_is_old = true;
+    review->due.image_is_old = true;
     tl_info("view: reset");
 }
 
@@ -79,9 +80,9 @@ void tl_act_pin(struct tl_review *review, int argument)
     tl_cloth *cloth = tl_session_cloth(review->session);
     if (!cloth) {
         tl_review_report(review, "the garment is not simulated: there is nothing to pin");
-    } else if (review->drag == TL_DRAG_CLOTH) {
+    } else if (review->input.drag == TL_DRAG_CLOTH) {
         tl_review_hand_release(review);
-        tl_cloth_pin(cloth, review->grab_vertex);
+        tl_cloth_pin(cloth, review->hand.vertex);
         tl_review_report(review, "pinned; P takes the pins out again");
     } else {
         size_t count = tl_cloth_unpin(cloth);
@@ -96,7 +97,7 @@ void tl_act_turn_environment(struct tl_review *review, int argument)
 {
     float *yaw_deg = &review->wanted.scene.environment_yaw_deg;
     *yaw_deg = tl_orbit_wrap_deg(*yaw_deg + (float)argument * ENVIRONMENT_STEP_DEG);
-    review->changed = true;
+    review->due.changed = true;
     tl_review_note_motion(review);
     tl_info("view: environment at %g degrees", (double)*yaw_deg);
 }
@@ -108,7 +109,7 @@ void tl_act_turn_camera(struct tl_review *review, int argument)
     float dy = argument == TL_ACT_UP ? -turn : argument == TL_ACT_DOWN ? turn : 0;
     tl_review_stop_moving(review);
     tl_orbit_turn(&review->wanted.camera, dx, dy);
-    review->changed = true;
+    review->due.changed = true;
     tl_review_note_motion(review);
 }
 
@@ -117,7 +118,7 @@ void tl_act_zoom(struct tl_review *review, int argument)
     tl_review_stop_moving(review);
     tl_review_fix_camera(review);
     tl_orbit_zoom(&review->wanted.camera, (float)argument, 0, 0);
-    review->changed = true;
+    review->due.changed = true;
     tl_review_note_motion(review);
 }
 
@@ -126,7 +127,7 @@ void tl_act_frame_all(struct tl_review *review, int argument)
     (void)argument;
     tl_review_stop_moving(review);
     review->wanted.camera.distance_m = 0;
-    review->changed = true;
+    review->due.changed = true;
 }
 
 void tl_act_budget(struct tl_review *review, int argument)
@@ -134,11 +135,12 @@ void tl_act_budget(struct tl_review *review, int argument)
     static const float ladder_ms[] = {16, 25, 33, 50, 75, 100, 150, 200, 400, 0}; /* 0: none */
     const int last = TL_COUNT(ladder_ms) - 1;
     int at = 0;
-    while (at < last && (review->params.budget_ms <= 0 || ladder_ms[at] < review->params.budget_ms))
+    while (at < last &&
+           (review->screen.params.budget_ms <= 0 || ladder_ms[at] < review->screen.params.budget_ms))
         at++;
     at += argument;
     at = at < 0 ? 0 : at > last ? last : at;
-    review->params.budget_ms = ladder_ms[at];
+    review->screen.params.budget_ms = ladder_ms[at];
     if (ladder_ms[at] > 0)
         tl_review_report(review, "budget: %g ms for a frame", (double)ladder_ms[at]);
     else
@@ -149,7 +151,7 @@ void tl_act_budget(struct tl_review *review, int argument)
 static char *free_name(const struct tl_review *review, const char *extension)
 {
     for (int number = 1;; number++) {
-        char *path = tl_format("%s/toile-%04d.%s", review->output_folder, number, extension);
+        char *path = tl_format("%s/toile-%04d.%s", review->keep.output_folder, number, extension);
         if (!tl_file_exists(path))
             return path;
         free(path);
@@ -186,7 +188,7 @@ void tl_act_screenshot(struct tl_review *review, int argument)
     tl_image image = {0};
     bool linear = argument != 0;
     char *path = free_name(review, linear ? "exr" : "png");
-    bool saved = tl_folder_make(review->output_folder, &error) && tl_review_draw_sharp(review, &error) &&
+    bool saved = tl_folder_make(review->keep.output_folder, &error) && tl_review_draw_sharp(review, &error) &&
                  (linear ? save_linear : save_shown)(review, path, &image, &error);
     if (saved)
         tl_review_report(review, "screenshot saved: %s", path);
@@ -223,12 +225,12 @@ void tl_act_place(struct tl_review *review, int argument)
 void tl_act_options(struct tl_review *review, int argument)
 {
     (void)argument;
-    if (!review->params.panel) {
-        review->params.panel = true;
-        review->changed = true;
+    if (!review->screen.params.panel) {
+        review->screen.params.panel = true;
+        review->due.changed = true;
     }
-    tl_panel_use_keys(review->panel, true);
-    review->redraws = 3;
+    tl_panel_use_keys(review->screen.panel, true);
+    review->due.redraws = 3;
     tl_review_report(review, "arrows choose, Enter or Space edits, Esc ends");
 }
 
@@ -238,15 +240,15 @@ void tl_act_back(struct tl_review *review, int argument)
     (void)argument;
     if (tl_review_place_cancel(review) || tl_review_cancel_question(review))
         return;
-    if (tl_panel_close(review->panel))
-        review->redraws = 3;
-    else if (tl_panel_wants_keys(review->panel))
-        tl_panel_use_keys(review->panel, false);
-    else if (review->help_shown)
-        review->help_shown = false;
+    if (tl_panel_close(review->screen.panel))
+        review->due.redraws = 3;
+    else if (tl_panel_wants_keys(review->screen.panel))
+        tl_panel_use_keys(review->screen.panel, false);
+    else if (review->input.help_shown)
+        review->input.help_shown = false;
     else if (tl_review_stop_loading(review) || tl_review_keep_reading(review) || tl_review_place_hide(review))
         return;
-    else if (review->message_is_error && review->message[0])
+    else if (review->screen.message.is_error && review->screen.message.text[0])
         tl_review_clear_message(review);
     else if (tl_review_moves_itself(review)) {
         tl_review_stop_moving(review);
@@ -254,7 +256,7 @@ void tl_act_back(struct tl_review *review, int argument)
     } else if (review->wipe.renderer)
         tl_review_compare(review);
     else
-        review->closing = true;
+        review->due.closing = true;
 }
 
 void tl_act_turntable(struct tl_review *review, int argument)
@@ -307,7 +309,7 @@ void tl_act_open(struct tl_review *review, int argument)
 {
     (void)argument;
     tl_error error;
-    if (!review->chooser && !(review->chooser = tl_file_chooser_open("toile: open", &error)))
+    if (!review->edit.chooser && !(review->edit.chooser = tl_file_chooser_open("toile: open", &error)))
         tl_review_report_error(review, &error);
 }
 
@@ -373,8 +375,9 @@ void tl_act_pattern(struct tl_review *review, int argument)
 void tl_act_read_out(struct tl_review *review, int argument)
 {
     (void)argument;
-    review->reads_out = !review->reads_out;
-    tl_review_report(review, review->reads_out ? "prints the values under the pointer" : "prints no values");
+    review->input.reads_out = !review->input.reads_out;
+    tl_review_report(review,
+                     review->input.reads_out ? "prints the values under the pointer" : "prints no values");
 }
 
 void tl_act_undo(struct tl_review *review, int argument)
@@ -392,14 +395,14 @@ void tl_act_redo(struct tl_review *review, int argument)
 void tl_act_panel(struct tl_review *review, int argument)
 {
     (void)argument;
-    review->params.panel = !review->params.panel;
-    review->changed = true; /* the view has another size */
+    review->screen.params.panel = !review->screen.params.panel;
+    review->due.changed = true; /* the view has another size */
 }
 
 void tl_act_help(struct tl_review *review, int argument)
 {
     (void)argument;
-    review->help_shown = !review->help_shown;
+    review->input.help_shown = !review->input.help_shown;
 }
 
 void tl_act_recent(struct tl_review *review, int argument)
@@ -411,5 +414,5 @@ void tl_act_recent(struct tl_review *review, int argument)
 void tl_act_quit(struct tl_review *review, int argument)
 {
     (void)argument;
-    review->closing = true;
+    review->due.closing = true;
 }

@@ -19,7 +19,7 @@ const char *const tl_review_section_names[TL_SECTION_COUNT] = {
 
 static bool is_playing(const struct tl_review *review)
 {
-    return review->playing;
+    return review->play.is_on;
 }
 
 static bool is_placing(const struct tl_review *review)

@@ -22,7 +22,7 @@ static void focus(struct tl_review *review, float x, float y)
         return;
     tl_review_fix_camera(review);
     tl_orbit_focus(&review->wanted.camera, point);
-    review->changed = true;
+    review->due.changed = true;
     tl_info("view: looks at vertex %u", (unsigned)vertex);
 }
 
@@ -31,19 +31,19 @@ static bool is_double_click(struct tl_review *review, const struct tl_window_eve
     const double pause_max_s = 0.35;
     const float distance_max = 5; /* pixels */
     double now_s = tl_clock_s();
-    bool is_second = now_s - review->pressed_s < pause_max_s &&
-                     fabsf(event->x - review->pressed_x) < distance_max &&
-                     fabsf(event->y - review->pressed_y) < distance_max;
-    review->pressed_s = is_second ? 0 : now_s;
-    review->pressed_x = event->x;
-    review->pressed_y = event->y;
+    bool is_second = now_s - review->input.pressed_s < pause_max_s &&
+                     fabsf(event->x - review->input.pressed_x) < distance_max &&
+                     fabsf(event->y - review->input.pressed_y) < distance_max;
+    review->input.pressed_s = is_second ? 0 : now_s;
+    review->input.pressed_x = event->x;
+    review->input.pressed_y = event->y;
     return is_second;
 }
 
 /* The line between two appearances can be caught within a few pixels. */
 static bool is_on_wipe(const struct tl_review *review, float x, int width)
 {
-    const float reach = 8 * tl_window_scale(review->window);
+    const float reach = 8 * tl_window_scale(review->screen.window);
     int column = tl_review_wipe_column(review, width);
     return column > 0 && fabsf(x - (float)column) < reach;
 }
@@ -57,34 +57,34 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    if (review->drag != TL_DRAG_NONE || event->x >= (float)width ||
-        tl_panel_wants_pointer(review->panel, event->x, event->y))
+    if (review->input.drag != TL_DRAG_NONE || event->x >= (float)width ||
+        tl_panel_wants_pointer(review->screen.panel, event->x, event->y))
         return;
-    review->drag_button = event->button;
-    review->pointer_x = event->x;
-    review->pointer_y = event->y;
+    review->input.button = event->button;
+    review->input.x = event->x;
+    review->input.y = event->y;
     tl_review_stop_moving(review);
     if (places(event->modifiers))
         tl_review_place_begin(review, event->x, event->y, event->button != GLFW_MOUSE_BUTTON_LEFT);
     else if (event->button != GLFW_MOUSE_BUTTON_LEFT)
-        review->drag = TL_DRAG_PAN;
+        review->input.drag = TL_DRAG_PAN;
     else if (tl_review_place_catch(review, event->x, event->y))
         return;
     else if (is_on_wipe(review, event->x, width))
-        review->drag = TL_DRAG_WIPE;
+        review->input.drag = TL_DRAG_WIPE;
     else if (event->modifiers & GLFW_MOD_CONTROL)
         tl_review_hand_begin(review, event->x, event->y);
     else if (event->modifiers & GLFW_MOD_SHIFT)
-        review->drag = TL_DRAG_LIGHT;
+        review->input.drag = TL_DRAG_LIGHT;
     else if (is_double_click(review, event))
         focus(review, event->x, event->y);
     else
-        review->drag = TL_DRAG_ORBIT;
+        review->input.drag = TL_DRAG_ORBIT;
 }
 
 static void on_release(struct tl_review *review, const struct tl_window_event *event)
 {
-    if (review->drag == TL_DRAG_NONE || event->button != review->drag_button)
+    if (review->input.drag == TL_DRAG_NONE || event->button != review->input.button)
         return;
     tl_review_place_end(review);
     tl_review_hand_release(review);
@@ -94,11 +94,11 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    const float right = event->x - review->pointer_x, down = event->y - review->pointer_y;
+    const float right = event->x - review->input.x, down = event->y - review->input.y;
     float dx = right / (float)height, dy = down / (float)height;
-    review->pointer_x = event->x;
-    review->pointer_y = event->y;
-    switch (review->drag) {
+    review->input.x = event->x;
+    review->input.y = event->y;
+    switch (review->input.drag) {
     case TL_DRAG_NONE:
         tl_review_place_hover(review, event->x, event->y);
         return;
@@ -117,7 +117,7 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
         tl_review_move_wipe(review, event->x / (float)width);
         return;
     case TL_DRAG_PLACE:
-        if (review->drag_button == GLFW_MOUSE_BUTTON_LEFT)
+        if (review->input.button == GLFW_MOUSE_BUTTON_LEFT)
             tl_review_place_drag(review, right, down, event->modifiers);
         else
             tl_review_place_turn(review, dx);
@@ -126,7 +126,7 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
         tl_review_hand_aim(review, event->x, event->y);
         return;
     }
-    review->changed = true;
+    review->due.changed = true;
     tl_review_note_motion(review);
 }
 
@@ -134,7 +134,7 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    if (event->x >= (float)width || tl_panel_wants_pointer(review->panel, event->x, event->y))
+    if (event->x >= (float)width || tl_panel_wants_pointer(review->screen.panel, event->x, event->y))
         return;
     tl_review_stop_moving(review);
     if (places(event->modifiers)) {
@@ -148,7 +148,7 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     float x = (event->x - 0.5f * (float)width) / (float)height;
     float y = (event->y - 0.5f * (float)height) / (float)height;
     tl_orbit_zoom(&review->wanted.camera, event->steps, x, y);
-    review->changed = true;
+    review->due.changed = true;
     tl_review_note_motion(review);
 }
 
@@ -167,15 +167,15 @@ static bool answer(struct tl_review *review, const struct tl_window_event *event
 
 static void on_key(struct tl_review *review, const struct tl_window_event *event)
 {
-    if (tl_panel_wants_keys(review->panel) && event->key != GLFW_KEY_ESCAPE)
+    if (tl_panel_wants_keys(review->screen.panel) && event->key != GLFW_KEY_ESCAPE)
         return;
     if (answer(review, event))
         return;
     int modifiers = event->modifiers & (GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER),
         argument;
-    if (review->drag == TL_DRAG_CLOTH) /* Ctrl is held in order to pull */
+    if (review->input.drag == TL_DRAG_CLOTH) /* Ctrl is held in order to pull */
         modifiers &= ~GLFW_MOD_CONTROL;
-    if (review->drag == TL_DRAG_PLACE) /* they choose how fine it is */
+    if (review->input.drag == TL_DRAG_PLACE) /* they choose how fine it is */
         modifiers &= ~(GLFW_MOD_CONTROL | GLFW_MOD_SHIFT);
     const struct tl_review_command *command = tl_review_command_of_key(event->key, modifiers, &argument);
     if (command && (!event->repeated || command->repeats))
@@ -209,11 +209,11 @@ static void handle(struct tl_review *review, const struct tl_window_event *event
     case TL_WINDOW_REDRAW: {
         int width, height;
         tl_review_size(review, &width, &height);
-        review->changed |= width != review->good.image.width || height != review->good.image.height;
+        review->due.changed |= width != review->good.image.width || height != review->good.image.height;
         break;
     }
     case TL_WINDOW_CLOSE:
-        review->closing = true;
+        review->due.closing = true;
         break;
     }
 }
@@ -222,10 +222,10 @@ void tl_review_handle_events(struct tl_review *review)
 {
     const int panel_frames = 3; /* ImGui reacts to an event within this many frames */
     struct tl_window_event event;
-    while (tl_window_next(review->window, &event)) {
-        tl_panel_take(review->panel, &event);
+    while (tl_window_next(review->screen.window, &event)) {
+        tl_panel_take(review->screen.panel, &event);
         handle(review, &event);
         tl_window_event_release(&event);
-        review->redraws = panel_frames;
+        review->due.redraws = panel_frames;
     }
 }

@@ -54,12 +54,13 @@ static const struct tl_cloth_report *cloth_report(struct tl_review *review)
     const double interval_s = 0.5;
     int frame = tl_session_frame_number(review->session);
     double now_s = tl_clock_s();
-    if (frame != review->reported_frame && (!review->playing || now_s - review->reported_s > interval_s)) {
-        review->report = tl_session_report(review->session);
-        review->reported_frame = frame;
-        review->reported_s = now_s;
+    if (frame != review->input.reported_frame &&
+        (!review->play.is_on || now_s - review->input.reported_s > interval_s)) {
+        review->input.report = tl_session_report(review->session);
+        review->input.reported_frame = frame;
+        review->input.reported_s = now_s;
     }
-    return &review->report;
+    return &review->input.report;
 }
 
 static void count_triangles(struct tl_review *review, size_t *triangles, size_t *vertices)
@@ -78,11 +79,11 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     int width, height;
     tl_review_size(review, &width, &height);
     add_line(lines, &count, "frame", "%d, %.0f ms", tl_session_frame_number(review->session),
-             review->times.frame);
-    add_line(lines, &count, "cloth", "%.1f ms", review->times.cloth);
-    add_line(lines, &count, "drawing", "%.0f ms", review->times.draw);
+             review->image.times.frame);
+    add_line(lines, &count, "cloth", "%.1f ms", review->image.times.cloth);
+    add_line(lines, &count, "drawing", "%.0f ms", review->image.times.draw);
     int samples_x, samples_y;
-    const struct tl_settings drawn = tl_quality_apply(&review->quality_choice.levels, &review->good);
+    const struct tl_settings drawn = tl_quality_apply(&review->image.choice.levels, &review->good);
     tl_image_samples(&drawn.image, &samples_x, &samples_y);
     add_line(lines, &count, "image", "%d x %d of %d x %d samples", width, height, samples_x, samples_y);
     count_triangles(review, &triangles, &vertices);
@@ -102,8 +103,8 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
              megabytes(memory.total), megabytes(memory.pems), megabytes(memory.maps),
              megabytes(memory.targets));
     add_line(lines, &count, "memory", "%.0f MB", megabytes(tl_review_resident_bytes()));
-    if (tl_gpu_message_count(review->gpu) > 0)
-        add_line(lines, &count, "GL messages", "%zu, see the log", tl_gpu_message_count(review->gpu));
+    if (tl_gpu_message_count(review->screen.gpu) > 0)
+        add_line(lines, &count, "GL messages", "%zu, see the log", tl_gpu_message_count(review->screen.gpu));
     return count;
 }
 
@@ -138,12 +139,13 @@ static void set_question(const struct tl_review *review, struct question *questi
         return;
     for (size_t i = 0; i < question->answer_count; i++)
         question->answers[i] = (struct tl_panel_button){answers[i].label, answers[i].help};
-    const char *slash = review->dropped ? strrchr(review->dropped, '/') : NULL;
-    if (review->recent.offered > 0)
+    const char *slash = review->edit.dropped ? strrchr(review->edit.dropped, '/') : NULL;
+    if (review->edit.offered > 0)
         snprintf(question->text, sizeof question->text, "Open again (Esc: none)");
     else
-        snprintf(question->text, sizeof question->text, "%s: use it as", slash ? slash + 1 : review->dropped);
-    input->answers_below = review->recent.offered > 0;
+        snprintf(question->text, sizeof question->text, "%s: use it as",
+                 slash ? slash + 1 : review->edit.dropped);
+    input->answers_below = review->edit.offered > 0;
     input->question = question->text;
     input->answers = question->answers;
     input->answer_count = question->answer_count;
@@ -175,8 +177,8 @@ static void describe_status(const struct tl_review *review, char *status, size_t
     char *end = status;
     *end = '\0';
     bool undraped = state == TL_GARMENT_AUTHORED || state == TL_GARMENT_SEWN;
-    bool drapes = review->loader &&
-                  (review->drapes_again || (undraped && review->wanted.scene.drape == TL_DRAPE_SETTLE));
+    bool drapes = review->load.loader &&
+                  (review->load.drapes_again || (undraped && review->wanted.scene.drape == TL_DRAPE_SETTLE));
     if (drapes)
         end = append(end, stop, "draping  ");
     else if (state != TL_GARMENT_IS_NOT_CLOTH)
@@ -184,9 +186,9 @@ static void describe_status(const struct tl_review *review, char *status, size_t
                      !undraped         ? ""
                      : is_worn(review) ? " (D drapes it)"
                                        : " on nobody (drop a body, D drapes it)");
-    if (review->playing && review->play_speed < 0.95)
+    if (review->play.is_on && review->play.speed < 0.95)
         end =
-            append(end, stop, "plays at %.1f x: this machine is slower than the cloth  ", review->play_speed);
+            append(end, stop, "plays at %.1f x: this machine is slower than the cloth  ", review->play.speed);
     if (path->records)
         end = append(end, stop, "recording: %.1f s (Shift+K ends)  ", tl_clock_s() - path->began_s);
     if (path->plays)
@@ -196,7 +198,7 @@ static void describe_status(const struct tl_review *review, char *status, size_t
         end = append(end, stop, "turntable (T ends)  ");
     if (review->motion.environment)
         end = append(end, stop, "environment turns (Shift+T ends)  ");
-    if (tl_panel_wants_keys(review->panel))
+    if (tl_panel_wants_keys(review->screen.panel))
         append(end, stop, "keys go to the panel (Esc ends)");
 }
 
@@ -205,13 +207,13 @@ static void describe_status(const struct tl_review *review, char *status, size_t
 static void apply_result(struct tl_review *review, const struct tl_panel_result *result,
                          const struct tl_settings *before, const struct tl_review_buttons *buttons)
 {
-    review->editing = result->editing;
-    if (result->behind && review->redraws == 0)
-        review->redraws = 1;
-    review->listed = result->listed;
-    if (review->panel_has_keys != tl_panel_wants_keys(review->panel))
-        tl_debug("view: keys go to the %s", review->panel_has_keys ? "view" : "panel");
-    review->panel_has_keys = tl_panel_wants_keys(review->panel);
+    review->input.editing = result->editing;
+    if (result->behind && review->due.redraws == 0)
+        review->due.redraws = 1;
+    review->input.listed = result->listed;
+    if (review->input.panel_has_keys != tl_panel_wants_keys(review->screen.panel))
+        tl_debug("view: keys go to the %s", review->input.panel_has_keys ? "view" : "panel");
+    review->input.panel_has_keys = tl_panel_wants_keys(review->screen.panel);
     if (result->note.error.code != TL_OK)
         tl_review_report_error(review, &result->note.error);
     else if (result->note.remark[0])
@@ -220,7 +222,7 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
         tl_review_apply_names(review);
         tl_review_add_environment(review, review->wanted.scene.environment);
         tl_review_note_motion(review);
-        review->changed = true;
+        review->due.changed = true;
     }
     if (result->frame >= 0)
         tl_review_go_to_frame(review, result->frame);
@@ -235,7 +237,7 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
 /* Percent of the settings' samples that are drawn at the present levels. */
 static double share_of_samples(const struct tl_review *review)
 {
-    const struct tl_settings drawn = tl_quality_apply(&review->quality_choice.levels, &review->good);
+    const struct tl_settings drawn = tl_quality_apply(&review->image.choice.levels, &review->good);
     int full_x, full_y, x, y;
     tl_image_samples(&review->good.image, &full_x, &full_y);
     tl_image_samples(&drawn.image, &x, &y);
@@ -244,16 +246,16 @@ static double share_of_samples(const struct tl_review *review)
 
 static struct tl_panel_strip strip_of(const struct tl_review *review, float *times, char *label, size_t size)
 {
-    const struct tl_frame_times *all = &review->frame_times;
-    float budget_ms = review->params.budget_ms;
+    const struct tl_frame_times *all = &review->image.frame_times;
+    float budget_ms = review->screen.params.budget_ms;
     for (size_t i = 0; i < all->count; i++)
         times[i] = tl_frame_times_at(all, i);
-    const struct tl_quality *levels = &review->quality_choice.levels;
+    const struct tl_quality *levels = &review->image.choice.levels;
     char *end = label;
     const char *stop = label + size;
     bool has_frames = all->count > 0;
     if (has_frames)
-        end = append(end, stop, "%.0f ms", review->times.frame);
+        end = append(end, stop, "%.0f ms", review->image.times.frame);
     if (budget_ms > 0)
         end = append(end, stop, "%s%.0f ms", has_frames ? " of " : "budget ", (double)budget_ms);
     else
@@ -299,7 +301,7 @@ void tl_review_build_panel(struct tl_review *review)
     };
     struct tl_binding bindings[TL_SETTINGS_TABLES + 1];
     tl_settings_bind(&review->wanted, bindings);
-    bindings[TL_SETTINGS_TABLES] = (struct tl_binding){&tl_window_options, &review->params};
+    bindings[TL_SETTINGS_TABLES] = (struct tl_binding){&tl_window_options, &review->screen.params};
     int width, height;
     tl_review_size(review, &width, &height);
     struct question question;
@@ -318,9 +320,9 @@ void tl_review_build_panel(struct tl_review *review)
         tl_review_wipe_labels(review, left, right, sizeof left);
     describe_status(review, status, sizeof status);
     struct tl_panel_input input = {
-        .title = review->title,
-        .message = review->message,
-        .message_is_error = review->message_is_error,
+        .title = review->image.title,
+        .message = review->screen.message.text,
+        .message_is_error = review->screen.message.is_error,
         .status = status,
         .notice = review->reading.notice,
         .choices = choices,
@@ -345,19 +347,19 @@ void tl_review_build_panel(struct tl_review *review)
         .bindings = bindings,
         .binding_count = TL_COUNT(bindings),
         .help = help,
-        .help_count = review->help_shown ? tl_review_help(help, HELP_MAX) : 0,
+        .help_count = review->input.help_shown ? tl_review_help(help, HELP_MAX) : 0,
         .x = width,
         .width = tl_review_panel_width(review),
         .height = height,
     };
-    input.list.row = review->listed;
-    input.list.images = tl_thumbnails_images(review->thumbnails, &input.list.count);
+    input.list.row = review->input.listed;
+    input.list.images = tl_thumbnails_images(review->screen.thumbnails, &input.list.count);
     if (!input.list.images)
         input.list.row = NULL;
     set_question(review, &question, &input);
     struct tl_settings before = review->wanted;
-    bool had_panel = review->params.panel;
-    struct tl_panel_result result = tl_panel_build(review->panel, &input);
+    bool had_panel = review->screen.params.panel;
+    struct tl_panel_result result = tl_panel_build(review->screen.panel, &input);
     apply_result(review, &result, &before, &buttons);
-    review->changed |= review->params.panel != had_panel; /* the view has another size */
+    review->due.changed |= review->screen.params.panel != had_panel; /* the view has another size */
 }

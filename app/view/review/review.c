@@ -11,30 +11,30 @@ int tl_review_panel_width(const struct tl_review *review)
 {
     const float usual = 380; /* at scale 1 */
     int width, height;
-    tl_window_size(review->window, &width, &height);
-    int panel = (int)(usual * tl_window_scale(review->window));
-    return !review->params.panel ? 0 : panel < width / 2 ? panel : width / 2;
+    tl_window_size(review->screen.window, &width, &height);
+    int panel = (int)(usual * tl_window_scale(review->screen.window));
+    return !review->screen.params.panel ? 0 : panel < width / 2 ? panel : width / 2;
 }
 
 void tl_review_size(const struct tl_review *review, int *width, int *height)
 {
-    tl_window_size(review->window, width, height);
+    tl_window_size(review->screen.window, width, height);
     *width -= tl_review_panel_width(review);
 }
 
 static void set_message(struct tl_review *review, bool is_error, const char *text)
 {
-    snprintf(review->message, sizeof review->message, "%s", text);
-    review->message_is_error = is_error;
-    review->message_s = tl_clock_s();
-    review->redraws = review->redraws > 1 ? review->redraws : 1;
+    snprintf(review->screen.message.text, sizeof review->screen.message.text, "%s", text);
+    review->screen.message.is_error = is_error;
+    review->screen.message.shown_s = tl_clock_s();
+    review->due.redraws = review->due.redraws > 1 ? review->due.redraws : 1;
 }
 
 void tl_review_report(struct tl_review *review, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    char text[sizeof review->message];
+    char text[sizeof review->screen.message.text];
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     set_message(review, false, text);
@@ -45,7 +45,7 @@ void tl_review_report_error(struct tl_review *review, const tl_error *error)
 {
     set_message(review, true, error->message);
     tl_warn("view: %s", error->message);
-    review->playing = false;
+    review->play.is_on = false;
 }
 
 void tl_review_clear_message(struct tl_review *review)
@@ -55,21 +55,21 @@ void tl_review_clear_message(struct tl_review *review)
 
 void tl_review_expire_message(struct tl_review *review)
 {
-    bool is_due = tl_clock_s() - review->message_s > MESSAGE_S;
-    if (review->message[0] && !review->message_is_error && is_due)
+    bool is_due = tl_clock_s() - review->screen.message.shown_s > MESSAGE_S;
+    if (review->screen.message.text[0] && !review->screen.message.is_error && is_due)
         tl_review_clear_message(review);
 }
 
 void tl_review_note_motion(struct tl_review *review)
 {
-    review->moved_s = tl_clock_s();
+    review->due.moved_s = tl_clock_s();
 }
 
 bool tl_review_is_moving(const struct tl_review *review)
 {
     const double rest_s = 0.25;
-    return review->playing || tl_review_moves_itself(review) || review->drag != TL_DRAG_NONE ||
-           tl_clock_s() - review->moved_s < rest_s;
+    return review->play.is_on || tl_review_moves_itself(review) || review->input.drag != TL_DRAG_NONE ||
+           tl_clock_s() - review->due.moved_s < rest_s;
 }
 
 bool tl_review_moves_itself(const struct tl_review *review)
@@ -80,8 +80,8 @@ bool tl_review_moves_itself(const struct tl_review *review)
 
 void tl_review_set_playing(struct tl_review *review, bool plays)
 {
-    review->playing = plays;
-    review->next_step_s = tl_clock_s();
-    review->play_speed = 1;
+    review->play.is_on = plays;
+    review->play.next_step_s = tl_clock_s();
+    review->play.speed = 1;
     tl_info("view: %s at frame %d", plays ? "plays" : "paused", tl_session_frame_number(review->session));
 }

@@ -1,5 +1,6 @@
 #include "app/view/review/review_draw.h"
 
+#include "app/view/review/review.h"
 #include "app/view/review/review_hand.h"
 #include "app/view/review/review_keep.h"
 #include "app/view/review/review_load.h"
@@ -34,10 +35,10 @@ static void update_title(struct tl_review *review)
     char *title = tl_format(
         "toile \u2014 %s, %s%s%s", base_name(is_body ? tl_settings_avatar(scene) : scene->garment),
         is_plain ? "" : base_name(scene->fabric), is_plain ? "" : ", ", base_name(scene->environment));
-    if (!review->title || strcmp(title, review->title) != 0)
-        tl_window_set_title(review->window, title);
-    free(review->title);
-    review->title = title;
+    if (!review->image.title || strcmp(title, review->image.title) != 0)
+        tl_window_set_title(review->screen.window, title);
+    free(review->image.title);
+    review->image.title = title;
 }
 
 static bool show_image(struct tl_review *review, int width, int height, tl_error *error)
@@ -49,7 +50,7 @@ static bool show_image(struct tl_review *review, int width, int height, tl_error
 
 void tl_review_lap(struct tl_review *review, const char *part)
 {
-    struct tl_review_times *times = &review->times;
+    struct tl_review_times *times = &review->image.times;
     double now_s = tl_clock_s(), ms = 1e3 * (now_s - times->lap_s);
     times->lap_s = now_s;
     if (ms <= times->longest_ms)
@@ -65,11 +66,11 @@ static void log_slow_image(const struct tl_review *review, double image_ms)
     if (image_ms < slow_ms)
         return;
     const tl_plan *plan = tl_renderer_last_plan(review->renderer);
-    tl_debug("view: slow image %d, %s: %.0f ms, of which cloth %.0f ms%s", review->drawn_count,
-             review->is_budgeted ? "in motion" : "at rest", image_ms, review->times.cloth,
+    tl_debug("view: slow image %d, %s: %.0f ms, of which cloth %.0f ms%s", review->image.drawn_count,
+             review->image.is_budgeted ? "in motion" : "at rest", image_ms, review->image.times.cloth,
              review->wipe.renderer ? ", compared" : "");
-    if (review->times.longest_ms > 0.1 * image_ms)
-        tl_debug("view:   %s %.0f ms", review->times.longest, review->times.longest_ms);
+    if (review->image.times.longest_ms > 0.1 * image_ms)
+        tl_debug("view:   %s %.0f ms", review->image.times.longest, review->image.times.longest_ms);
     for (int i = 0; i < plan->count; i++)
         if (plan->rows[i].took_ms > 0.1 * image_ms)
             tl_debug("view:   %s %.0f ms: %s", plan->rows[i].name, plan->rows[i].took_ms,
@@ -80,21 +81,22 @@ static void log_slow_image(const struct tl_review *review, double image_ms)
  * whatever they take, so that only images in motion teach the governor. */
 static void record_time(struct tl_review *review)
 {
-    if (!review->is_new)
+    if (!review->image.is_new)
         return;
-    double frame_ms = 1e3 * (tl_clock_s() - review->times.began_s);
-    review->is_new = false;
+    double frame_ms = 1e3 * (tl_clock_s() - review->image.times.began_s);
+    review->image.is_new = false;
     log_slow_image(review, frame_ms);
-    if (!review->is_budgeted) {
-        tl_frame_times_add(&review->rest_times, frame_ms);
+    if (!review->image.is_budgeted) {
+        tl_frame_times_add(&review->image.rest_times, frame_ms);
         return;
     }
-    review->times.frame = frame_ms;
-    tl_frame_times_add(&review->frame_times, frame_ms);
+    review->image.times.frame = frame_ms;
+    tl_frame_times_add(&review->image.frame_times, frame_ms);
     if (!review->wipe.renderer) /* whose drawing is not a part of frame_ms */
-        tl_frame_times_add(&review->window_times, frame_ms - review->times.cloth - review->times.draw);
-    tl_quality_governor_learn(review->governor, tl_renderer_last_plan(review->renderer), review->times.cloth,
-                              frame_ms);
+        tl_frame_times_add(&review->image.window_times,
+                           frame_ms - review->image.times.cloth - review->image.times.draw);
+    tl_quality_governor_learn(review->image.governor, tl_renderer_last_plan(review->renderer),
+                              review->image.times.cloth, frame_ms);
 }
 
 bool tl_review_present(struct tl_review *review, tl_error *error)
@@ -103,14 +105,14 @@ bool tl_review_present(struct tl_review *review, tl_error *error)
     tl_review_size(review, &width, &height);
     if (!show_image(review, width, height, error))
         return false;
-    review->times.lap_s = tl_clock_s();
-    tl_panel_draw(review->panel);
+    review->image.times.lap_s = tl_clock_s();
+    tl_panel_draw(review->screen.panel);
     glFinish(); /* GL has only taken the commands: what it draws is part of the frame */
     tl_review_lap(review, "drawing the panel");
     record_time(review);
-    tl_window_show(review->window);
-    review->shown_count++;
-    review->shown_s = tl_clock_s();
+    tl_window_show(review->screen.window);
+    review->image.shown_count++;
+    review->image.shown_s = tl_clock_s();
     return true;
 }
 
@@ -131,7 +133,7 @@ static void log_changes(const struct tl_scene_params *old, const struct tl_scene
 /* A machine that is too slow plays more slowly; it skips no frame. */
 static bool is_step_due(const struct tl_review *review)
 {
-    return review->playing && tl_clock_s() >= review->next_step_s;
+    return review->play.is_on && tl_clock_s() >= review->play.next_step_s;
 }
 
 /* Playback keeps its rate; cloth is simulated frame by frame. */
@@ -141,27 +143,27 @@ static bool advance(struct tl_review *review, double late_s, tl_error *error)
     if (last == 0)
         return tl_session_advance(review->session, error);
     double frame_s = 1 / review->good.cloth.frame_rate;
-    if (frame >= last && !review->params.loop) {
+    if (frame >= last && !review->screen.params.loop) {
         tl_review_set_playing(review, false);
         return true;
     }
-    return tl_session_go_to(review->session, tl_play_next(frame, last, frame_s, late_s, review->params.loop),
-                            error);
+    return tl_session_go_to(review->session,
+                            tl_play_next(frame, last, frame_s, late_s, review->screen.params.loop), error);
 }
 
 static void step(struct tl_review *review)
 {
     double now_s = tl_clock_s(), frame_s = 1 / review->good.cloth.frame_rate;
-    double late_s = now_s - review->next_step_s;
+    double late_s = now_s - review->play.next_step_s;
     bool plays_back = tl_session_last_frame(review->session) > 0;
     tl_error error;
     tl_review_hand_step(review);
     if (!advance(review, late_s, &error))
         tl_review_report_error(review, &error);
-    review->play_speed = plays_back ? 1 : tl_play_speed(review->play_speed, frame_s, late_s);
-    review->next_step_s += frame_s * (plays_back ? 1 + floor(fmax(late_s, 0) / frame_s) : 1);
-    review->next_step_s = fmax(review->next_step_s, plays_back ? 0 : now_s);
-    review->times.cloth = 1e3 * (tl_clock_s() - now_s);
+    review->play.speed = plays_back ? 1 : tl_play_speed(review->play.speed, frame_s, late_s);
+    review->play.next_step_s += frame_s * (plays_back ? 1 + floor(fmax(late_s, 0) / frame_s) : 1);
+    review->play.next_step_s = fmax(review->play.next_step_s, plays_back ? 0 : now_s);
+    review->image.times.cloth = 1e3 * (tl_clock_s() - now_s);
 }
 
 static bool draw_b(struct tl_review *review, const struct tl_settings *settings, bool smooth, tl_error *error)
@@ -177,11 +179,11 @@ static bool draw_b(struct tl_review *review, const struct tl_settings *settings,
 /* Both appearances share the budget. */
 static void choose_levels(struct tl_review *review, const struct tl_settings *settings)
 {
-    double budget_ms = (double)review->params.budget_ms;
-    tl_quality_governor_set_budget(review->governor, review->wipe.renderer ? budget_ms / 2 : budget_ms);
+    double budget_ms = (double)review->screen.params.budget_ms;
+    tl_quality_governor_set_budget(review->image.governor, review->wipe.renderer ? budget_ms / 2 : budget_ms);
     const tl_frame coming = tl_session_frame(review->session);
-    review->quality_choice =
-        tl_quality_governor_choose(review->governor, review->renderer, &coming, settings);
+    review->image.choice =
+        tl_quality_governor_choose(review->image.governor, review->renderer, &coming, settings);
 }
 
 /* The levels of an image at rest, and the samples that it needs so that edges have no steps: more a pixel
@@ -190,7 +192,7 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
  * again. */
 static void choose_rest(struct tl_review *review, struct tl_settings *settings, bool goes_on)
 {
-    struct tl_review_rest *rest = &review->rest;
+    struct tl_review_rest *rest = &review->image.rest;
     const int requested = settings->image.supersample;
     const tl_frame coming = tl_session_frame(review->session);
     if (!goes_on) {
@@ -205,7 +207,7 @@ static void choose_rest(struct tl_review *review, struct tl_settings *settings, 
         rest->levels = chosen.levels;
     }
     settings->image.supersample = rest->samples;
-    review->quality_choice.levels = rest->levels;
+    review->image.choice.levels = rest->levels;
 }
 
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
@@ -213,11 +215,11 @@ static void choose_rest(struct tl_review *review, struct tl_settings *settings, 
 static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum image_use use,
                        tl_error *error)
 {
-    struct tl_quality *levels = &review->quality_choice.levels;
+    struct tl_quality *levels = &review->image.choice.levels;
     struct tl_settings smooth = *settings;
     bool is_budgeted = use == IMAGE_IN_MOTION;
-    bool goes_on = review->is_resting && !review->changed && !review->image_is_old;
-    review->times.lap_s = tl_clock_s();
+    bool goes_on = review->image.is_resting && !review->due.changed && !review->due.image_is_old;
+    review->image.times.lap_s = tl_clock_s();
     if (!is_budgeted)
         *levels = (struct tl_quality){{0}};
     struct tl_settings b = tl_quality_apply(
@@ -237,35 +239,36 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
     tl_review_lap(review, "settings and levels");
     if (is_step_due(review))
         step(review);
-    const bool is_shifted = use == IMAGE_AT_REST && review->rest.is_shifted;
+    const bool is_shifted = use == IMAGE_AT_REST && review->image.rest.is_shifted;
     double started_s = tl_clock_s();
     if (review->wipe.renderer) {
         const struct tl_settings other = tl_review_settings_a(review, settings),
                                  a = tl_quality_apply(levels, &other);
         if (!tl_review_draw_a(review, &a, is_shifted, error))
             return false;
-        review->times.began_s += tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
+        review->image.times.began_s +=
+            tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
     }
     if (!draw_b(review, &b, is_shifted, error))
         return false;
-    review->times.draw = 1e3 * (tl_clock_s() - started_s);
-    review->drawn_count++;
-    review->is_new = true;
-    review->is_budgeted = is_budgeted;
-    review->is_resting = use == IMAGE_AT_REST;
-    review->is_exact = use == IMAGE_SAVED;
-    tl_debug("view: image %d, frame %d, %.1f ms", review->drawn_count,
-             tl_session_frame_number(review->session), review->times.draw);
+    review->image.times.draw = 1e3 * (tl_clock_s() - started_s);
+    review->image.drawn_count++;
+    review->image.is_new = true;
+    review->image.is_budgeted = is_budgeted;
+    review->image.is_resting = use == IMAGE_AT_REST;
+    review->image.is_exact = use == IMAGE_SAVED;
+    tl_debug("view: image %d, frame %d, %.1f ms", review->image.drawn_count,
+             tl_session_frame_number(review->session), review->image.times.draw);
     return true;
 }
 
 static void accept_settings(struct tl_review *review, const struct tl_settings *drawn)
 {
-    if (review->title && tl_settings_equal(&review->good, drawn))
+    if (review->image.title && tl_settings_equal(&review->good, drawn))
         return;
     log_changes(&review->good.scene, &drawn->scene);
     review->good = *drawn;
-    if (review->message_is_error)
+    if (review->screen.message.is_error)
         tl_review_clear_message(review);
     update_title(review);
     tl_review_load_views(review);
@@ -275,7 +278,8 @@ static void accept_settings(struct tl_review *review, const struct tl_settings *
 static bool redraw(struct tl_review *review, enum image_use use, tl_error *error)
 {
     int width, height;
-    bool is_another = review->changed || review->image_is_old; /* new content, rather than a refinement */
+    bool is_another =
+        review->due.changed || review->due.image_is_old; /* new content, rather than a refinement */
     tl_review_size(review, &width, &height);
     review->wanted.image.width = width;
     review->wanted.image.height = height;
@@ -293,17 +297,17 @@ static bool redraw(struct tl_review *review, enum image_use use, tl_error *error
     } else {
         accept_settings(review, &followed);
     }
-    review->changed = review->image_is_old = false;
+    review->due.changed = review->due.image_is_old = false;
     int redraws_min = use == IMAGE_IN_MOTION || !is_another
                           ? 1
                           : 2; /* ImGui needs a second frame to find the size of new texts */
-    review->redraws = review->redraws > redraws_min ? review->redraws : redraws_min;
+    review->due.redraws = review->due.redraws > redraws_min ? review->due.redraws : redraws_min;
     return true;
 }
 
 bool tl_review_is_sharp(const struct tl_review *review)
 {
-    return review->drawn_count > 0 && !review->is_budgeted;
+    return review->image.drawn_count > 0 && !review->image.is_budgeted;
 }
 
 bool tl_review_draw_first(struct tl_review *review, tl_error *error)
@@ -313,7 +317,7 @@ bool tl_review_draw_first(struct tl_review *review, tl_error *error)
 
 bool tl_review_draw_sharp(struct tl_review *review, tl_error *error)
 {
-    bool is_done = review->is_exact && !review->changed && !review->image_is_old;
+    bool is_done = review->image.is_exact && !review->due.changed && !review->due.image_is_old;
     return is_done || redraw(review, IMAGE_SAVED, error);
 }
 
@@ -327,25 +331,25 @@ bool tl_review_is_at_rest(const struct tl_review *review)
 static void prepare_motion(struct tl_review *review)
 {
     const tl_frame present = tl_session_frame(review->session);
-    tl_quality_governor_prepare(review->governor, review->renderer, &present, &review->good);
+    tl_quality_governor_prepare(review->image.governor, review->renderer, &present, &review->good);
 }
 
 bool tl_review_update_image(struct tl_review *review, tl_error *error)
 {
-    bool waits =
-        review->changed && review->editing && tl_settings_differ_slowly(&review->good, &review->wanted);
+    bool waits = review->due.changed && review->input.editing &&
+                 tl_settings_differ_slowly(&review->good, &review->wanted);
     /* At rest the renderer averages jittered rounds, which may wait until input and the panel are handled. */
-    bool is_refined = tl_review_is_at_rest(review) || review->redraws > 0;
+    bool is_refined = tl_review_is_at_rest(review) || review->due.redraws > 0;
     bool improves = !tl_review_is_moving(review) && !(is_refined && tl_review_is_sharp(review));
-    bool is_due = review->changed || review->image_is_old || is_step_due(review) || improves;
-    if (!is_due && !improves && tl_review_is_sharp(review) && !review->playing && !review->loader)
+    bool is_due = review->due.changed || review->due.image_is_old || is_step_due(review) || improves;
+    if (!is_due && !improves && tl_review_is_sharp(review) && !review->play.is_on && !review->load.loader)
         prepare_motion(review);
     if (waits || !is_due)
         return true;
     if (!redraw(review, tl_review_is_moving(review) ? IMAGE_IN_MOTION : IMAGE_AT_REST, error))
         return false;
-    if (review->is_resting && tl_review_is_at_rest(review))
-        tl_debug("view: at rest with image %d: samples a pixel side %d, %s", review->drawn_count,
-                 review->rest.samples, review->rest.is_shifted ? "shifted" : "not shifted");
+    if (review->image.is_resting && tl_review_is_at_rest(review))
+        tl_debug("view: at rest with image %d: samples a pixel side %d, %s", review->image.drawn_count,
+                 review->image.rest.samples, review->image.rest.is_shifted ? "shifted" : "not shifted");
     return true;
 }

@@ -2,6 +2,7 @@
 
 #include "app/fabric/fields.h"
 #include "app/settings/imported.h"
+#include "app/view/review/review.h"
 #include "assets/motion/motion_mesh.h"
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern.h"
@@ -22,7 +23,7 @@ bool tl_review_set(struct tl_review *review, const char *key, const char *text)
         tl_review_report_error(review, &error);
         return false;
     }
-    review->changed = true;
+    review->due.changed = true;
     return true;
 }
 
@@ -35,7 +36,7 @@ static bool apply_named(struct tl_review *review, apply_name *apply, const char 
     char *copy = tl_copy_string(name); /* `name` may point into the settings that are changed */
     bool applied = apply(&review->wanted, copy, &error);
     if (applied) {
-        review->changed = true;
+        review->due.changed = true;
     } else {
         tl_review_report_error(review, &error);
         review->wanted = review->good;
@@ -68,7 +69,7 @@ void tl_review_next_colourway(struct tl_review *review, int by)
 {
     const char *const *names;
     int count = (int)tl_session_colourways(review->session, &names), present = 0; /* 0: none, as cut */
-    if (review->loader && tl_loader_kind(review->loader) == TL_LOAD_SCENE) {
+    if (review->load.loader && tl_loader_kind(review->load.loader) == TL_LOAD_SCENE) {
         tl_review_report(review, "the scene is still loading: its colourways come with it");
         return;
     }
@@ -90,7 +91,7 @@ void tl_review_next_view(struct tl_review *review, int by)
 {
     int *view = &review->wanted.image.view;
     *view = (*view + by + TL_VIEW_COUNT) % TL_VIEW_COUNT;
-    review->changed = true;
+    review->due.changed = true;
     tl_review_report(review, "shows %s", tl_image_view_names[*view]);
 }
 
@@ -119,64 +120,67 @@ void tl_review_use_scene(struct tl_review *review, const char *path)
         tl_review_report_error(review, &error);
         return;
     }
-    free(review->scene_file);
-    review->scene_file = tl_copy_string(path);
+    free(review->keep.scene_file);
+    review->keep.scene_file = tl_copy_string(path);
     review->wanted = loaded;
-    review->changed = true;
-    review->keeps_settings = false; /* only the built-in review's settings are kept between runs */
+    review->due.changed = true;
+    review->keep.keeps_settings = false; /* only the built-in review's settings are kept between runs */
     tl_review_add_environment(review, loaded.scene.environment);
 }
 
 void tl_review_add_environment(struct tl_review *review, const char *name)
 {
-    for (size_t i = 0; i < review->environment_count; i++)
-        if (strcmp(review->environments[i], name) == 0)
+    for (size_t i = 0; i < review->edit.environment_count; i++)
+        if (strcmp(review->edit.environments[i], name) == 0)
             return;
-    size_t count = review->environment_count + 1;
-    review->environments = tl_resize(review->environments, count, sizeof *review->environments);
-    review->environments[review->environment_count++] = tl_copy_string(name);
+    size_t count = review->edit.environment_count + 1;
+    review->edit.environments =
+        tl_resize(review->edit.environments, count, sizeof *review->edit.environments);
+    review->edit.environments[review->edit.environment_count++] = tl_copy_string(name);
 }
 
 void tl_review_next_environment(struct tl_review *review)
 {
     size_t next = 0;
-    for (size_t i = 0; i < review->environment_count; i++)
-        if (strcmp(review->environments[i], review->wanted.scene.environment) == 0)
-            next = (i + 1) % review->environment_count;
-    if (review->environment_count < 2)
+    for (size_t i = 0; i < review->edit.environment_count; i++)
+        if (strcmp(review->edit.environments[i], review->wanted.scene.environment) == 0)
+            next = (i + 1) % review->edit.environment_count;
+    if (review->edit.environment_count < 2)
         tl_review_report(review,
                          "there is only one environment: drop an .exr or .hdr file here to add another");
     else
-        tl_review_set(review, "scene.environment", review->environments[next]);
+        tl_review_set(review, "scene.environment", review->edit.environments[next]);
 }
 
 /* Asks about files that are dropped together one after the other. */
 static void offer_kinds(struct tl_review *review, const char *path)
 {
-    if (!review->dropped) {
-        review->dropped = tl_copy_string(path);
+    if (!review->edit.dropped) {
+        review->edit.dropped = tl_copy_string(path);
         return;
     }
-    review->waiting = tl_resize(review->waiting, review->waiting_count + 1, sizeof *review->waiting);
-    review->waiting[review->waiting_count++] = tl_copy_string(path);
+    review->edit.waiting =
+        tl_resize(review->edit.waiting, review->edit.waiting_count + 1, sizeof *review->edit.waiting);
+    review->edit.waiting[review->edit.waiting_count++] = tl_copy_string(path);
 }
 
 static char *take_dropped(struct tl_review *review)
 {
-    char *path = review->dropped;
-    review->dropped = NULL;
-    if (review->waiting_count > 0) {
-        review->dropped = review->waiting[0];
-        memmove(review->waiting, review->waiting + 1, --review->waiting_count * sizeof *review->waiting);
+    char *path = review->edit.dropped;
+    review->edit.dropped = NULL;
+    if (review->edit.waiting_count > 0) {
+        review->edit.dropped = review->edit.waiting[0];
+        memmove(review->edit.waiting, review->edit.waiting + 1,
+                --review->edit.waiting_count * sizeof *review->edit.waiting);
     }
     return path;
 }
 
 bool tl_review_cancel_question(struct tl_review *review)
 {
-    bool is_open = review->recent.offered > 0 || review->dropped;
-    if (review->recent.offered > 0)
-        review->recent.offered = 0;
+    bool is_open = review->edit.offered > 0 || review->edit.dropped;
+    if (review->edit.offered > 0)
+        review->edit.offered = 0;
     else
         free(take_dropped(review));
     return is_open;
@@ -237,13 +241,13 @@ static void open_again(struct tl_review *review, const char *path)
 
 void tl_review_offer_recent(struct tl_review *review)
 {
-    struct tl_review_recent *recent = &review->recent;
-    recent->offered = tl_recent_count(&recent->files);
-    for (size_t i = 0; i < recent->offered; i++) {
-        const char *path = recent->files.garments[i], *slash = strrchr(path, '/');
-        recent->answers[i] = (struct tl_review_answer){slash ? slash + 1 : path, path, open_again};
+    struct tl_review_edit *edit = &review->edit;
+    edit->offered = tl_recent_count(&review->keep.recent);
+    for (size_t i = 0; i < edit->offered; i++) {
+        const char *path = review->keep.recent.garments[i], *slash = strrchr(path, '/');
+        edit->answers[i] = (struct tl_review_answer){slash ? slash + 1 : path, path, open_again};
     }
-    if (recent->offered == 0)
+    if (edit->offered == 0)
         tl_review_report(review, "no garment has been opened from a file yet");
 }
 
@@ -326,12 +330,12 @@ static const struct tl_review_answer text_answers[] = {
 
 const struct tl_review_answer *tl_review_answers(const struct tl_review *review, size_t *count)
 {
-    *count = review->recent.offered;
+    *count = review->edit.offered;
     if (*count > 0)
-        return review->recent.answers;
-    if (!review->dropped)
+        return review->edit.answers;
+    if (!review->edit.dropped)
         return NULL;
-    bool is_model = tl_model_is_file(review->dropped);
+    bool is_model = tl_model_is_file(review->edit.dropped);
     *count = is_model ? TL_COUNT(model_answers) : TL_COUNT(text_answers);
     return is_model ? model_answers : text_answers;
 }
@@ -342,8 +346,8 @@ void tl_review_answer(struct tl_review *review, size_t index)
     const struct tl_review_answer *answers = tl_review_answers(review, &count);
     if (index >= count)
         return;
-    char *path = review->recent.offered > 0 ? tl_copy_string(answers[index].help) : take_dropped(review);
-    review->recent.offered = 0;
+    char *path = review->edit.offered > 0 ? tl_copy_string(answers[index].help) : take_dropped(review);
+    review->edit.offered = 0;
     if (answers[index].use)
         answers[index].use(review, path);
     free(path);
@@ -378,7 +382,7 @@ void tl_review_open_dropped(struct tl_review *review, const char *path)
 void tl_review_take_chosen(struct tl_review *review)
 {
     char *path = NULL;
-    if (review->chooser && tl_file_chooser_poll(&review->chooser, &path) && path)
+    if (review->edit.chooser && tl_file_chooser_poll(&review->edit.chooser, &path) && path)
         tl_review_open_dropped(review, path);
     free(path);
 }
@@ -387,37 +391,37 @@ void tl_review_take_chosen(struct tl_review *review)
 static bool is_within_gesture(const struct tl_review *review)
 {
     const double gesture_s = 0.4;
-    return review->editing || review->drag != TL_DRAG_NONE || tl_review_moves_itself(review) ||
-           tl_clock_s() - review->moved_s < gesture_s;
+    return review->input.editing || review->input.drag != TL_DRAG_NONE || tl_review_moves_itself(review) ||
+           tl_clock_s() - review->due.moved_s < gesture_s;
 }
 
 void tl_review_note_edit(struct tl_review *review)
 {
-    if (review->changed || review->loader || is_within_gesture(review))
+    if (review->due.changed || review->load.loader || is_within_gesture(review))
         return;
-    bool is_edit = tl_history_note(review->history, &review->good);
-    tl_journal_note(review->journal, &review->good, is_edit);
+    bool is_edit = tl_history_note(review->keep.history, &review->good);
+    tl_journal_note(review->keep.journal, &review->good, is_edit);
 }
 
 void tl_review_note_wanted(struct tl_review *review)
 {
-    if (!tl_review_moves_itself(review) && tl_history_note(review->history, &review->wanted))
-        tl_journal_note(review->journal, &review->wanted, true);
+    if (!tl_review_moves_itself(review) && tl_history_note(review->keep.history, &review->wanted))
+        tl_journal_note(review->keep.journal, &review->wanted, true);
 }
 
 void tl_review_undo(struct tl_review *review, bool redo)
 {
     tl_review_note_wanted(review);
     const struct tl_settings *edit =
-        redo ? tl_history_redo(review->history) : tl_history_undo(review->history);
+        redo ? tl_history_redo(review->keep.history) : tl_history_undo(review->keep.history);
     if (!edit) {
         tl_review_report(review, redo ? "nothing to redo" : "nothing to undo");
         return;
     }
     struct tl_settings before = review->wanted;
     tl_history_restore(edit, &review->wanted);
-    review->changed = true;
-    tl_journal_undo(review->journal, redo, &review->wanted);
+    review->due.changed = true;
+    tl_journal_undo(review->keep.journal, redo, &review->wanted);
     char *text =
         redo ? tl_history_describe(&before, &review->wanted) : tl_history_describe(&review->wanted, &before);
     tl_review_report(review, redo ? "redone: %s" : "undone: %s", text);

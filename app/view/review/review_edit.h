@@ -1,9 +1,30 @@
-/* Edits of the settings by names and files that stand for many options; undo. Owns the queue of dropped files
- * and the list of environments. Whatever fails is reported, and `wanted` goes back to `good`. */
+/* Edits of the settings by names and files that stand for many options; undo. Owns `edit`. Whatever fails is
+ * reported, and `wanted` goes back to `good`. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_EDIT_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_EDIT_H
 
-#include "app/view/review/review.h"
+#include "app/view/memory/recent.h"
+#include "app/view/window/file_chooser.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+struct tl_review;
+
+struct tl_review_answer {
+    const char *label, *help;
+    void (*use)(struct tl_review *review, const char *path); /* NULL: the file is not used */
+};
+
+struct tl_review_edit {
+    tl_file_chooser *chooser; /* NULL: no dialog is open */
+    char *dropped;            /* the file that the panel asks about, or NULL */
+    char **waiting;           /* those that it asks about next */
+    size_t waiting_count;
+    size_t offered; /* recent garments that are offered to be opened again, one answer each; 0: none */
+    struct tl_review_answer answers[TL_RECENT_MAX];
+    char **environments; /* those that E cycles through */
+    size_t environment_count;
+};
 
 /* Sets one option as if it had been typed. False when the text is refused, which is reported. */
 bool tl_review_set(struct tl_review *review, const char *key, const char *text);

@@ -1,6 +1,7 @@
 #include "app/view/review/review_hand.h"
 
 #include "app/scene/orbit.h"
+#include "app/view/review/review.h"
 #include "config/base/log.h"
 
 static struct tl_ray ray_under(const struct tl_review *review, const struct tl_camera *camera, float x,
@@ -31,7 +32,7 @@ bool tl_review_pick(const struct tl_review *review, float x, float y, uint32_t *
 bool tl_review_hand_begin(struct tl_review *review, float x, float y)
 {
     vec3s point;
-    if (!tl_review_pick(review, x, y, &review->grab_vertex, &point)) {
+    if (!tl_review_pick(review, x, y, &review->hand.vertex, &point)) {
         tl_review_report(review, "nothing to pull here: hold Ctrl and drag on the garment");
         return false;
     }
@@ -40,12 +41,12 @@ bool tl_review_hand_begin(struct tl_review *review, float x, float y)
         return false;
     }
     const struct tl_camera camera = tl_session_frame(review->session).camera;
-    review->drag = TL_DRAG_CLOTH;
-    review->grab_depth_m = depth_of(&camera, point);
-    review->grab_target = review->grab_at = point;
-    if (!review->playing)
+    review->input.drag = TL_DRAG_CLOTH;
+    review->hand.depth_m = depth_of(&camera, point);
+    review->hand.target = review->hand.at = point;
+    if (!review->play.is_on)
         tl_review_set_playing(review, true); /* paused cloth cannot follow */
-    tl_info("view: pulls on vertex %u", (unsigned)review->grab_vertex);
+    tl_info("view: pulls on vertex %u", (unsigned)review->hand.vertex);
     return true;
 }
 
@@ -56,7 +57,7 @@ void tl_review_hand_aim(struct tl_review *review, float x, float y)
     const struct tl_camera camera = tl_session_frame(review->session).camera;
     struct tl_ray ray = ray_under(review, &camera, x, y);
     float depth_per_m = depth_of(&camera, glms_vec3_add(camera.eye, ray.direction));
-    review->grab_target = glms_vec3_muladds(ray.direction, review->grab_depth_m / depth_per_m, ray.origin);
+    review->hand.target = glms_vec3_muladds(ray.direction, review->hand.depth_m / depth_per_m, ray.origin);
 }
 
 /* The hand's speed is limited: when images take long, the pointer moves far in little simulated time, and a
@@ -65,20 +66,20 @@ void tl_review_hand_step(struct tl_review *review)
 {
     const float max_speed_m_s = 1.5f;
     tl_cloth *cloth = tl_session_cloth(review->session);
-    if (review->drag != TL_DRAG_CLOTH || !cloth)
+    if (review->input.drag != TL_DRAG_CLOTH || !cloth)
         return;
     float reach_m = max_speed_m_s / (float)review->good.cloth.frame_rate;
-    vec3s offset = glms_vec3_sub(review->grab_target, review->grab_at);
+    vec3s offset = glms_vec3_sub(review->hand.target, review->hand.at);
     float length_m = glms_vec3_norm(offset);
     float share = length_m > reach_m ? reach_m / length_m : 1;
-    review->grab_at = glms_vec3_muladds(offset, share, review->grab_at);
-    tl_cloth_grab(cloth, review->grab_vertex, review->grab_at);
+    review->hand.at = glms_vec3_muladds(offset, share, review->hand.at);
+    tl_cloth_grab(cloth, review->hand.vertex, review->hand.at);
 }
 
 void tl_review_hand_release(struct tl_review *review)
 {
     tl_cloth *cloth = tl_session_cloth(review->session);
-    if (review->drag == TL_DRAG_CLOTH && cloth)
+    if (review->input.drag == TL_DRAG_CLOTH && cloth)
         tl_cloth_release(cloth);
-    review->drag = TL_DRAG_NONE;
+    review->input.drag = TL_DRAG_NONE;
 }

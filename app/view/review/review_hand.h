@@ -1,8 +1,18 @@
-/* The garment's point under the pointer, and the hand that pulls it. Owns the fields grab_*. */
+/* The garment's point under the pointer, and the hand that pulls it. Owns `hand`. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_HAND_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_HAND_H
 
-#include "app/view/review/review.h"
+#include <cglm/struct.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+struct tl_review;
+
+struct tl_review_hand {
+    float depth_m; /* of the plane, parallel to the image, in which the cloth is pulled */
+    uint32_t vertex;
+    vec3s target, at; /* metres: the pointer's point in that plane, and the hand, which follows it */
+};
 
 /* Starts to pull on the garment at a pixel of the view; reports why it cannot. */
 bool tl_review_hand_begin(struct tl_review *review, float x, float y);

@@ -1,6 +1,7 @@
 #include "app/view/review/review_keep.h"
 
 #include "app/cli/arguments.h"
+#include "app/view/review/review.h"
 #include "app/view/review/review_move.h"
 #include "assets/model.h"
 #include "assets/pattern/pattern.h"
@@ -15,19 +16,19 @@
 
 static char *state_file(const struct tl_review *review)
 {
-    return tl_format("%s/review.yaml", review->state_folder);
+    return tl_format("%s/review.yaml", review->keep.state_folder);
 }
 
 static char *recent_file(const struct tl_review *review)
 {
-    return tl_format("%s/recent.yaml", review->state_folder);
+    return tl_format("%s/recent.yaml", review->keep.state_folder);
 }
 
 static void restore_recent(struct tl_review *review)
 {
     tl_error error;
     char *file = recent_file(review);
-    if (!tl_recent_load(file, &review->recent.files, &error))
+    if (!tl_recent_load(file, &review->keep.recent, &error))
         tl_warn("view: %s: the recent files are not offered", error.message);
     free(file);
 }
@@ -37,11 +38,11 @@ void tl_review_keep_recent(struct tl_review *review)
     const struct tl_scene_params *scene = &review->wanted.scene;
     const char *name = strcmp(scene->garment, "none") != 0 ? scene->garment : scene->avatar;
     char *path = tl_option_is_file_name(name) ? realpath(name, NULL) : NULL;
-    if (path && review->recent.offered == 0 && strcmp(review->recent.files.garments[0], path) != 0) {
+    if (path && review->edit.offered == 0 && strcmp(review->keep.recent.garments[0], path) != 0) {
         tl_error error;
-        char *file = review->state_folder ? recent_file(review) : NULL;
-        tl_recent_add(&review->recent.files, path);
-        if (file && !tl_recent_save(file, &review->recent.files, &error))
+        char *file = review->keep.state_folder ? recent_file(review) : NULL;
+        tl_recent_add(&review->keep.recent, path);
+        if (file && !tl_recent_save(file, &review->keep.recent, &error))
             tl_warn("view: %s: the recent files are not saved", error.message);
         free(file);
     }
@@ -50,13 +51,13 @@ void tl_review_keep_recent(struct tl_review *review)
 
 bool tl_review_restore_state(struct tl_review *review)
 {
-    const struct tl_arguments *arguments = review->arguments;
+    const struct tl_arguments *arguments = review->keep.arguments;
     const char *scene = arguments->positional_count > 0 ? arguments->positionals[0] : NULL;
-    review->params = *(const struct tl_window_params *)tl_window_options.defaults;
-    review->scene_file =
+    review->screen.params = *(const struct tl_window_params *)tl_window_options.defaults;
+    review->keep.scene_file =
         scene && tl_option_is_file_name(scene) && tl_settings_is_scene(scene) ? tl_copy_string(scene) : NULL;
-    review->state_folder = arguments->fresh ? NULL : tl_state_folder();
-    if (!review->state_folder)
+    review->keep.state_folder = arguments->fresh ? NULL : tl_state_folder();
+    if (!review->keep.state_folder)
         return false;
     restore_recent(review);
     tl_error error;
@@ -65,10 +66,10 @@ bool tl_review_restore_state(struct tl_review *review)
     if (!tl_state_load(file, &review->wanted, &state, &error))
         tl_warn("view: %s: starts with the defaults", error.message);
     free(file);
-    review->params = state.window;
+    review->screen.params = state.window;
     /* A scene or an option on the command line takes precedence over kept settings. */
-    review->keeps_settings = !scene && arguments->assignment_count == 0;
-    bool is_restored = review->keeps_settings && state.review.has_settings;
+    review->keep.keeps_settings = !scene && arguments->assignment_count == 0;
+    bool is_restored = review->keep.keeps_settings && state.review.has_settings;
     if (is_restored)
         review->wanted = state.settings;
     return is_restored;
@@ -92,27 +93,27 @@ static uint64_t hash_of_command(const struct tl_arguments *arguments)
 int tl_review_recover(struct tl_review *review)
 {
     struct tl_recovered recovered;
-    if (review->state_folder)
-        review->journal =
-            tl_journal_recover(review->state_folder, hash_of_command(review->arguments), &recovered);
-    if (!review->journal)
+    if (review->keep.state_folder)
+        review->keep.journal = tl_journal_recover(review->keep.state_folder,
+                                                  hash_of_command(review->keep.arguments), &recovered);
+    if (!review->keep.journal)
         return -1;
     review->wanted = recovered.settings;
-    review->history = recovered.history;
+    review->keep.history = recovered.history;
     return (int)recovered.steps;
 }
 
 void tl_review_begin_journal(struct tl_review *review)
 {
-    tl_journal_resume(review->journal);
-    if (!review->journal && review->state_folder)
-        review->journal =
-            tl_journal_begin(review->state_folder, hash_of_command(review->arguments), &review->good);
+    tl_journal_resume(review->keep.journal);
+    if (!review->keep.journal && review->keep.state_folder)
+        review->keep.journal = tl_journal_begin(review->keep.state_folder,
+                                                hash_of_command(review->keep.arguments), &review->good);
 }
 
 void tl_review_save_state(struct tl_review *review)
 {
-    if (!review->state_folder || !review->session)
+    if (!review->keep.state_folder || !review->session)
         return;
     tl_error error;
     struct tl_settings defaults = review->good;
@@ -121,12 +122,12 @@ void tl_review_save_state(struct tl_review *review)
     /* The file is read first, so that tables which this review does not keep are written back unchanged. */
     if (!tl_state_load(file, &defaults, &state, &error))
         state.review.has_settings = false;
-    if (review->keeps_settings) {
+    if (review->keep.keeps_settings) {
         state.review.has_settings = true;
         state.settings = review->good;
     }
-    state.window = review->params;
-    tl_window_unscaled_size(review->window, &state.window.width, &state.window.height);
+    state.window = review->screen.params;
+    tl_window_unscaled_size(review->screen.window, &state.window.width, &state.window.height);
     if (!tl_state_save(file, &state, &error))
         tl_warn("view: %s: the state of this review is not saved", error.message);
     free(file);
@@ -135,19 +136,19 @@ void tl_review_save_state(struct tl_review *review)
 void tl_review_load_views(struct tl_review *review)
 {
     char *name = tl_saved_views_name(&review->good.scene);
-    const char *folder = review->state_folder ? review->state_folder : "";
+    const char *folder = review->keep.state_folder ? review->keep.state_folder : "";
     char *file = tl_format("%s/views/%s", folder, name);
     free(name);
-    if (review->views_file && strcmp(review->views_file, file) == 0) {
+    if (review->keep.views_file && strcmp(review->keep.views_file, file) == 0) {
         free(file);
         return;
     }
-    free(review->views_file);
-    review->views_file = file;
+    free(review->keep.views_file);
+    review->keep.views_file = file;
     tl_error error;
-    if (!review->state_folder)
-        review->views = (struct tl_saved_views){0};
-    else if (!tl_saved_views_load(file, &review->views, &error))
+    if (!review->keep.state_folder)
+        review->keep.views = (struct tl_saved_views){0};
+    else if (!tl_saved_views_load(file, &review->keep.views, &error))
         tl_warn("view: %s: saved views are not loaded", error.message);
 }
 
@@ -155,8 +156,9 @@ void tl_review_save_view(struct tl_review *review, int index)
 {
     tl_error error;
     tl_review_fix_camera(review);
-    review->views.of[index] = tl_saved_view_take(&review->wanted);
-    if (review->state_folder && !tl_saved_views_save(review->views_file, &review->views, &error))
+    review->keep.views.of[index] = tl_saved_view_take(&review->wanted);
+    if (review->keep.state_folder &&
+        !tl_saved_views_save(review->keep.views_file, &review->keep.views, &error))
         tl_review_report_error(review, &error);
     else
         tl_review_report(review, "view %d saved: %d returns to it", index + 1, index + 1);
@@ -165,11 +167,11 @@ void tl_review_save_view(struct tl_review *review, int index)
 /* Takes over the file's settings except the camera. */
 static void reload_scene(struct tl_review *review)
 {
-    const struct tl_arguments *arguments = review->arguments;
+    const struct tl_arguments *arguments = review->keep.arguments;
     bool is_first =
-        arguments->positional_count > 0 && strcmp(review->scene_file, arguments->positionals[0]) == 0;
+        arguments->positional_count > 0 && strcmp(review->keep.scene_file, arguments->positionals[0]) == 0;
     const struct tl_settings_source source = {
-        .scene_file = review->scene_file,
+        .scene_file = review->keep.scene_file,
         .assignments = (const char *const *)arguments->assignments,
         .assignment_count = is_first ? arguments->assignment_count : 0,
     };
@@ -181,19 +183,19 @@ static void reload_scene(struct tl_review *review)
     }
     loaded.camera = review->wanted.camera;
     review->wanted = loaded;
-    review->changed = true;
-    tl_review_report(review, "edited: %s", review->scene_file);
+    review->due.changed = true;
+    tl_review_report(review, "edited: %s", review->keep.scene_file);
 }
 
 static void reload_named(struct tl_review *review, const char *name,
                          bool (*apply)(struct tl_settings *settings, const char *name, tl_error *error))
 {
-    if (!tl_option_is_file_name(name) || !tl_file_has_changed(&review->watch, name))
+    if (!tl_option_is_file_name(name) || !tl_file_has_changed(&review->keep.watch, name))
         return;
     tl_error error;
     char *copy = tl_copy_string(name); /* `name` points into the settings that are changed */
     if (apply(&review->wanted, copy, &error)) {
-        review->changed = true;
+        review->due.changed = true;
         tl_review_report(review, "edited: %s", copy);
     } else {
         tl_review_report_error(review, &error);
@@ -205,11 +207,11 @@ void tl_review_reload_edited(struct tl_review *review)
 {
     const double every_s = 0.5;
     double now_s = tl_clock_s();
-    if (now_s - review->watched_s < every_s)
+    if (now_s - review->keep.watched_s < every_s)
         return;
-    review->watched_s = now_s;
+    review->keep.watched_s = now_s;
     const struct tl_scene_params *scene = &review->wanted.scene;
-    if (review->scene_file && tl_file_has_changed(&review->watch, review->scene_file))
+    if (review->keep.scene_file && tl_file_has_changed(&review->keep.watch, review->keep.scene_file))
         reload_scene(review);
     reload_named(review, scene->fabric, tl_settings_apply_fabric);
     reload_named(review, scene->overlay_fabric, tl_settings_apply_overlay);

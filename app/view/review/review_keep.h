@@ -1,9 +1,30 @@
 /* State that is kept between runs (app/view/memory/state.h), and files that are reloaded when they have been
- * edited. Owns the saved views and the watched files. */
+ * edited. Owns `keep`. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_KEEP_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_KEEP_H
 
-#include "app/view/review/review.h"
+#include "app/view/memory/history.h"
+#include "app/view/memory/journal.h"
+#include "app/view/memory/recent.h"
+#include "app/view/memory/saved_views.h"
+#include "app/view/window/file_watch.h"
+
+struct tl_review;
+
+struct tl_review_keep {
+    const struct tl_arguments *arguments; /* borrowed */
+    const char *output_folder;            /* for screenshots and camera paths; borrowed */
+    char *state_folder;                   /* NULL: no state is kept between runs */
+    bool keeps_settings;                  /* the settings are a part of that state */
+    tl_history *history;
+    tl_journal *journal;     /* NULL: no state is kept */
+    struct tl_recent recent; /* the garments that were opened last */
+    char *views_file;        /* of the present scene; NULL as above */
+    struct tl_saved_views views;
+    char *scene_file; /* YAML file that the settings came from, or NULL */
+    struct tl_file_watch watch;
+    double watched_s;
+};
 
 /* Restores the window's options and, when the command line names neither a scene nor an option, the settings.
  * True when `wanted` was replaced. A file that cannot be read is reported as a warning. */

@@ -1,5 +1,6 @@
 #include "app/view/review/review_load.h"
 
+#include "app/view/review/review.h"
 #include "app/view/review/review_keep.h"
 #include "app/view/review/review_move.h"
 #include "app/view/review/review_reading.h"
@@ -16,10 +17,10 @@
 static bool needs_appearance(const struct tl_review *review, const struct tl_settings *settings)
 {
     struct tl_settings present = *tl_session_settings(review->session);
-    if (review->editing)
+    if (review->input.editing)
         tl_settings_take(settings, &present, (struct tl_option_filter){.any_of = TL_AFFECTS_AT_ONCE});
     return !tl_session_light_plays(review->session) && tl_session_needs_appearance(&present, settings) &&
-           tl_session_needs_appearance(&review->loaded_appearance, settings);
+           tl_session_needs_appearance(&review->load.appearance, settings);
 }
 
 static bool is_slow(const struct tl_review *review, const struct tl_settings *settings)
@@ -59,7 +60,7 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
 {
     struct tl_prepared_request request = {.settings = tl_settings_render(settings)};
     request.region_counts[0] = settings->light.regions;
-    for (int level = 1; review->params.budget_ms > 0 && level < TL_PREPARED_COUNTS_MAX; level++) {
+    for (int level = 1; review->screen.params.budget_ms > 0 && level < TL_PREPARED_COUNTS_MAX; level++) {
         struct tl_quality levels = {.of[TL_CONTROL_REGIONS] = (uint8_t)level};
         if (!tl_quality_is_valid(&levels))
             break;
@@ -95,7 +96,7 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
 /* Whether the garment hangs as it was draped, and does not set out to move. */
 static bool hangs(const struct tl_review *review)
 {
-    return !review->playing && tl_session_frame_number(review->session) == 0 &&
+    return !review->play.is_on && tl_session_frame_number(review->session) == 0 &&
            tl_session_cloth(review->session) && !tl_session_is_undraped(review->session);
 }
 
@@ -103,7 +104,8 @@ static bool hangs(const struct tl_review *review)
  * moves takes a new fabric up as it moves on. */
 static bool wants_drape(const struct tl_review *review)
 {
-    return hangs(review) && memcmp(&review->draped, &review->wanted.fabric, sizeof review->draped) != 0;
+    return hangs(review) &&
+           memcmp(&review->load.draped, &review->wanted.fabric, sizeof review->load.draped) != 0;
 }
 
 static enum tl_load what_to_load(const struct tl_review *review)
@@ -120,11 +122,11 @@ static void start(struct tl_review *review)
     enum tl_load kind = what_to_load(review);
     const struct tl_load_lights lights = lights_of(review, kind);
     const struct tl_session_models models = tl_session_models(review->session);
-    review->loader =
+    review->load.loader =
         tl_loader_start(kind, &review->wanted, &models, &lights, loader_threads(), tl_window_wake);
     const struct tl_scene_params *scene = &review->wanted.scene;
-    review->drapes_again = kind == TL_LOAD_SCENE && !is_slow(review, &review->wanted);
-    if (review->drapes_again)
+    review->load.drapes_again = kind == TL_LOAD_SCENE && !is_slow(review, &review->wanted);
+    if (review->load.drapes_again)
         tl_info("view: drapes %s in %s", scene->garment, scene->fabric);
     else if (kind != TL_LOAD_APPEARANCE)
         tl_info("view: loads %s", kind == TL_LOAD_SCENE ? scene->garment : scene->environment);
@@ -133,12 +135,12 @@ static void start(struct tl_review *review)
 /* Whether `wanted` has changed since the loader was started. */
 static bool is_outdated(const struct tl_review *review)
 {
-    const struct tl_settings *made = tl_loader_settings(review->loader);
-    if (review->drapes_again &&
+    const struct tl_settings *made = tl_loader_settings(review->load.loader);
+    if (review->load.drapes_again &&
         (!hangs(review) || memcmp(&made->fabric, &review->wanted.fabric, sizeof made->fabric) != 0))
         return true;
     return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
-           ((review->drapes_again || tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE) &&
+           ((review->load.drapes_again || tl_loader_kind(review->load.loader) == TL_LOAD_APPEARANCE) &&
             tl_session_needs_appearance(made, &review->wanted));
 }
 
@@ -168,35 +170,35 @@ static void take_session(struct tl_review *review, tl_session **loaded)
 
 static void finish(struct tl_review *review)
 {
-    enum tl_load kind = tl_loader_kind(review->loader);
-    const struct tl_settings made_of = *tl_loader_settings(review->loader);
+    enum tl_load kind = tl_loader_kind(review->load.loader);
+    const struct tl_settings made_of = *tl_loader_settings(review->load.loader);
     const char *environment = review->wanted.scene.environment;
     struct tl_loaded loaded;
     tl_error error;
-    bool is_loaded = tl_loader_take(&review->loader, &loaded, &error);
+    bool is_loaded = tl_loader_take(&review->load.loader, &loaded, &error);
     if (!is_loaded) {
         keep_present(review, &review->wanted);
         tl_review_report_error(review, &error);
     } else if (kind == TL_LOAD_APPEARANCE) {
         tl_session_keep_appearance(review->session, &made_of, &loaded.appearance);
         take_lights(review, &loaded);
-        review->loaded_appearance = made_of;
+        review->load.appearance = made_of;
     } else if (kind == TL_LOAD_SCENE) {
         take_session(review, &loaded.session);
         take_lights(review, &loaded);
-        if (review->drapes_again)
+        if (review->load.drapes_again)
             tl_info("view: %s hangs in %s", made_of.scene.garment, made_of.scene.fabric);
-        review->reported_frame = -1;
-        if (review->drag == TL_DRAG_CLOTH)
-            review->drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
+        review->input.reported_frame = -1;
+        if (review->input.drag == TL_DRAG_CLOTH)
+            review->input.drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
         tl_review_note_reading(review);
         tl_review_keep_recent(review);
     } else {
         tl_session_replace_light(review->session, &loaded.light, environment);
         take_lights(review, &loaded);
     }
-    if (kind == TL_LOAD_SCENE && (is_loaded || review->drapes_again))
-        review->draped = made_of.fabric; /* what cannot be draped is not tried again */
+    if (kind == TL_LOAD_SCENE && (is_loaded || review->load.drapes_again))
+        review->load.draped = made_of.fabric; /* what cannot be draped is not tried again */
     tl_loaded_release(&loaded);
 }
 
@@ -204,54 +206,54 @@ static void finish(struct tl_review *review)
  * once it is done. */
 void tl_review_load(struct tl_review *review)
 {
-    if (review->loader && is_outdated(review))
-        tl_loader_stop(review->loader);
-    if (review->loader && tl_loader_is_done(review->loader)) {
-        if (tl_loader_is_stopped(review->loader))
-            tl_loader_cancel(&review->loader);
+    if (review->load.loader && is_outdated(review))
+        tl_loader_stop(review->load.loader);
+    if (review->load.loader && tl_loader_is_done(review->load.loader)) {
+        if (tl_loader_is_stopped(review->load.loader))
+            tl_loader_cancel(&review->load.loader);
         else
             finish(review);
-        review->changed = true;
+        review->due.changed = true;
     }
-    bool waits = review->loader || review->editing || review->drag == TL_DRAG_PLACE;
-    if (!waits && ((review->changed && is_slow(review, &review->wanted)) || wants_drape(review)))
+    bool waits = review->load.loader || review->input.editing || review->input.drag == TL_DRAG_PLACE;
+    if (!waits && ((review->due.changed && is_slow(review, &review->wanted)) || wants_drape(review)))
         start(review);
 }
 
 bool tl_review_stop_loading(struct tl_review *review)
 {
     struct tl_settings kept = review->wanted;
-    if (review->loader && !review->drapes_again)
+    if (review->load.loader && !review->load.drapes_again)
         keep_present(review, &kept);
-    if (!review->loader || (!review->drapes_again && tl_settings_equal(&kept, &review->wanted)))
+    if (!review->load.loader || (!review->load.drapes_again && tl_settings_equal(&kept, &review->wanted)))
         return false; /* the loader, if any, prepares what was not asked for, or is stopped already */
-    tl_loader_stop(review->loader);
+    tl_loader_stop(review->load.loader);
     review->wanted = kept;
-    if (review->drapes_again)
-        review->draped = review->wanted.fabric;
-    review->changed = true;
-    tl_review_report(review, review->drapes_again ? "draping was stopped: the garment hangs as before"
-                                                  : "loading was stopped: the scene is unchanged");
+    if (review->load.drapes_again)
+        review->load.draped = review->wanted.fabric;
+    review->due.changed = true;
+    tl_review_report(review, review->load.drapes_again ? "draping was stopped: the garment hangs as before"
+                                                       : "loading was stopped: the scene is unchanged");
     return true;
 }
 
 struct tl_panel_progress tl_review_progress(const struct tl_review *review, char *text, size_t size)
 {
-    if (!review->loader || tl_loader_is_stopped(review->loader))
+    if (!review->load.loader || tl_loader_is_stopped(review->load.loader))
         return (struct tl_panel_progress){0};
-    const struct tl_scene_params *scene = &tl_loader_settings(review->loader)->scene;
-    enum tl_load kind = tl_loader_kind(review->loader);
+    const struct tl_scene_params *scene = &tl_loader_settings(review->load.loader)->scene;
+    enum tl_load kind = tl_loader_kind(review->load.loader);
     const char *name = kind == TL_LOAD_LIGHT                 ? scene->environment
                        : kind == TL_LOAD_APPEARANCE          ? scene->fabric
                        : strcmp(scene->garment, "none") == 0 ? scene->avatar
                                                              : scene->garment;
     const char *slash = strrchr(name, '/');
-    struct tl_load_progress progress = tl_loader_progress(review->loader);
+    struct tl_load_progress progress = tl_loader_progress(review->load.loader);
     const double unseen_s = 0.3; /* most appearances load faster: the progress would only flicker */
     if (kind == TL_LOAD_APPEARANCE && progress.seconds < unseen_s)
         return (struct tl_panel_progress){0};
     bool is_known = progress.what[0] != '\0';
-    bool drapes = review->drapes_again || (kind == TL_LOAD_SCENE && scene->drape == TL_DRAPE_SETTLE);
+    bool drapes = review->load.drapes_again || (kind == TL_LOAD_SCENE && scene->drape == TL_DRAPE_SETTLE);
     snprintf(text, size, "%s %.100s%s%s", drapes ? "Draping" : "Loading", slash ? slash + 1 : name,
              is_known ? ": " : "", progress.what);
     return (struct tl_panel_progress){.what = text,
@@ -262,17 +264,17 @@ struct tl_panel_progress tl_review_progress(const struct tl_review *review, char
 void tl_review_start_first(struct tl_review *review)
 {
     const struct tl_load_lights lights = lights_of(review, TL_LOAD_SCENE);
-    review->loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, NULL, &lights, 0, tl_window_wake);
+    review->load.loader = tl_loader_start(TL_LOAD_SCENE, &review->wanted, NULL, &lights, 0, tl_window_wake);
 }
 
 bool tl_review_finish_first(struct tl_review *review, tl_error *error)
 {
     struct tl_loaded loaded;
-    if (!tl_loader_take(&review->loader, &loaded, error))
+    if (!tl_loader_take(&review->load.loader, &loaded, error))
         return false;
     review->session = loaded.session;
     loaded.session = NULL;
-    review->draped = review->wanted.fabric;
+    review->load.draped = review->wanted.fabric;
     tl_review_note_reading(review);
     tl_review_keep_recent(review);
     take_lights(review, &loaded);

@@ -1,9 +1,21 @@
 /* Scenes, environments and appearances are loaded on a worker thread, while the window goes on with those
- * that it has. Owns the loader. */
+ * that it has. Owns `load`. */
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_LOAD_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_LOAD_H
 
-#include "app/view/review/review.h"
+#include "app/settings/settings.h"
+#include "app/view/loader/loader.h"
+#include "app/view/panel/panel_shim.h"
+
+struct tl_review;
+
+struct tl_review_load {
+    tl_loader *loader;             /* NULL: nothing is loading */
+    bool drapes_again;             /* the loader drapes the present scene in another fabric */
+    struct tl_cloth_fabric draped; /* that the garment hangs in, or that it was last draped in without success
+                                    */
+    struct tl_settings appearance; /* the settings of the last appearance that was loaded */
+};
 
 /* Starts and stops loaders as `wanted` demands, and takes over what one has loaded; called every frame. */
 void tl_review_load(struct tl_review *review);

@@ -1,5 +1,6 @@
 #include "app/view/review/review_memory.h"
 
+#include "app/view/review/review.h"
 #include "app/view/review/review_draw.h"
 #include "config/base/log.h"
 #include "render/renderer.h"
@@ -29,7 +30,7 @@ size_t tl_review_resident_bytes(void)
 
 static bool is_busy(const struct tl_review *review)
 {
-    return tl_review_is_moving(review) || review->loader || !tl_review_is_sharp(review) ||
+    return tl_review_is_moving(review) || review->load.loader || !tl_review_is_sharp(review) ||
            !tl_review_is_at_rest(review);
 }
 

@@ -4,7 +4,14 @@
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_MEMORY_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_MEMORY_H
 
-#include "app/view/review/review.h"
+#include <stddef.h>
+
+struct tl_review;
+
+struct tl_review_memory {
+    size_t min_unused; /* bytes: the minimum since memory was last returned to the system */
+    double checked_s, logged_s;
+};
 
 size_t tl_review_resident_bytes(void); /* of this process */
 /* Returns unused pages to the system when there are many; called every frame, checks once a second. */

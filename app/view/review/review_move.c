@@ -2,6 +2,7 @@
 
 #include "app/scene/camera.h"
 #include "app/scene/orbit.h"
+#include "app/view/review/review.h"
 #include "config/base/file.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
@@ -37,7 +38,7 @@ void tl_review_toggle(struct tl_review *review, bool *turntable, const char *nam
 
 void tl_review_go_to_view(struct tl_review *review, int index)
 {
-    const struct tl_saved_view *view = &review->views.of[index];
+    const struct tl_saved_view *view = &review->keep.views.of[index];
     struct tl_review_motion *motion = &review->motion;
     if (!view->saved) {
         tl_review_report(review, "view %d is empty: Shift+%d saves this one", index + 1, index + 1);
@@ -55,10 +56,10 @@ void tl_review_go_to_view(struct tl_review *review, int index)
 void tl_review_go_to_frame(struct tl_review *review, int frame)
 {
     tl_error error;
-    review->playing = false;
+    review->play.is_on = false;
     if (!tl_session_go_to(review->session, frame, &error))
         tl_review_report_error(review, &error);
-    review->image_is_old = true;
+    review->due.image_is_old = true;
     tl_review_note_motion(review);
     tl_info("view: frame %d", tl_session_frame_number(review->session));
 }
@@ -107,7 +108,7 @@ static void begin_path(struct tl_review *review)
 {
     tl_review_path_release(&review->path);
     for (int number = 1; !review->path.file; number++) {
-        char *name = tl_format("%s/toile-path-%04d.yaml", review->output_folder, number);
+        char *name = tl_format("%s/toile-path-%04d.yaml", review->keep.output_folder, number);
         if (tl_file_exists(name))
             free(name);
         else
@@ -118,7 +119,7 @@ static void begin_path(struct tl_review *review)
 static bool save_path(struct tl_review *review)
 {
     tl_error error;
-    bool saved = tl_folder_make(review->output_folder, &error) &&
+    bool saved = tl_folder_make(review->keep.output_folder, &error) &&
                  tl_path_save(review->path.file, &review->path.path, &error);
     if (!saved)
         tl_review_report_error(review, &error);
@@ -215,11 +216,11 @@ void tl_review_move(struct tl_review *review)
         if (review->path.plays)
             follow_path(review, now_s);
         if (motion->turntable)
-            *camera_deg = tl_orbit_wrap_deg(*camera_deg + step_s * review->params.turntable_deg_s);
+            *camera_deg = tl_orbit_wrap_deg(*camera_deg + step_s * review->screen.params.turntable_deg_s);
         if (motion->environment)
             *environment_deg =
-                tl_orbit_wrap_deg(*environment_deg + step_s * review->params.environment_turn_deg_s);
-        review->changed = true;
+                tl_orbit_wrap_deg(*environment_deg + step_s * review->screen.params.environment_turn_deg_s);
+        review->due.changed = true;
     }
     if (review->path.records)
         record(review, now_s);

@@ -5,7 +5,27 @@
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_MOVE_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_MOVE_H
 
-#include "app/view/review/review.h"
+#include "app/scene/path.h"
+#include "app/view/memory/saved_views.h"
+
+struct tl_review;
+
+/* Motion without input. */
+struct tl_review_motion {
+    bool turntable, environment;
+    double moved_s; /* time of the last step */
+    bool glides;    /* from one saved view to another */
+    struct tl_saved_view from, to;
+    double glide_began_s;
+};
+
+struct tl_review_path {
+    struct tl_path path; /* count 0: none yet */
+    char *file;          /* where it is saved; NULL: nowhere yet */
+    bool records, plays;
+    double began_s;
+    double key_due_s; /* while recording: time of the next key */
+};
 
 /* Sets camera and light in `wanted` for the present time, and records a key when one is due; called every
  * frame. */

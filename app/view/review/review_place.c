@@ -1,6 +1,7 @@
 #include "app/view/review/review_place.h"
 
 #include "app/scene/orbit.h"
+#include "app/view/review/review.h"
 #include "app/view/review/review_move.h"
 #include "app/view/review/review_reading.h"
 #include "assets/base/placing.h"
@@ -34,7 +35,7 @@ static void set_placing(struct tl_review *review, const struct tl_placing *placi
     scene->turn_deg = tl_orbit_wrap_deg(placing->turn_deg);
     for (int i = 0; i < 3; i++)
         scene->move_m[i] = glm_clamp(in_steps(placing->move_m.raw[i], 1e4f), -1000, 1000);
-    review->changed = true;
+    review->due.changed = true;
     tl_review_note_motion(review);
 }
 
@@ -71,7 +72,7 @@ void tl_review_follow_place(struct tl_review *review)
     const struct tl_placing from = placing_of(shown), to = placing_of(wanted);
     bool is_same = strcmp(shown->garment, wanted->garment) == 0 && !reason_against(review);
     const struct tl_placing between = tl_placing_between(&from, is_same ? &to : &from);
-    review->image_is_old |= tl_session_show_placed(review->session, &between);
+    review->due.image_is_old |= tl_session_show_placed(review->session, &between);
 }
 
 /* ---- The handles ---- */
@@ -79,7 +80,7 @@ void tl_review_follow_place(struct tl_review *review)
 static struct tl_gizmo gizmo_of(const struct tl_review *review)
 {
     struct tl_gizmo gizmo = {.camera = tl_session_frame(review->session).camera,
-                             .scale = tl_window_scale(review->window),
+                             .scale = tl_window_scale(review->screen.window),
                              .pivot = wanted_middle(review),
                              .stretch = 1};
     gizmo.pivot.y += tl_session_lifted_m(review->session);
@@ -101,7 +102,7 @@ void tl_review_place_toggle(struct tl_review *review)
         return;
     }
     placing->shown = !placing->shown;
-    tl_review_place_hover(review, review->pointer_x, review->pointer_y);
+    tl_review_place_hover(review, review->input.x, review->input.y);
     tl_review_report(review, placing->shown ? "arrows move the garment, the ring turns it, the box sizes it; "
                                               "Shift: fine, Ctrl: in steps, Esc: back"
                                             : "hides the handles");
@@ -118,7 +119,7 @@ bool tl_review_place_hide(struct tl_review *review)
 void tl_review_place_hover(struct tl_review *review, float x, float y)
 {
     review->placing.under = TL_GIZMO_NONE;
-    if (has_handles(review) && !tl_panel_wants_pointer(review->panel, x, y)) {
+    if (has_handles(review) && !tl_panel_wants_pointer(review->screen.panel, x, y)) {
         const struct tl_gizmo gizmo = gizmo_of(review);
         review->placing.under = tl_gizmo_under(&gizmo, (vec2s){{x, y}});
     }
@@ -128,13 +129,13 @@ static void begin(struct tl_review *review, enum tl_gizmo_handle handle, float x
 {
     struct tl_review_placing *placing = &review->placing;
     tl_review_fix_camera(review); /* which follows a scene that it frames */
-    review->drag = TL_DRAG_PLACE;
+    review->input.drag = TL_DRAG_PLACE;
     placing->held = handle;
     placing->gizmo = gizmo_of(review);
     placing->before = placing_of(&review->wanted.scene);
     placing->from = placing->to = (vec2s){{x, y}};
     placing->change = (struct tl_gizmo_change){.factor = 1};
-    if (review->playing)
+    if (review->play.is_on)
         tl_review_set_playing(review, false);
 }
 
@@ -197,11 +198,11 @@ void tl_review_place_scale(struct tl_review *review, float factor)
 void tl_review_place_end(struct tl_review *review)
 {
     const struct tl_scene_params *scene = &review->wanted.scene;
-    if (review->drag != TL_DRAG_PLACE)
+    if (review->input.drag != TL_DRAG_PLACE)
         return;
-    review->drag = TL_DRAG_NONE;
+    review->input.drag = TL_DRAG_NONE;
     review->placing.held = TL_GIZMO_NONE;
-    review->changed = true;
+    review->due.changed = true;
     tl_review_report(review, "--move %g,%g,%g --turn %g --scale %g", (double)scene->move_m[0],
                      (double)scene->move_m[1], (double)scene->move_m[2], (double)scene->turn_deg,
                      (double)scene->scale);
@@ -209,10 +210,10 @@ void tl_review_place_end(struct tl_review *review)
 
 bool tl_review_place_cancel(struct tl_review *review)
 {
-    if (review->drag != TL_DRAG_PLACE)
+    if (review->input.drag != TL_DRAG_PLACE)
         return false;
     set_placing(review, &review->placing.before);
-    review->drag = TL_DRAG_NONE;
+    review->input.drag = TL_DRAG_NONE;
     review->placing.held = TL_GIZMO_NONE;
     tl_review_report(review, "the garment stays where it was");
     return true;

@@ -6,8 +6,22 @@
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_PLACE_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_PLACE_H
 
+#include "app/view/gizmo/gizmo.h"
 #include "app/view/gizmo/gizmo_shapes.h"
-#include "app/view/review/review.h"
+#include "assets/base/placing.h"
+
+struct tl_review;
+
+/* Placing the garment's file by the pointer. */
+struct tl_review_placing {
+    bool shown;                       /* the handles */
+    enum tl_gizmo_handle under, held; /* the pointer; held: NONE but in a drag of a handle */
+    bool is_anywhere;                 /* a drag that began beside the handles, with keys that choose it */
+    struct tl_gizmo gizmo;            /* when the drag began */
+    struct tl_placing before;
+    vec2s from, to; /* pixels; `to` goes slower than the pointer while the drag is fine */
+    struct tl_gizmo_change change;
+};
 
 /* Shows or hides the handles; reports why there are none. */
 void tl_review_place_toggle(struct tl_review *review);

@@ -1,6 +1,7 @@
 #include "app/view/review/review_read.h"
 
 #include "app/display/board.h"
+#include "app/view/review/review.h"
 #include "app/view/review/review_wipe.h"
 #include "config/base/memory.h"
 #include "render/inspect/inspect.h"
@@ -13,7 +14,7 @@
 /* The renderer of the appearance under the pointer. */
 static const tl_renderer *renderer_under(const struct tl_review *review, int width)
 {
-    bool is_left = (int)review->pointer_x < tl_review_wipe_column(review, width);
+    bool is_left = (int)review->input.x < tl_review_wipe_column(review, width);
     return is_left ? review->wipe.renderer : review->renderer;
 }
 
@@ -45,7 +46,7 @@ static bool inspect_under(const struct tl_review *review, struct tl_inspection *
 {
     int width, height;
     tl_review_size(review, &width, &height);
-    int x = (int)review->pointer_x, y = (int)review->pointer_y;
+    int x = (int)review->input.x, y = (int)review->input.y;
     bool is_over = x >= 0 && y >= 0 && x < width && y < height;
     return is_over && tl_renderer_inspect(renderer_under(review, width), x, y, found);
 }
@@ -54,7 +55,7 @@ void tl_review_read_out(const struct tl_review *review, char *text, size_t size)
 {
     struct tl_inspection found;
     text[0] = '\0';
-    if (review->reads_out && inspect_under(review, &found))
+    if (review->input.reads_out && inspect_under(review, &found))
         describe(&found, text, size);
 }
 

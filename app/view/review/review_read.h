@@ -2,7 +2,9 @@
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_READ_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_READ_H
 
-#include "app/view/review/review.h"
+#include "app/view/panel/panel_shim.h"
+
+struct tl_review;
 
 /* Surface, normal, strain and visibility under the pointer, as lines of text; "" when there is nothing to
  * print. */

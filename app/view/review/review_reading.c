@@ -1,5 +1,6 @@
 #include "app/view/review/review_reading.h"
 
+#include "app/view/review/review.h"
 #include "app/view/review/review_edit.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
@@ -137,7 +138,7 @@ static void write_notice(struct tl_review *review)
              size ? size : "",
              size ? "\nD drapes the garment; M shows handles that move, turn and size it" : "");
     free(read_as);
-    review->redraws = review->redraws > 1 ? review->redraws : 1;
+    review->due.redraws = review->due.redraws > 1 ? review->due.redraws : 1;
 }
 
 /* A file that is being changed stays; else the first whose reading is in doubt and was not accepted. */
@@ -245,7 +246,7 @@ static void remember(struct tl_review *review, enum tl_reading_of of)
     bool is_garment = of == TL_READING_GARMENT;
     int *named_units = is_garment ? &named.units : &named.avatar_units;
     int *named_up = is_garment ? &named.up : &named.avatar_up;
-    if (review->loader) /* which may read it otherwise */
+    if (review->load.loader) /* which may read it otherwise */
         return;
     if (*named_units == TL_UNITS_AUTO)
         *named_units = units;

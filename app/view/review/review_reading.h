@@ -7,7 +7,20 @@
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_READING_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_READING_H
 
-#include "app/view/review/review.h"
+#include "app/view/panel/panel_shim.h"
+#include "config/options.h"
+
+struct tl_review;
+
+/* The reading of the file of a garment or a body; kept: what the user has accepted. */
+enum tl_reading_of { TL_READING_NONE, TL_READING_GARMENT, TL_READING_AVATAR, TL_READING_COUNT };
+struct tl_review_reading {
+    enum tl_reading_of of;     /* whose reading is shown */
+    char name[TL_STRING_SIZE]; /* of its file */
+    char kept[TL_READING_COUNT][TL_STRING_SIZE];
+    char kept_size[512];
+    char notice[1024]; /* "": none is shown */
+};
 
 /* Whether the model was read from a file whose units are an option: built-in ones and patterns are metric. */
 bool tl_review_has_units(const struct tl_review *review, enum tl_reading_of of);

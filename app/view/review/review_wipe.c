@@ -1,6 +1,7 @@
 #include "app/view/review/review_wipe.h"
 
 #include "app/scene/appearance.h"
+#include "app/view/review/review.h"
 #include "app/view/review/review_edit.h"
 #include "app/view/review/review_reading.h"
 #include "config/base/log.h"
@@ -14,8 +15,8 @@
 /* A loader of an appearance reads the models of a session. */
 static void cancel_appearance(struct tl_review *review)
 {
-    if (review->loader && tl_loader_kind(review->loader) == TL_LOAD_APPEARANCE)
-        tl_loader_cancel(&review->loader);
+    if (review->load.loader && tl_loader_kind(review->load.loader) == TL_LOAD_APPEARANCE)
+        tl_loader_cancel(&review->load.loader);
 }
 
 void tl_review_end_comparison(struct tl_review *review)
@@ -33,10 +34,10 @@ void tl_review_compare(struct tl_review *review)
     if (wipe->renderer) {
         tl_review_end_comparison(review);
         tl_review_report(review, "comparison ended");
-        review->redraws = 1;
+        review->due.redraws = 1;
         return;
     }
-    wipe->renderer = tl_renderer_create(review->gpu, &error);
+    wipe->renderer = tl_renderer_create(review->screen.gpu, &error);
     if (!wipe->renderer) {
         tl_review_report_error(review, &error);
         return;
@@ -47,7 +48,7 @@ void tl_review_compare(struct tl_review *review)
                                   tl_session_frame(review->session).environment_revision);
     wipe->settings = review->good;
     wipe->place = 0.5f;
-    review->image_is_old = true;
+    review->due.image_is_old = true;
     tl_review_report(review,
                      "compares: A, left, stays as it is; change fabric, preset or options for B, which "
                      "is draped in its own fabric");
@@ -59,7 +60,7 @@ void tl_review_keep_for_a(struct tl_review *review, tl_session **left)
     if (!wipe->renderer || wipe->session)
         return;
     wipe->session = *left;
-    wipe->draped = review->draped;
+    wipe->draped = review->load.draped;
     *left = NULL;
     tl_info("view: A keeps its drape");
 }
@@ -69,14 +70,14 @@ static void swap_sessions(struct tl_review *review)
 {
     struct tl_review_wipe *wipe = &review->wipe;
     tl_session *session_b = review->session;
-    const struct tl_cloth_fabric draped_b = review->draped;
+    const struct tl_cloth_fabric draped_b = review->load.draped;
     cancel_appearance(review);
     tl_session_exchange_light(review->session, wipe->session);
     review->session = wipe->session;
-    review->draped = wipe->draped;
+    review->load.draped = wipe->draped;
     wipe->session = session_b;
     wipe->draped = draped_b;
-    review->reported_frame = -1;
+    review->input.reported_frame = -1;
 }
 
 void tl_review_swap(struct tl_review *review)
@@ -96,8 +97,8 @@ void tl_review_swap(struct tl_review *review)
     review->wipe.renderer = renderer_b;
     if (review->wipe.session)
         swap_sessions(review);
-    review->loaded_appearance = review->wanted;
-    review->changed = true;
+    review->load.appearance = review->wanted;
+    review->due.changed = true;
     tl_review_note_reading(review);
     tl_review_report(review, "A and B exchanged");
 }
@@ -135,7 +136,7 @@ void tl_review_move_wipe(struct tl_review *review, float place)
 {
     const float margin = 0.02f; /* so that the pointer can reach the line again */
     review->wipe.place = fminf(fmaxf(place, margin), 1 - margin);
-    review->redraws = 2;
+    review->due.redraws = 2;
 }
 
 int tl_review_wipe_column(const struct tl_review *review, int width)

@@ -5,7 +5,18 @@
 #ifndef TOILE_APP_VIEW_REVIEW_REVIEW_WIPE_H
 #define TOILE_APP_VIEW_REVIEW_REVIEW_WIPE_H
 
-#include "app/view/review/review.h"
+#include "app/scene/session.h"
+
+struct tl_review;
+
+/* A, on the left, is what the settings were; B, on the right, is what they are. */
+struct tl_review_wipe {
+    tl_renderer *renderer;         /* of A; NULL: nothing is compared */
+    struct tl_settings settings;   /* of A */
+    tl_session *session;           /* of A, once B is another drape or scene; NULL: A is drawn from B's */
+    struct tl_cloth_fabric draped; /* that the garment of A's session hangs in */
+    float place;                   /* of the line between A and B, as a share of the view's width */
+};
 
 void tl_review_compare(struct tl_review *review);        /* starts or ends a comparison */
 void tl_review_end_comparison(struct tl_review *review); /* without a word; nothing need be compared */

@@ -84,11 +84,11 @@ static void a_frames_time_includes_the_raster(void **state)
     tl_error error = {0};
     epoxy_glFinish = finish;
     stage.now_s = 100;
-    review->times.began_s = stage.now_s;
-    review->is_new = review->is_budgeted = true;
+    review->image.times.began_s = stage.now_s;
+    review->image.is_new = review->image.is_budgeted = true;
     assert_true(tl_review_present(review, &error));
     assert_near(stage.learnt_ms, 2 * RASTER_MS, 1e-6); /* the image and the panel */
-    assert_near(review->times.frame, 2 * RASTER_MS, 1e-6);
+    assert_near(review->image.times.frame, 2 * RASTER_MS, 1e-6);
     assert_int_equal(stage.pending, 0);
     assert_near(stage.shown_s, 100 + 2e-3 * RASTER_MS, 1e-6);
     free(review);

@@ -71,7 +71,7 @@ static void every_button_leads_to_its_row(void **state)
             assert_true(strcmp(buttons.of[i].label, buttons.of[k].label) != 0);
     }
     struct tl_review *playing = TL_NEW(struct tl_review);
-    playing->playing = true;
+    playing->play.is_on = true;
     tl_review_list_buttons(playing, &buttons);
     assert_string_equal(buttons.of[0].label, "Pause");
     free(playing);
