@@ -193,7 +193,7 @@ static bool open_review(struct tl_review *review, tl_error *error)
     tl_review_add_environment(review, review->wanted.scene.environment);
     /* The first image must succeed: there are no earlier settings to go back to. */
     review->good = review->wanted;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     if (!tl_review_draw_first(review, error))
         return false;
     tl_info("view: ready with %s; H lists keys and gestures", tl_gpu_name(review->screen.gpu));

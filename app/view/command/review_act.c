@@ -57,7 +57,7 @@ void tl_act_reset(struct tl_review *review, int argument)
     tl_error error;
     if (!tl_session_reset(review->session, &error))
         tl_review_report_error(review, &error);
-    review->due.image_is_old = true;
+    tl_review_mark_old(review);
     tl_info("view: reset");
 }
 
@@ -97,7 +97,7 @@ void tl_act_turn_environment(struct tl_review *review, int argument)
 {
     float *yaw_deg = &review->wanted.scene.environment_yaw_deg;
     *yaw_deg = tl_orbit_wrap_deg(*yaw_deg + (float)argument * ENVIRONMENT_STEP_DEG);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_motion(review);
     tl_info("view: environment at %g degrees", (double)*yaw_deg);
 }
@@ -109,7 +109,7 @@ void tl_act_turn_camera(struct tl_review *review, int argument)
     float dy = argument == TL_ACT_UP ? -turn : argument == TL_ACT_DOWN ? turn : 0;
     tl_review_stop_moving(review);
     tl_orbit_turn(&review->wanted.camera, dx, dy);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_motion(review);
 }
 
@@ -118,7 +118,7 @@ void tl_act_zoom(struct tl_review *review, int argument)
     tl_review_stop_moving(review);
     tl_review_fix_camera(review);
     tl_orbit_zoom(&review->wanted.camera, (float)argument, 0, 0);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_motion(review);
 }
 
@@ -127,7 +127,7 @@ void tl_act_frame_all(struct tl_review *review, int argument)
     (void)argument;
     tl_review_stop_moving(review);
     review->wanted.camera.distance_m = 0;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
 }
 
 void tl_act_budget(struct tl_review *review, int argument)
@@ -227,7 +227,7 @@ void tl_act_options(struct tl_review *review, int argument)
     (void)argument;
     if (!review->screen.params.panel) {
         review->screen.params.panel = true;
-        review->due.changed = true;
+        tl_review_mark_changed(review);
     }
     tl_panel_use_keys(review->screen.panel, true);
     review->due.redraws = 3;
@@ -396,7 +396,7 @@ void tl_act_panel(struct tl_review *review, int argument)
 {
     (void)argument;
     review->screen.params.panel = !review->screen.params.panel;
-    review->due.changed = true; /* the view has another size */
+    tl_review_mark_changed(review); /* the view has another size */
 }
 
 void tl_act_help(struct tl_review *review, int argument)

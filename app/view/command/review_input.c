@@ -22,7 +22,7 @@ static void focus(struct tl_review *review, float x, float y)
         return;
     tl_review_fix_camera(review);
     tl_orbit_focus(&review->wanted.camera, point);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_info("view: looks at vertex %u", (unsigned)vertex);
 }
 
@@ -67,19 +67,19 @@ static void on_press(struct tl_review *review, const struct tl_window_event *eve
     if (places(event->modifiers))
         tl_review_place_begin(review, event->x, event->y, event->button != GLFW_MOUSE_BUTTON_LEFT);
     else if (event->button != GLFW_MOUSE_BUTTON_LEFT)
-        review->input.drag = TL_DRAG_PAN;
+        tl_review_set_drag(review, TL_DRAG_PAN);
     else if (tl_review_place_catch(review, event->x, event->y))
         return;
     else if (is_on_wipe(review, event->x, width))
-        review->input.drag = TL_DRAG_WIPE;
+        tl_review_set_drag(review, TL_DRAG_WIPE);
     else if (event->modifiers & GLFW_MOD_CONTROL)
         tl_review_hand_begin(review, event->x, event->y);
     else if (event->modifiers & GLFW_MOD_SHIFT)
-        review->input.drag = TL_DRAG_LIGHT;
+        tl_review_set_drag(review, TL_DRAG_LIGHT);
     else if (is_double_click(review, event))
         focus(review, event->x, event->y);
     else
-        review->input.drag = TL_DRAG_ORBIT;
+        tl_review_set_drag(review, TL_DRAG_ORBIT);
 }
 
 static void on_release(struct tl_review *review, const struct tl_window_event *event)
@@ -126,7 +126,7 @@ static void on_move(struct tl_review *review, const struct tl_window_event *even
         tl_review_hand_aim(review, event->x, event->y);
         return;
     }
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_motion(review);
 }
 
@@ -148,7 +148,7 @@ static void on_wheel(struct tl_review *review, const struct tl_window_event *eve
     float x = (event->x - 0.5f * (float)width) / (float)height;
     float y = (event->y - 0.5f * (float)height) / (float)height;
     tl_orbit_zoom(&review->wanted.camera, event->steps, x, y);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_motion(review);
 }
 
@@ -209,7 +209,8 @@ static void handle(struct tl_review *review, const struct tl_window_event *event
     case TL_WINDOW_REDRAW: {
         int width, height;
         tl_review_size(review, &width, &height);
-        review->due.changed |= width != review->good.image.width || height != review->good.image.height;
+        if (width != review->good.image.width || height != review->good.image.height)
+            tl_review_mark_changed(review);
         break;
     }
     case TL_WINDOW_CLOSE:

@@ -222,7 +222,7 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
         tl_review_apply_names(review);
         tl_review_add_environment(review, review->wanted.scene.environment);
         tl_review_note_motion(review);
-        review->due.changed = true;
+        tl_review_mark_changed(review);
     }
     if (result->frame >= 0)
         tl_review_go_to_frame(review, result->frame);
@@ -361,5 +361,6 @@ void tl_review_build_panel(struct tl_review *review)
     bool had_panel = review->screen.params.panel;
     struct tl_panel_result result = tl_panel_build(review->screen.panel, &input);
     apply_result(review, &result, &before, &buttons);
-    review->due.changed |= review->screen.params.panel != had_panel; /* the view has another size */
+    if (review->screen.params.panel != had_panel)
+        tl_review_mark_changed(review); /* the view has another size */
 }

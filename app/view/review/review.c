@@ -60,6 +60,21 @@ void tl_review_expire_message(struct tl_review *review)
         tl_review_clear_message(review);
 }
 
+void tl_review_mark_changed(struct tl_review *review)
+{
+    review->due.changed = true;
+}
+
+void tl_review_mark_old(struct tl_review *review)
+{
+    review->due.image_is_old = true;
+}
+
+void tl_review_set_drag(struct tl_review *review, enum tl_review_drag drag)
+{
+    review->input.drag = drag;
+}
+
 void tl_review_note_motion(struct tl_review *review)
 {
     review->due.moved_s = tl_clock_s();

@@ -132,6 +132,13 @@ void tl_review_expire_message(struct tl_review *review);
 /* Starts or pauses the simulation or the playback, from now on. */
 void tl_review_set_playing(struct tl_review *review, bool plays);
 
+/* Requests the next image: `wanted` was edited; the session has changed. review_draw takes the requests back.
+ */
+void tl_review_mark_changed(struct tl_review *review);
+void tl_review_mark_old(struct tl_review *review);
+
+void tl_review_set_drag(struct tl_review *review, enum tl_review_drag drag);
+
 /* Notes that the camera, the light or a slider has just moved: coarse images are allowed for a moment. */
 void tl_review_note_motion(struct tl_review *review);
 bool tl_review_is_moving(const struct tl_review *review);    /* coarse images are allowed */

@@ -23,7 +23,7 @@ bool tl_review_set(struct tl_review *review, const char *key, const char *text)
         tl_review_report_error(review, &error);
         return false;
     }
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     return true;
 }
 
@@ -36,7 +36,7 @@ static bool apply_named(struct tl_review *review, apply_name *apply, const char 
     char *copy = tl_copy_string(name); /* `name` may point into the settings that are changed */
     bool applied = apply(&review->wanted, copy, &error);
     if (applied) {
-        review->due.changed = true;
+        tl_review_mark_changed(review);
     } else {
         tl_review_report_error(review, &error);
         review->wanted = review->good;
@@ -91,7 +91,7 @@ void tl_review_next_view(struct tl_review *review, int by)
 {
     int *view = &review->wanted.image.view;
     *view = (*view + by + TL_VIEW_COUNT) % TL_VIEW_COUNT;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_report(review, "shows %s", tl_image_view_names[*view]);
 }
 
@@ -123,7 +123,7 @@ void tl_review_use_scene(struct tl_review *review, const char *path)
     free(review->keep.scene_file);
     review->keep.scene_file = tl_copy_string(path);
     review->wanted = loaded;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     review->keep.keeps_settings = false; /* only the built-in review's settings are kept between runs */
     tl_review_add_environment(review, loaded.scene.environment);
 }
@@ -420,7 +420,7 @@ void tl_review_undo(struct tl_review *review, bool redo)
     }
     struct tl_settings before = review->wanted;
     tl_history_restore(edit, &review->wanted);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_journal_undo(review->keep.journal, redo, &review->wanted);
     char *text =
         redo ? tl_history_describe(&before, &review->wanted) : tl_history_describe(&review->wanted, &before);

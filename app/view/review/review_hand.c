@@ -41,7 +41,7 @@ bool tl_review_hand_begin(struct tl_review *review, float x, float y)
         return false;
     }
     const struct tl_camera camera = tl_session_frame(review->session).camera;
-    review->input.drag = TL_DRAG_CLOTH;
+    tl_review_set_drag(review, TL_DRAG_CLOTH);
     review->hand.depth_m = depth_of(&camera, point);
     review->hand.target = review->hand.at = point;
     if (!review->play.is_on)
@@ -81,5 +81,5 @@ void tl_review_hand_release(struct tl_review *review)
     tl_cloth *cloth = tl_session_cloth(review->session);
     if (review->input.drag == TL_DRAG_CLOTH && cloth)
         tl_cloth_release(cloth);
-    review->input.drag = TL_DRAG_NONE;
+    tl_review_set_drag(review, TL_DRAG_NONE);
 }

@@ -183,7 +183,7 @@ static void reload_scene(struct tl_review *review)
     }
     loaded.camera = review->wanted.camera;
     review->wanted = loaded;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_report(review, "edited: %s", review->keep.scene_file);
 }
 
@@ -195,7 +195,7 @@ static void reload_named(struct tl_review *review, const char *name,
     tl_error error;
     char *copy = tl_copy_string(name); /* `name` points into the settings that are changed */
     if (apply(&review->wanted, copy, &error)) {
-        review->due.changed = true;
+        tl_review_mark_changed(review);
         tl_review_report(review, "edited: %s", copy);
     } else {
         tl_review_report_error(review, &error);

@@ -190,7 +190,7 @@ static void finish(struct tl_review *review)
             tl_info("view: %s hangs in %s", made_of.scene.garment, made_of.scene.fabric);
         review->input.reported_frame = -1;
         if (review->input.drag == TL_DRAG_CLOTH)
-            review->input.drag = TL_DRAG_NONE; /* the cloth that was pulled is gone */
+            tl_review_set_drag(review, TL_DRAG_NONE); /* the cloth that was pulled is gone */
         tl_review_note_reading(review);
         tl_review_keep_recent(review);
     } else {
@@ -213,7 +213,7 @@ void tl_review_load(struct tl_review *review)
             tl_loader_cancel(&review->load.loader);
         else
             finish(review);
-        review->due.changed = true;
+        tl_review_mark_changed(review);
     }
     bool waits = review->load.loader || review->input.editing || review->input.drag == TL_DRAG_PLACE;
     if (!waits && ((review->due.changed && is_slow(review, &review->wanted)) || wants_drape(review)))
@@ -231,7 +231,7 @@ bool tl_review_stop_loading(struct tl_review *review)
     review->wanted = kept;
     if (review->load.drapes_again)
         review->load.draped = review->wanted.fabric;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_report(review, review->load.drapes_again ? "draping was stopped: the garment hangs as before"
                                                        : "loading was stopped: the scene is unchanged");
     return true;

@@ -59,7 +59,7 @@ void tl_review_go_to_frame(struct tl_review *review, int frame)
     review->play.is_on = false;
     if (!tl_session_go_to(review->session, frame, &error))
         tl_review_report_error(review, &error);
-    review->due.image_is_old = true;
+    tl_review_mark_old(review);
     tl_review_note_motion(review);
     tl_info("view: frame %d", tl_session_frame_number(review->session));
 }
@@ -220,7 +220,7 @@ void tl_review_move(struct tl_review *review)
         if (motion->environment)
             *environment_deg =
                 tl_orbit_wrap_deg(*environment_deg + step_s * review->screen.params.environment_turn_deg_s);
-        review->due.changed = true;
+        tl_review_mark_changed(review);
     }
     if (review->path.records)
         record(review, now_s);

@@ -35,7 +35,7 @@ static void set_placing(struct tl_review *review, const struct tl_placing *placi
     scene->turn_deg = tl_orbit_wrap_deg(placing->turn_deg);
     for (int i = 0; i < 3; i++)
         scene->move_m[i] = glm_clamp(in_steps(placing->move_m.raw[i], 1e4f), -1000, 1000);
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_motion(review);
 }
 
@@ -72,7 +72,8 @@ void tl_review_follow_place(struct tl_review *review)
     const struct tl_placing from = placing_of(shown), to = placing_of(wanted);
     bool is_same = strcmp(shown->garment, wanted->garment) == 0 && !reason_against(review);
     const struct tl_placing between = tl_placing_between(&from, is_same ? &to : &from);
-    review->due.image_is_old |= tl_session_show_placed(review->session, &between);
+    if (tl_session_show_placed(review->session, &between))
+        tl_review_mark_old(review);
 }
 
 /* ---- The handles ---- */
@@ -129,7 +130,7 @@ static void begin(struct tl_review *review, enum tl_gizmo_handle handle, float x
 {
     struct tl_review_placing *placing = &review->placing;
     tl_review_fix_camera(review); /* which follows a scene that it frames */
-    review->input.drag = TL_DRAG_PLACE;
+    tl_review_set_drag(review, TL_DRAG_PLACE);
     placing->held = handle;
     placing->gizmo = gizmo_of(review);
     placing->before = placing_of(&review->wanted.scene);
@@ -200,9 +201,9 @@ void tl_review_place_end(struct tl_review *review)
     const struct tl_scene_params *scene = &review->wanted.scene;
     if (review->input.drag != TL_DRAG_PLACE)
         return;
-    review->input.drag = TL_DRAG_NONE;
+    tl_review_set_drag(review, TL_DRAG_NONE);
     review->placing.held = TL_GIZMO_NONE;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_report(review, "--move %g,%g,%g --turn %g --scale %g", (double)scene->move_m[0],
                      (double)scene->move_m[1], (double)scene->move_m[2], (double)scene->turn_deg,
                      (double)scene->scale);
@@ -213,7 +214,7 @@ bool tl_review_place_cancel(struct tl_review *review)
     if (review->input.drag != TL_DRAG_PLACE)
         return false;
     set_placing(review, &review->placing.before);
-    review->input.drag = TL_DRAG_NONE;
+    tl_review_set_drag(review, TL_DRAG_NONE);
     review->placing.held = TL_GIZMO_NONE;
     tl_review_report(review, "the garment stays where it was");
     return true;

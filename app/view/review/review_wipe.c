@@ -48,7 +48,7 @@ void tl_review_compare(struct tl_review *review)
                                   tl_session_frame(review->session).environment_revision);
     wipe->settings = review->good;
     wipe->place = 0.5f;
-    review->due.image_is_old = true;
+    tl_review_mark_old(review);
     tl_review_report(review,
                      "compares: A, left, stays as it is; change fabric, preset or options for B, which "
                      "is draped in its own fabric");
@@ -98,7 +98,7 @@ void tl_review_swap(struct tl_review *review)
     if (review->wipe.session)
         swap_sessions(review);
     review->load.appearance = review->wanted;
-    review->due.changed = true;
+    tl_review_mark_changed(review);
     tl_review_note_reading(review);
     tl_review_report(review, "A and B exchanged");
 }
