@@ -44,7 +44,7 @@ struct tl_cloth_params {
     double strain_limit;    /* preview: largest strain of an edge; 0: only the energy resists */
     double pin_above_m;     /* vertices that start higher are pinned to the avatar's nearest point; 0: none */
     int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
-    char pin_openings[TL_STRING_SIZE]; /* names of openings whose vertices are pinned, with commas between
+    const char *pin_openings; /* names of openings whose vertices are pinned, with commas between
                                           them */
     bool self_contact;    /* the cloth does not pass through itself: cloth/self_contact/keep_apart.h */
     double gravity;       /* m/s^2, along -Y */

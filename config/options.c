@@ -1,6 +1,7 @@
 #include "config/options.h"
 
 #include "config/base/hash.h"
+#include "config/base/intern.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
 #include "config/base/words.h"
@@ -10,10 +11,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+static bool is_text(const struct tl_option *row)
+{
+    return row->type == TL_STRING || row->type == TL_PATH;
+}
+
+/* Defaults that leave a text out mean "". */
 void tl_options_reset(const struct tl_binding *bindings, size_t count)
 {
-    for (size_t i = 0; i < count; i++)
-        memcpy(bindings[i].params, bindings[i].table->defaults, bindings[i].table->params_size);
+    for (size_t i = 0; i < count; i++) {
+        const struct tl_option_table *table = bindings[i].table;
+        memcpy(bindings[i].params, table->defaults, table->params_size);
+        for (size_t r = 0; r < table->row_count; r++)
+            if (is_text(&table->rows[r]))
+                tl_options_copy(&table->rows[r], table->defaults, bindings[i].params);
+    }
 }
 
 const struct tl_binding *tl_options_find_table(const struct tl_binding *bindings, size_t count,
@@ -173,14 +185,16 @@ char *tl_options_get_text(const struct tl_binding *binding, const struct tl_opti
 
 void tl_options_copy(const struct tl_option *row, const void *from, void *to)
 {
-    memcpy((char *)to + row->offset, (const char *)from + row->offset, tl_option_size(row));
+    const char *value = (const char *)from + row->offset;
+    const char *text = is_text(row) ? tl_option_text(value) : NULL;
+    memcpy((char *)to + row->offset, text ? (const void *)&text : value, tl_option_size(row));
 }
 
-static void make_absolute(char *path)
+static void make_absolute(const char **path)
 {
-    char *folder = realpath(".", NULL), *whole = folder ? tl_format("%s/%s", folder, path) : NULL;
+    char *folder = realpath(".", NULL), *whole = folder ? tl_format("%s/%s", folder, *path) : NULL;
     if (whole && strlen(whole) < TL_STRING_SIZE)
-        strcpy(path, whole);
+        *path = tl_intern(whole);
     free(whole);
     free(folder);
 }
@@ -190,8 +204,9 @@ void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t co
     for (size_t i = 0; i < count; i++)
         for (size_t r = 0; r < bindings[i].table->row_count; r++) {
             const struct tl_option *row = &bindings[i].table->rows[r];
-            char *field = (char *)bindings[i].params + row->offset;
-            if (row->type == TL_PATH && tl_option_is_file_name(field) && field[0] != '/')
+            void *field = (char *)bindings[i].params + row->offset;
+            const char *path = row->type == TL_PATH ? tl_option_text(field) : "";
+            if (tl_option_is_file_name(path) && path[0] != '/')
                 make_absolute(field);
         }
 }
@@ -225,6 +240,19 @@ bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, s
     return false;
 }
 
+uint64_t tl_options_changes(const struct tl_binding *a, const struct tl_binding *b, size_t count)
+{
+    uint64_t changes = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t r = 0; r < a[i].table->row_count; r++) {
+            const struct tl_option *row = &a[i].table->rows[r];
+            if (!tl_option_equal(row, (const char *)a[i].params + row->offset,
+                                 (const char *)b[i].params + row->offset))
+                changes |= row->affects;
+        }
+    return changes;
+}
+
 void tl_options_take(const struct tl_binding *from, const struct tl_binding *to, size_t count,
                      struct tl_option_filter filter)
 {
@@ -235,7 +263,7 @@ void tl_options_take(const struct tl_binding *from, const struct tl_binding *to,
 }
 
 /* A name and a value end with a NUL or have a fixed size, so that no two lists of values make the same bytes.
- * Text is hashed up to its end: what lies behind it in the field is of an earlier value. */
+ */
 uint64_t tl_options_hash(const struct tl_binding *bindings, size_t count, struct tl_option_filter filter,
                          uint64_t hash)
 {
@@ -243,11 +271,11 @@ uint64_t tl_options_hash(const struct tl_binding *bindings, size_t count, struct
         for (size_t r = 0; r < bindings[i].table->row_count; r++) {
             const struct tl_option *row = &bindings[i].table->rows[r];
             const char *field = (const char *)bindings[i].params + row->offset;
-            bool is_text = row->type == TL_STRING || row->type == TL_PATH;
             if (!tl_option_passes(row, filter))
                 continue;
             hash = tl_hash(hash, row->name, strlen(row->name) + 1);
-            hash = tl_hash(hash, field, is_text ? strlen(field) + 1 : tl_option_size(row));
+            hash = is_text(row) ? tl_hash(hash, tl_option_text(field), strlen(tl_option_text(field)) + 1)
+                                : tl_hash(hash, field, tl_option_size(row));
         }
     return hash;
 }

@@ -18,9 +18,10 @@
  *
  * Field types by option type: TL_BOOL bool; TL_INT int; TL_FLOAT float; TL_DOUBLE double; TL_ENUM int (index
  * into `choices`); TL_COLOUR float[3] (linear Rec. 709); TL_VECTOR float[3] (written [x, y, z]); TL_STRING
- * and TL_PATH char[TL_STRING_SIZE]. A relative TL_PATH is taken from the folder of the file that names it. A
- * TL_PATH with `choices` holds either one of these names, kept as it is, or a file name;
- * tl_option_is_file_name distinguishes them.
+ * and TL_PATH const char *, an interned text (config/base/intern.h) or a literal, so that params are copied by
+ * assignment; NULL, in a struct that was never reset, stands for "". A relative TL_PATH is taken from the
+ * folder of the file that names it. A TL_PATH with `choices` holds either one of these names, kept as it is,
+ * or a file name; tl_option_is_file_name distinguishes them.
  *
  * NaN and infinities are refused everywhere; so is text that is not printable UTF-8, so that every value can
  * be written into YAML and JSON and read back.
@@ -38,7 +39,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#define TL_STRING_SIZE 1024
+#define TL_STRING_SIZE 1024 /* bytes of the longest text, with its NUL */
 
 /* ---- The column `affects`: what must be done again when an option changes ---- */
 
@@ -113,6 +114,10 @@ struct tl_binding {
     void *params;
 };
 
+/* The offset of a text; a field of another type does not compile. */
+#define TL_OPTION_TEXT_OFFSET(s, field)                                                                      \
+    (offsetof(s, field) + 0 * sizeof(_Generic(((s *)NULL)->field, const char * : 1)))
+
 /* clang-format off: it takes the braces of an initialiser for a block. */
 #define TL_OPTION_BOOL(s, field, bits, text)                                                                 \
     {                                                                                                        \
@@ -144,15 +149,15 @@ struct tl_binding {
     }
 #define TL_OPTION_STRING(s, field, bits, text)                                                               \
     {                                                                                                        \
-#field, TL_STRING, offsetof(s, field), bits, 0, 0, NULL, "", text                                    \
+#field, TL_STRING, TL_OPTION_TEXT_OFFSET(s, field), bits, 0, 0, NULL, "", text                       \
     }
 #define TL_OPTION_PATH(s, field, bits, text)                                                                 \
     {                                                                                                        \
-#field, TL_PATH, offsetof(s, field), bits, 0, 0, NULL, "", text                                      \
+#field, TL_PATH, TL_OPTION_TEXT_OFFSET(s, field), bits, 0, 0, NULL, "", text                         \
     }
 #define TL_OPTION_NAME_OR_PATH(s, field, bits, names, text)                                                  \
     {                                                                                                        \
-#field, TL_PATH, offsetof(s, field), bits, 0, 0, names, "", text                                     \
+#field, TL_PATH, TL_OPTION_TEXT_OFFSET(s, field), bits, 0, 0, names, "", text                        \
     }
 #define TL_OPTION_TABLE(label, text, row_array, s, ...)                                                      \
     {                                                                                                        \
@@ -227,6 +232,21 @@ bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t co
                                     const struct tl_record_section *section, const char *path,
                                     tl_error *error);
 
+/* The text of a TL_STRING or TL_PATH field; "" where the field is NULL. Errors: none. Lifetime: of the text.
+ * Threads: pure. */
+static inline const char *tl_option_text(const void *field)
+{
+    const char *text = *(const char *const *)field;
+    return text ? text : "";
+}
+
+/* Whether a text field, which may be NULL, holds a text. Errors: none. Lifetime: keeps nothing. Threads:
+ * pure. */
+static inline bool tl_text_is_given(const char *text)
+{
+    return text && text[0] != '\0';
+}
+
 /* True when two fields of the row's type hold the same value. Errors: none. Lifetime: keeps nothing. Threads:
  * pure. */
 bool tl_option_equal(const struct tl_option *row, const void *a, const void *b);
@@ -239,10 +259,12 @@ struct tl_option_filter {
 bool tl_option_passes(const struct tl_option *row, struct tl_option_filter filter);
 
 /* The rows that pass a filter, over lists of bindings to the same tables in the same order. `differ` is true
- * when a value differs; `take` copies the values of `from` into `to`; `hash` continues `hash`
- * (config/base/hash.h) over names and values. Errors: none. Lifetime: keeps nothing. Threads: pure. */
+ * when a value differs, `changes` is what all rows affect whose values differ; `take` copies the values of
+ * `from` into `to`; `hash` continues `hash` (config/base/hash.h) over names and values. Errors: none. Lifetime:
+ * keeps nothing. Threads: pure. */
 bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, size_t count,
                        struct tl_option_filter filter);
+uint64_t tl_options_changes(const struct tl_binding *a, const struct tl_binding *b, size_t count);
 void tl_options_take(const struct tl_binding *from, const struct tl_binding *to, size_t count,
                      struct tl_option_filter filter);
 uint64_t tl_options_hash(const struct tl_binding *bindings, size_t count, struct tl_option_filter filter,
@@ -257,7 +279,7 @@ void tl_options_copy(const struct tl_option *row, const void *from, void *to);
 bool tl_option_is_file_name(const char *text);
 
 /* Makes every TL_PATH absolute, so that it means the same file wherever it is read next. Errors: none; a path
- * that would be too long stays as it is. Lifetime: copies. Threads: reads the working directory. */
+ * that would be too long stays as it is. Lifetime: interns texts. Threads: reads the working directory. */
 void tl_options_make_paths_absolute(const struct tl_binding *bindings, size_t count);
 
 /* The option's value as the text that tl_options_set takes back. Errors: none. Lifetime: a new string, which

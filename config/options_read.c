@@ -5,6 +5,9 @@
 #include "config/colour/lab.h"
 #include "config/colour/names.h"
 #include "config/colour/srgb.h"
+#include "config/base/file.h"
+#include "config/base/intern.h"
+#include "config/base/memory.h"
 #include "config/options_value.h"
 
 #include <ctype.h>
@@ -256,13 +259,13 @@ static bool is_printable(const char *text)
     return true;
 }
 
-static char *read_text(const struct tl_option *row, const char *text, char field[TL_STRING_SIZE])
+static char *read_text(const struct tl_option *row, const char *text, const char **field)
 {
     if (!is_printable(text))
         return refuse(row, text, "is not printable UTF-8");
     if (strlen(text) >= TL_STRING_SIZE)
         return tl_format("%zu bytes are too many: expected %d at most", strlen(text), TL_STRING_SIZE - 1);
-    strncpy(field, text, TL_STRING_SIZE); /* clears the rest: equal values are equal bytes */
+    *field = tl_intern(text);
     return NULL;
 }
 
@@ -274,7 +277,8 @@ static bool is_choice(const char *const *choices, const char *text)
     return false;
 }
 
-static char *read_path(const struct tl_option *row, const char *text, const char *base_file, char *field)
+static char *read_path(const struct tl_option *row, const char *text, const char *base_file,
+                       const char **field)
 {
     bool name = row->choices && !tl_option_is_file_name(text);
     if (name && !is_choice(row->choices, text))

@@ -167,7 +167,7 @@ char *tl_option_write(const struct tl_option *row, const void *field)
     case TL_PATH:
         break;
     }
-    return tl_copy_string(field);
+    return tl_copy_string(tl_option_text(field));
 }
 
 size_t tl_option_size(const struct tl_option *row)
@@ -189,7 +189,7 @@ size_t tl_option_size(const struct tl_option *row)
     case TL_PATH:
         break;
     }
-    return TL_STRING_SIZE;
+    return sizeof(const char *);
 }
 
 static bool is_same_triple(const float *a, const float *b)
@@ -216,5 +216,5 @@ bool tl_option_equal(const struct tl_option *row, const void *a, const void *b)
     case TL_PATH:
         break;
     }
-    return strcmp(a, b) == 0;
+    return strcmp(tl_option_text(a), tl_option_text(b)) == 0;
 }

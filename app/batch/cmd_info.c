@@ -265,8 +265,8 @@ static cJSON *describe_environment(const tl_environment *environment)
 static void add_colourways(cJSON *object, const char *key, const struct tl_settings *settings)
 {
     cJSON *names = cJSON_AddArrayToObject(object, key);
-    for (size_t i = 0; i < settings->colourways.name_count; i++)
-        cJSON_AddItemToArray(names, cJSON_CreateString(settings->colourways.names[i]));
+    for (size_t i = 0; i < settings->colourways->name_count; i++)
+        cJSON_AddItemToArray(names, cJSON_CreateString(settings->colourways->names[i]));
 }
 
 /* Fabrics and presets were read already: a scene without them is refused. */

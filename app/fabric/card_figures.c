@@ -111,7 +111,7 @@ static void add_mechanics(struct tl_card *card, const struct stated *stated)
     add(card, "Shimmer from 1 m", 100 * card->shimmer, "%",
         "drawn: five steps of parts of a pixel, against 8 x 8 finer");
     const struct tl_weave_params *weave = &card->settings.weave;
-    if (weave->pictures[0])
+    if (tl_text_is_given(weave->pictures))
         add(card, "Width of a repeat", (double)tl_weave_picture_mm(weave), "mm",
             weave->picture_mm > 0 ? "weave.picture_mm" : "not stated: assumed; set weave.picture_mm");
 }

@@ -52,7 +52,7 @@ static bool measure_colour(struct tl_headless *headless, struct tl_card *card, t
     const struct tl_settings kept = headless->settings;
     tl_image image = {0};
     double sums[4] = {0};
-    strcpy(headless->settings.scene.environment, "white");
+    headless->settings.scene.environment = "white";
     view_from_above(&headless->settings, LENS_DEG, 0.6 * TL_CARD_SWATCH_MM);
     bool read = draw(headless, 16, error) && tl_renderer_read(headless->renderer, &image, error);
     for (size_t i = 0; read && i < 4 * (size_t)image.width * (size_t)image.height; i++)
@@ -97,8 +97,8 @@ static bool draw_ball(struct tl_headless *headless, struct tl_card *card, tl_err
     headless->settings.cloth.edge_m *= SHEET_EDGES;
     headless->settings.cloth.settle_s = defaults->settle_s;
     headless->settings.cloth.settle_speed = defaults->settle_speed;
-    strcpy(headless->settings.scene.garment, "sheet");
-    strcpy(headless->settings.scene.avatar, "ball");
+    headless->settings.scene.garment = "sheet";
+    headless->settings.scene.avatar = "ball";
     view_from_side(&headless->settings, 0.95f, 0.31f);
     return draw_picture(headless, TL_CARD_PICTURE_MM, &card->ball, error);
 }

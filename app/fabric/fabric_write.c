@@ -3,6 +3,7 @@
 #include "assets/fabric/fabric_maps.h"
 #include "assets/image/image_file.h"
 #include "config/base/file.h"
+#include "config/base/intern.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
 
@@ -111,7 +112,9 @@ static bool write_heights(struct tl_weave_params *weave, const struct target *ta
         return false;
     path = tl_format("%s/relief%s", target->pictures, extension);
     bool written = write_bytes(path, data, size, error);
-    snprintf(weave->picture, sizeof weave->picture, "%s/relief%.16s", target->relative, extension);
+    char *relative = tl_format("%s/relief%.16s", target->relative, extension);
+    weave->picture = tl_intern(relative);
+    free(relative);
     free(path);
     free(data);
     return written;
@@ -120,15 +123,15 @@ static bool write_heights(struct tl_weave_params *weave, const struct target *ta
 static bool write_weave(struct tl_weave_params *weave, const struct target *target, tl_error *error)
 {
     tl_fabric_file file;
-    if (weave->pictures[0]) {
+    if (tl_text_is_given(weave->pictures)) {
         if (!tl_fabric_file_open(weave->pictures, &file, error))
             return false;
         bool written = write_pictures(&file, target, error);
         tl_fabric_file_release(&file);
-        snprintf(weave->pictures, sizeof weave->pictures, "%s", target->relative);
+        weave->pictures = tl_intern(target->relative);
         return written;
     }
-    return !weave->picture[0] || write_heights(weave, target, error);
+    return !tl_text_is_given(weave->picture) || write_heights(weave, target, error);
 }
 
 static bool write_options(struct tl_fabric *fabric, const struct target *target, tl_error *error)

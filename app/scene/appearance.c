@@ -178,7 +178,7 @@ static bool take_weave(struct tl_appearance *appearance, const struct tl_weave_p
 static bool take_measured(struct tl_appearance *appearance, const struct tl_material_params *params,
                           tl_material *material, tl_error *error)
 {
-    if (!params->samples[0])
+    if (!tl_text_is_given(params->samples))
         return true;
     if (!tl_measured_take(params->samples, &material->measured, error))
         return false;
@@ -255,7 +255,7 @@ static struct making begin(const struct tl_settings *settings, const tl_material
     if (making.is_file) {
         making.params = params_of(file);
         memcpy(making.params.back, settings->material.back, sizeof making.params.back);
-        memcpy(making.params.samples, settings->material.samples, sizeof making.params.samples);
+        making.params.samples = settings->material.samples;
     }
     return making;
 }
@@ -272,7 +272,8 @@ static void change(const struct tl_swatch *swatch, struct making *making)
     making->is_file = making->params.use_file;
     making->is_woven = !making->is_file;
     /* In a colourway the key `print` decides, unless the fabric has a picture of its own. */
-    if (swatch->print && making->params.on_print == TL_ON_PRINT_REPLACE && !making->weave.pictures[0])
+    if (swatch->print && making->params.on_print == TL_ON_PRINT_REPLACE &&
+        !tl_text_is_given(making->weave.pictures))
         making->params.on_print = TL_ON_PRINT_KEEP;
     if (making->is_file)
         making->params = params_of(making->file);
@@ -318,12 +319,12 @@ static bool set_baked_maps(struct tl_appearance *appearance, const struct tl_det
     struct tl_map normals = lying, heights = lying;
     float limits_m[2] = {0, 0};
     tl_image image;
-    if (detail->normals[0]) {
+    if (tl_text_is_given(detail->normals)) {
         if (!tl_normal_picture_load(detail->normals, &image, error))
             return false;
         normals.image = keep_image(appearance, &image);
     }
-    if (detail->heights[0]) {
+    if (tl_text_is_given(detail->heights)) {
         if (!tl_height_picture_metres(detail->heights, &image, limits_m, error))
             return false;
         heights.image = keep_image(appearance, &image);
@@ -371,7 +372,7 @@ static void place_pictures(struct tl_dressing *dressing, const tl_model *model, 
 static bool make_materials(const struct tl_settings *settings, const tl_model *model,
                            struct tl_appearance *appearance, tl_error *error)
 {
-    const struct tl_colourways *colourways = &settings->colourways;
+    const struct tl_colourways *colourways = settings->colourways;
     for (size_t i = 0; i < model->material_count; i++) {
         struct making making = begin(settings, &model->materials[i]);
         for (size_t k = 0; k < colourways->swatch_count; k++)
@@ -400,8 +401,8 @@ static void gather_names(const struct tl_settings *settings, const tl_model *gar
                          struct tl_appearance *appearance)
 {
     const tl_model *models[] = {garment, avatar};
-    for (size_t i = 0; i < settings->colourways.name_count; i++)
-        add_name(appearance, settings->colourways.names[i]);
+    for (size_t i = 0; i < settings->colourways->name_count; i++)
+        add_name(appearance, settings->colourways->names[i]);
     for (size_t m = 0; m < TL_COUNT(models); m++)
         for (size_t i = 0; models[m] && i < models[m]->variant_count; i++)
             add_name(appearance, models[m]->variants[i].name);
@@ -480,8 +481,8 @@ bool tl_appearance_make(const struct tl_settings *settings, const tl_model *garm
     *out = (struct tl_appearance){0};
     gather_names(settings, garment, avatar, out);
     bool good = check_colourway(settings, out, error);
-    for (size_t i = 0; good && garment && i < settings->colourways.swatch_count; i++)
-        good = check_swatch(settings, &settings->colourways.swatches[i], garment, error);
+    for (size_t i = 0; good && garment && i < settings->colourways->swatch_count; i++)
+        good = check_swatch(settings, &settings->colourways->swatches[i], garment, error);
     if (!good) {
         tl_appearance_release(out);
         return false;
@@ -524,8 +525,8 @@ void tl_appearance_release(struct tl_appearance *appearance)
 
 bool tl_appearance_is_same(const struct tl_settings *a, const struct tl_settings *b)
 {
-    return !tl_settings_differ(a, b, (struct tl_option_filter){.any_of = TL_AFFECTS_MATERIALS}) &&
-           tl_colourways_equal(&a->colourways, &b->colourways);
+    return a->colourways == b->colourways &&
+           !tl_settings_differ(a, b, (struct tl_option_filter){.any_of = TL_AFFECTS_MATERIALS});
 }
 
 struct tl_spare_appearance *tl_spare_find(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES],
@@ -546,15 +547,19 @@ void tl_spare_add(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES], const
     spares[0] = (struct tl_spare_appearance){true, *appearance, revision, *made_of};
 }
 
-/* Colourways belong to a garment: another garment keeps its own. What follows from options that are taken
- * (overlay_weave, colourways) is taken with them. */
+struct tl_option_filter tl_appearance_filter(const struct tl_settings *a, const struct tl_settings *b)
+{
+    bool same_garment = strcmp(a->scene.garment, b->scene.garment) == 0;
+    return (struct tl_option_filter){.any_of = TL_AFFECTS_APPEARANCE,
+                                     .none_of = same_garment ? 0 : TL_AFFECTS_GARMENT};
+}
+
+/* What follows from options that are taken (overlay_weave, colourways) is taken with them. */
 void tl_appearance_take(const struct tl_settings *from, struct tl_settings *settings)
 {
-    bool same_garment = strcmp(from->scene.garment, settings->scene.garment) == 0;
-    tl_settings_take(from, settings,
-                     (struct tl_option_filter){.any_of = TL_AFFECTS_APPEARANCE,
-                                               .none_of = same_garment ? 0 : TL_AFFECTS_GARMENT});
+    const struct tl_option_filter filter = tl_appearance_filter(from, settings);
+    tl_settings_take(from, settings, filter);
     settings->overlay_weave = from->overlay_weave;
-    if (same_garment)
+    if (!filter.none_of)
         settings->colourways = from->colourways;
 }

@@ -55,6 +55,10 @@ struct tl_spare_appearance *tl_spare_find(struct tl_spare_appearance spares[TL_S
 void tl_spare_add(struct tl_spare_appearance spares[TL_SPARE_APPEARANCES], const struct tl_settings *made_of,
                   const struct tl_appearance *appearance, uint64_t revision);
 
+/* The options that may differ between two appearances: colourways belong to a garment, so another garment
+ * keeps its own. Pure. */
+struct tl_option_filter tl_appearance_filter(const struct tl_settings *a, const struct tl_settings *b);
+
 /* Copies into `settings` the options of `from` that may differ between two appearances under comparison:
  * those of materials, and of how they are drawn. Camera, light and cloth stay; so do the colourways of
  * another garment. Pure. */

@@ -1,5 +1,6 @@
 /* Changes of a session: what other settings require, and how a session takes over another's contents. */
 #include "app/scene/session_internal.h"
+#include "config/base/intern.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -16,9 +17,8 @@ bool tl_session_needs_light(const struct tl_settings *old, const struct tl_setti
 
 bool tl_session_needs_appearance(const struct tl_settings *old, const struct tl_settings *new)
 {
-    struct tl_settings same = *new;
-    tl_appearance_take(old, &same);
-    return !tl_settings_equal(&same, new);
+    const struct tl_option_filter filter = tl_appearance_filter(old, new);
+    return tl_settings_differ(old, new, filter) || (!filter.none_of && old->colourways != new->colourways);
 }
 
 /* Copies the colourways with the garment: they belong to it. */
@@ -60,7 +60,7 @@ void tl_session_replace_light(tl_session *session, struct tl_moving_light *made,
     tl_moving_light_release(&session->light);
     session->light = *made;
     *made = (struct tl_moving_light){0};
-    snprintf(session->settings.scene.environment, sizeof session->settings.scene.environment, "%s", name);
+    session->settings.scene.environment = tl_intern(name);
 }
 
 void tl_session_name_reading(tl_session *session, const struct tl_scene_params *scene)
@@ -85,17 +85,17 @@ bool tl_session_restart(tl_session *session, const struct tl_settings *settings,
 }
 
 /* Changes environment and cloth without loading the scene again. */
-static bool change_in_place(tl_session *session, const struct tl_settings *settings, tl_error *error)
+static bool change_in_place(tl_session *session, const struct tl_settings *settings, uint64_t changes,
+                            tl_error *error)
 {
     double position = tl_session_light_position(settings, session->frame);
     const char *environment = settings->scene.environment;
-    if (tl_session_needs_light(&session->settings, settings)
+    if (changes & TL_AFFECTS_ENVIRONMENT
             ? !tl_moving_light_open(&session->light, environment, position, error)
             : !tl_moving_light_follow(&session->light, position, error))
         return false;
     /* tl_cloth_set discards the contacts, so it is called only when one of its options has changed. */
-    bool same_cloth = !tl_settings_differ(&session->settings, settings,
-                                          (struct tl_option_filter){.any_of = TL_AFFECTS_CLOTH});
+    const bool same_cloth = !(changes & TL_AFFECTS_CLOTH);
     const struct tl_cloth_fabric fabric = tl_settings_fabric(settings);
     return !session->cloth || same_cloth || tl_cloth_set(session->cloth, &fabric, &settings->cloth, error);
 }
@@ -124,15 +124,16 @@ void tl_session_keep_appearance(tl_session *session, const struct tl_settings *m
 
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
-    if (tl_session_needs_scene(&session->settings, settings))
+    const uint64_t changes = tl_settings_changes(&session->settings, settings);
+    if (changes & TL_AFFECTS_SCENE)
         return tl_session_restart(session, settings, error);
     struct tl_appearance appearance = {0};
-    bool is_new = !tl_appearance_is_same(&session->settings, settings);
-    struct tl_spare_appearance *spare = tl_spare_find(session->spares, settings);
+    const bool is_new = changes & TL_AFFECTS_MATERIALS;
+    struct tl_spare_appearance *spare = is_new ? tl_spare_find(session->spares, settings) : NULL;
     const struct tl_session_models models = tl_session_models(session);
     if (is_new && !spare && !tl_session_make_appearance(&models, settings, &appearance, error))
         return false;
-    if (!change_in_place(session, settings, error)) {
+    if (!change_in_place(session, settings, changes, error)) {
         tl_appearance_release(&appearance);
         return false;
     }

@@ -3,16 +3,21 @@
 #include "app/settings/layers.h"
 #include "config/base/memory.h"
 #include "config/embedded.h"
+#include "config/base/hash.h"
+#include "config/base/intern.h"
+#include "config/base/memory.h"
 
+#include <pthread.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The fields of a swatch that are not rows of material and weave. */
 struct draft {
-    char fabric[TL_STRING_SIZE];
+    const char *fabric;
     struct tl_swatch swatch;
 };
 
-enum { FABRIC, PRINT, OWN_ROWS, ROWS_MAX = 64 };
+enum { FABRIC, PRINT, OWN_ROWS, ROWS_MAX = 64, NAME_BYTES_MAX = 63 };
 
 /* The rows of a swatch: its own, material's, weave's, all within a struct draft. */
 struct swatch_rows {
@@ -55,14 +60,14 @@ static bool begin_record(struct tl_colourways_reader *reader, const struct tl_re
                          tl_error *error)
 {
     struct tl_colourways *out = reader->out;
-    if (strlen(place->record) >= sizeof out->names[0] || place->record[0] == '\0')
+    if (strlen(place->record) > NAME_BYTES_MAX || place->record[0] == '\0')
         return fail(place, "a colourway's name has 1 to 63 bytes", error);
     for (size_t i = 0; i < out->name_count; i++)
         if (strcmp(out->names[i], place->record) == 0)
             return fail(place, "is given twice: remove one", error);
     if (out->name_count == TL_COLOURWAYS_MAX)
         return fail(place, "is one more than the 64 that a file can have: remove some", error);
-    strcpy(out->names[out->name_count++], place->record);
+    out->names[out->name_count++] = tl_intern(place->record);
     reader->is_chosen = strcmp(place->record, reader->chosen) == 0;
     out->is_known = out->is_known || reader->is_chosen;
     return true;
@@ -72,12 +77,10 @@ static bool begin_part(struct tl_colourways_reader *reader, const struct tl_reco
                        tl_error *error)
 {
     struct tl_colourways *out = reader->out;
-    if (strlen(place->part) >= sizeof reader->swatch.material)
+    if (strlen(place->part) > NAME_BYTES_MAX)
         return fail(place, "a material's name has at most 63 bytes", error);
-    memset(&reader->swatch, 0, sizeof reader->swatch); /* padding too, as in all settings */
-    reader->swatch.line = (int)place->line;
-    reader->swatch.print = true;
-    strcpy(reader->swatch.material, place->part);
+    reader->swatch =
+        (struct tl_swatch){.line = (int)place->line, .print = true, .material = tl_intern(place->part)};
     if (!reader->is_chosen)
         return true;
     for (size_t i = 0; i < out->swatch_count; i++)
@@ -119,7 +122,7 @@ static bool take_option(struct tl_colourways_reader *reader, const struct tl_rec
         draft.swatch.given |= (uint64_t)1 << i;
     }
     tl_error why;
-    if (good && draft.fabric[0] && !take_fabric(&draft.swatch, draft.fabric, &why))
+    if (good && tl_text_is_given(draft.fabric) && !take_fabric(&draft.swatch, draft.fabric, &why))
         good = tl_fail(error, why.code, "%s.fabric: %s", where, why.message);
     free(where);
     free(key);
@@ -184,22 +187,66 @@ bool tl_swatch_is_woven(const struct tl_swatch *swatch)
     return swatch->given >> (OWN_ROWS + tl_material_options.row_count) != 0;
 }
 
+/* ---- Keeping ---- */
+
+const struct tl_colourways tl_colourways_none = {0};
+
 static bool is_same_swatch(const struct tl_swatch *a, const struct tl_swatch *b)
 {
-    return strcmp(a->material, b->material) == 0 && a->has_fabric == b->has_fabric && a->print == b->print &&
-           a->given == b->given && tl_options_equal(&tl_material_options, &a->params, &b->params) &&
+    return a->material == b->material && a->line == b->line && a->has_fabric == b->has_fabric &&
+           a->print == b->print && a->given == b->given &&
+           tl_options_equal(&tl_material_options, &a->params, &b->params) &&
            tl_options_equal(&tl_weave_options, &a->weave, &b->weave);
 }
 
-bool tl_colourways_equal(const struct tl_colourways *a, const struct tl_colourways *b)
+static bool is_same(const struct tl_colourways *a, const struct tl_colourways *b)
 {
     if (a->name_count != b->name_count || a->is_known != b->is_known || a->swatch_count != b->swatch_count)
         return false;
     for (size_t i = 0; i < a->name_count; i++)
-        if (strcmp(a->names[i], b->names[i]) != 0)
+        if (a->names[i] != b->names[i])
             return false;
     for (size_t i = 0; i < a->swatch_count; i++)
         if (!is_same_swatch(&a->swatches[i], &b->swatches[i]))
             return false;
     return true;
+}
+
+struct kept {
+    struct kept *next;
+    struct tl_colourways table;
+};
+
+const struct tl_colourways *tl_colourways_keep(const struct tl_colourways *made)
+{
+    static pthread_mutex_t guard = PTHREAD_MUTEX_INITIALIZER;
+    static struct kept *all;
+    if (is_same(made, &tl_colourways_none))
+        return &tl_colourways_none;
+    pthread_mutex_lock(&guard);
+    struct kept *kept = all;
+    while (kept && !is_same(&kept->table, made))
+        kept = kept->next;
+    if (!kept) {
+        kept = TL_NEW(struct kept);
+        *kept = (struct kept){all, *made};
+        all = kept;
+    }
+    pthread_mutex_unlock(&guard);
+    return &kept->table;
+}
+
+uint64_t tl_colourways_hash(const struct tl_colourways *colourways, uint64_t hash)
+{
+    for (size_t i = 0; i < colourways->swatch_count; i++) {
+        struct tl_swatch swatch = colourways->swatches[i]; /* bindings can be written through */
+        const struct tl_binding bindings[] = {{&tl_material_options, &swatch.params},
+                                              {&tl_weave_options, &swatch.weave}};
+        const uint64_t own[] = {swatch.has_fabric, swatch.print, swatch.given};
+        hash = tl_hash(hash, swatch.material, strlen(swatch.material) + 1);
+        hash = tl_hash(hash, own, sizeof own);
+        hash = tl_options_hash(bindings, TL_COUNT(bindings), (struct tl_option_filter){.any_of = UINT64_MAX},
+                               hash);
+    }
+    return hash;
 }

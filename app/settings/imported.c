@@ -5,6 +5,7 @@
 #include "assets/weave/weave.h"
 #include "cloth/energy/fabric.h"
 #include "config/base/file.h"
+#include "config/base/intern.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
 #include "render/brdf/options.h"
@@ -59,9 +60,9 @@ static bool set_weave(const char *path, const tl_fabric_file *file, float depth_
     weave->pattern = patterns[file->pattern];
     if (!tl_fabric_file_has_pictures(file))
         return true;
-    if (strlen(path) >= sizeof weave->pictures)
+    if (strlen(path) >= TL_STRING_SIZE)
         return tl_fail(error, TL_INPUT, "%.60s...: the path is too long: move the fabric nearer", path);
-    strcpy(weave->pictures, path);
+    weave->pictures = tl_intern(path);
     weave->pattern = TL_WEAVE_NONE;
     weave->picture_mm = file->width_mm;
     weave->picture_length_mm = file->length_mm;

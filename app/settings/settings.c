@@ -183,6 +183,20 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
 }
 
+void tl_settings_bind_const(const struct tl_settings *settings,
+                            struct tl_binding bindings[TL_SETTINGS_TABLES])
+{
+    tl_settings_bind((struct tl_settings *)settings, bindings);
+}
+
+void tl_settings_reset(struct tl_settings *settings)
+{
+    struct tl_binding all[TL_SETTINGS_TABLES];
+    *settings = (struct tl_settings){.colourways = &tl_colourways_none};
+    tl_settings_bind(settings, all);
+    tl_options_reset(all, TL_SETTINGS_TABLES);
+}
+
 struct tl_render_settings tl_settings_render(const struct tl_settings *settings)
 {
     struct tl_render_settings drawn = {.light = settings->light,
@@ -334,9 +348,9 @@ const char *tl_settings_own_fabric(const char *garment)
 static void choose_fabric(struct tl_scene_params *scene)
 {
     if (scene->fabric[0] == '\0')
-        strcpy(scene->fabric, tl_settings_own_fabric(scene->garment));
+        scene->fabric = tl_settings_own_fabric(scene->garment);
     if (scene->overlay_fabric[0] == '\0')
-        strcpy(scene->overlay_fabric, "none");
+        scene->overlay_fabric = "none";
 }
 
 const char *tl_settings_avatar(const struct tl_scene_params *scene)
@@ -367,18 +381,18 @@ const char *tl_settings_colourways_source(const struct tl_settings *settings)
 static bool read_colourways(struct tl_settings *settings, tl_error *error)
 {
     const char *source = tl_settings_colourways_source(settings);
+    struct tl_colourways found;
     struct tl_colourways_reader reader;
-    tl_colourways_begin(&reader, settings->scene.colourway, &settings->colourways);
+    tl_colourways_begin(&reader, settings->scene.colourway, &found);
     const struct tl_record_section section = tl_colourways_section(&reader);
-    if (source[0] == '\0')
-        return true;
-    struct tl_settings *unused = TL_NEW(struct tl_settings);
+    struct tl_settings unused;
     struct tl_binding all[TL_SETTINGS_TABLES];
-    tl_settings_bind(unused, all);
-    bool read =
-        tl_option_layer_apply(&tl_option_layer_scene, source, all, TL_SETTINGS_TABLES, &section, error);
-    free(unused);
-    return read;
+    tl_settings_bind(&unused, all);
+    if (source[0] &&
+        !tl_option_layer_apply(&tl_option_layer_scene, source, all, TL_SETTINGS_TABLES, &section, error))
+        return false;
+    settings->colourways = tl_colourways_keep(&found);
+    return true;
 }
 
 /* A model alone is what a motion moves, and what --units means. */
@@ -387,8 +401,8 @@ static void choose_role(struct tl_scene_params *scene)
     bool is_alone = strcmp(scene->garment, "none") == 0;
     bool moves = strcmp(scene->motion, "none") != 0 && is_alone && tl_option_is_file_name(scene->avatar);
     if (moves) {
-        strcpy(scene->garment, scene->avatar);
-        strcpy(scene->avatar, "none");
+        scene->garment = scene->avatar;
+        scene->avatar = "none";
     } else if (is_alone && scene->avatar_units == TL_UNITS_AUTO) {
         scene->avatar_units = scene->units;
     }
@@ -472,7 +486,7 @@ static void warn_of_hidden_material(const struct tl_settings *settings,
 /* Logs the width that is assumed of pictures whose file states none. */
 static void log_assumed_width(const struct tl_weave_params *weave)
 {
-    if (weave->pictures[0] && !(weave->picture_mm > 0))
+    if (tl_text_is_given(weave->pictures) && !(weave->picture_mm > 0))
         tl_info("%s: states no width: %d mm are assumed for a repeat; set weave.picture_mm", weave->pictures,
                 TL_PICTURE_ASSUMED_MM);
 }
@@ -498,10 +512,9 @@ void tl_settings_turn_studio(struct tl_settings *settings, float from_deg)
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error)
 {
     struct tl_settings settings;
-    memset(&settings, 0, sizeof settings); /* padding too: equal settings are equal bytes */
     struct tl_binding all[TL_SETTINGS_TABLES];
+    tl_settings_reset(&settings);
     tl_settings_bind(&settings, all);
-    tl_options_reset(all, TL_SETTINGS_TABLES);
     settings.scene.environment_yaw_deg = NAN; /* not given */
     if (!apply_source(all, source, error))
         return false;

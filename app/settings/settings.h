@@ -18,27 +18,27 @@
 enum tl_body_detail { TL_BODY_AUTO, TL_BODY_FULL };
 enum tl_drape_choice { TL_DRAPE_AUTO, TL_DRAPE_AUTHORED, TL_DRAPE_SETTLE };
 
-struct tl_scene_params {          /* table "scene": what to show; names of built-ins or paths */
-    char garment[TL_STRING_SIZE]; /* "dress", "skirt", "layers", a specimen, "none", or a glTF or OBJ file */
-    char avatar[TL_STRING_SIZE];  /* "auto", "form", "none", or a glTF or OBJ file */
-    int units, avatar_units;      /* enum tl_units: of their files */
-    int drape;                    /* enum tl_drape_choice */
-    int body_detail;              /* enum tl_body_detail */
-    bool refit;                   /* built-in garments cut for the form are scaled to the avatar */
-    int up, avatar_up;            /* enum tl_up: of their files */
-    float turn_deg, scale, move_m[3];    /* places the garment's file */
-    bool pattern;                        /* its pieces hang beside it */
-    bool smooth;                         /* it is drawn as Loop's surface */
-    char motion[TL_STRING_SIZE];         /* point cache that moves the garment, or "none": it is simulated */
-    float motion_rate;                   /* frames of it a second; 0: as its file states */
-    char environment[TL_STRING_SIZE];    /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
-    char fabric[TL_STRING_SIZE];         /* name of an embedded fabric, a YAML file, or "none" */
-    char overlay_fabric[TL_STRING_SIZE]; /* as fabric: of the garment's materials named overlay; "": as the
-                                            others */
-    char colourway[TL_STRING_SIZE]; /* name of one of the scene's or of a model's variants; "": as they are */
-    char colourways[TL_STRING_SIZE]; /* scene, built in or YAML, that has them; "own": the garment's */
-    char preset[TL_STRING_SIZE];     /* name of an embedded preset, or a YAML file */
-    char clip[TL_STRING_SIZE];       /* animation of the avatar; "": the first; "none": the rest pose */
+struct tl_scene_params {     /* table "scene": what to show; names of built-ins or paths */
+    const char *garment;     /* "dress", "skirt", "layers", a specimen, "none", or a glTF or OBJ file */
+    const char *avatar;      /* "auto", "form", "none", or a glTF or OBJ file */
+    int units, avatar_units; /* enum tl_units: of their files */
+    int drape;               /* enum tl_drape_choice */
+    int body_detail;         /* enum tl_body_detail */
+    bool refit;              /* built-in garments cut for the form are scaled to the avatar */
+    int up, avatar_up;       /* enum tl_up: of their files */
+    float turn_deg, scale, move_m[3]; /* places the garment's file */
+    bool pattern;                     /* its pieces hang beside it */
+    bool smooth;                      /* it is drawn as Loop's surface */
+    const char *motion;               /* point cache that moves the garment, or "none": it is simulated */
+    float motion_rate;                /* frames of it a second; 0: as its file states */
+    const char *environment;          /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
+    const char *fabric;               /* name of an embedded fabric, a YAML file, or "none" */
+    const char *overlay_fabric;       /* as fabric: of the garment's materials named overlay; "": as the
+                                                  others */
+    const char *colourway;  /* name of one of the scene's or of a model's variants; "": as they are */
+    const char *colourways; /* scene, built in or YAML, that has them; "own": the garment's */
+    const char *preset;     /* name of an embedded preset, or a YAML file */
+    const char *clip;       /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
     float environment_rate; /* frames of a sequence a second */
 };
@@ -52,6 +52,8 @@ struct tl_camera_params { /* table "camera": an orbit about a target */
 };
 extern const struct tl_option_table tl_camera_options;
 
+/* Copied by assignment: its texts and colourways are shared and live as long as the program. Functions take
+ * and fill it by pointer. */
 struct tl_settings {
     struct tl_scene_params scene;
     struct tl_camera_params camera;
@@ -62,8 +64,8 @@ struct tl_settings {
     struct tl_material_params material;
     struct tl_construction_params construction;
     struct tl_material_params overlay;
-    struct tl_weave_params overlay_weave; /* follows from scene.overlay_fabric */
-    struct tl_colourways colourways;      /* follow from scene.colourway, .colourways and .garment */
+    struct tl_weave_params overlay_weave;   /* follows from scene.overlay_fabric */
+    const struct tl_colourways *colourways; /* follow from scene.colourway, .colourways and .garment */
     struct tl_light_params light;
     struct tl_detail_params detail;
     struct tl_maps_params maps;
@@ -77,6 +79,12 @@ struct tl_settings {
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
+/* The same for settings that are only read through the bindings. */
+void tl_settings_bind_const(const struct tl_settings *settings,
+                            struct tl_binding bindings[TL_SETTINGS_TABLES]);
+/* The defaults of every option; no colourways. */
+void tl_settings_reset(struct tl_settings *settings);
+
 /* True when every option of every table agrees. */
 bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b);
 
@@ -84,6 +92,8 @@ bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
  * part (config/options.h). Pure. */
 bool tl_settings_differ(const struct tl_settings *a, const struct tl_settings *b,
                         struct tl_option_filter filter);
+/* What the options affect that differ: 0 when all agree. Pure. */
+uint64_t tl_settings_changes(const struct tl_settings *a, const struct tl_settings *b);
 void tl_settings_take(const struct tl_settings *from, struct tl_settings *to, struct tl_option_filter filter);
 /* A hash of the values of such options. Pure. */
 uint64_t tl_settings_hash(const struct tl_settings *settings, struct tl_option_filter filter);

@@ -61,20 +61,10 @@ static uint64_t hash_file(uint64_t hash, const char *name)
 
 static uint64_t hash_settings(const struct tl_settings *settings, int frame)
 {
-    struct tl_settings copy = *settings;
-    struct tl_binding bindings[TL_SETTINGS_TABLES];
-    char *text = NULL;
-    size_t size = 0;
-    FILE *stream = open_memstream(&text, &size);
-    tl_settings_bind(&copy, bindings);
-    tl_options_print_yaml(bindings, TL_SETTINGS_TABLES, stream);
-    fprintf(stream, "toile %s, frame %d\n", TOILE_VERSION, frame);
-    fclose(stream);
-    uint64_t hash = tl_hash(TL_HASH_START, text, size);
-    free(text);
-    for (size_t i = 0; i < copy.colourways.swatch_count; i++)
-        copy.colourways.swatches[i].line = 0; /* its place in the file does not matter */
-    hash = tl_hash(hash, copy.colourways.swatches, sizeof copy.colourways.swatches);
+    const struct tl_option_filter all = {.any_of = UINT64_MAX};
+    uint64_t hash = hash_text(tl_settings_hash(settings, all), TOILE_VERSION);
+    hash = tl_hash(hash, &frame, sizeof frame);
+    hash = tl_colourways_hash(settings->colourways, hash);
     const char *const files[] = {settings->scene.garment, settings->scene.avatar, settings->scene.motion};
     for (size_t i = 0; i < TL_COUNT(files); i++)
         hash = hash_file(hash, files[i]);
@@ -226,8 +216,8 @@ static bool find_colourways(const struct tl_arguments *arguments, const char *ga
     *out = (struct tl_names){0};
     if (!load_row(arguments, &(const struct choice){garment, "", ""}, &settings, error))
         return false;
-    for (size_t i = 0; i < settings.colourways.name_count; i++)
-        tl_names_add(out, tl_copy_string(settings.colourways.names[i]));
+    for (size_t i = 0; i < settings.colourways->name_count; i++)
+        tl_names_add(out, tl_copy_string(settings.colourways->names[i]));
     add_variants(settings.scene.garment, out);
     add_variants(settings.scene.avatar, out);
     return out->count > 0 ||

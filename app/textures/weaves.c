@@ -58,9 +58,9 @@ static bool hash_pictures(const char *path, uint64_t *hash, tl_error *error)
 static bool hash_files(const struct tl_weave_params *params, uint64_t *out, tl_error *error)
 {
     *out = TL_HASH_START;
-    if (params->pictures[0])
+    if (tl_text_is_given(params->pictures))
         return hash_pictures(params->pictures, out, error);
-    if (params->picture[0])
+    if (tl_text_is_given(params->picture))
         *out = hash_file(*out, params->picture);
     return true;
 }
@@ -78,10 +78,10 @@ static bool make(const struct tl_weave_params *params, struct tl_fabric_pictures
                  tl_error *error)
 {
     *out = (struct tl_fabric_pictures){0};
-    bool pictured = params->pictures[0] || params->picture[0];
-    bool made = params->pictures[0]  ? tl_fabric_pictures_make(params, out, error)
-                : params->picture[0] ? tl_height_picture_weave(params, &out->weave, error)
-                                     : tl_weave_create(params, &out->weave);
+    bool pictured = tl_text_is_given(params->pictures) || tl_text_is_given(params->picture);
+    bool made = tl_text_is_given(params->pictures)  ? tl_fabric_pictures_make(params, out, error)
+                : tl_text_is_given(params->picture) ? tl_height_picture_weave(params, &out->weave, error)
+                                                    : tl_weave_create(params, &out->weave);
     *failed = !made && pictured;
     return made;
 }

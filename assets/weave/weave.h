@@ -62,13 +62,13 @@ struct tl_weave_params {
     float melange;  /* how much fibres differ in colour */
     float cavity;   /* how much valleys darken: 0 with horizon maps, which show it themselves */
     /* A picture of heights instead of yarns (app/scene/height_picture.h reads it) */
-    char picture[TL_STRING_SIZE]; /* "": none */
+    const char *picture; /* "": none */
     /* Pictures of the whole surface instead of yarns and `picture` (assets/fabric/fabric_maps.h) */
-    char pictures[TL_STRING_SIZE]; /* a folder, an archive or a U3M file; "": none */
-    float picture_mm;              /* width on the cloth of either: of a repeat; 0: TL_PICTURE_ASSUMED_MM */
-    float picture_length_mm;       /* of `pictures`, along the warp; 0: texels are square */
-    int picture_mirror;            /* enum tl_picture_mirror, of `pictures` */
-    float depth_mm;                /* from its lowest to its highest */
+    const char *pictures;    /* a folder, an archive or a U3M file; "": none */
+    float picture_mm;        /* width on the cloth of either: of a repeat; 0: TL_PICTURE_ASSUMED_MM */
+    float picture_length_mm; /* of `pictures`, along the warp; 0: texels are square */
+    int picture_mirror;      /* enum tl_picture_mirror, of `pictures` */
+    float depth_mm;          /* from its lowest to its highest */
 };
 #define TL_PICTURE_ASSUMED_MM 100
 /* A light cotton sheeting. */

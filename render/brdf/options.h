@@ -24,8 +24,8 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     float back[3];                              /* diffuse colour of the back; 0: as the front */
     float fuzz, fuzz_colour[3], fuzz_roughness; /* struct tl_fuzz's colour is the first two multiplied */
     float fuzz_follow;
-    char samples[TL_STRING_SIZE]; /* file of measured reflectance, or "" */
-    int on_print;                 /* enum tl_on_print: a garment's printed picture under a fabric */
+    const char *samples; /* file of measured reflectance, or "" */
+    int on_print;        /* enum tl_on_print: a garment's printed picture under a fabric */
 };
 extern const struct tl_option_table tl_material_options;
 extern const struct tl_option_table

@@ -29,10 +29,10 @@ struct tl_detail_params { /* table "detail" */
     int shadow;           /* enum tl_detail_shadow */
     int angles;           /* enum tl_detail_angles */
     float height_scale;
-    bool silhouette; /* relief ends at the border of a map that does not repeat */
-    bool curved;     /* relief follows the curvature of the surface, and shows at its outline */
-    int minify;      /* enum tl_detail_minify */
-    char normals[TL_STRING_SIZE], heights[TL_STRING_SIZE]; /* files of maps of the garment, or "" */
+    bool silhouette;               /* relief ends at the border of a map that does not repeat */
+    bool curved;                   /* relief follows the curvature of the surface, and shows at its outline */
+    int minify;                    /* enum tl_detail_minify */
+    const char *normals, *heights; /* files of maps of the garment, or "" */
 };
 extern const struct tl_option_table tl_detail_options;
 

@@ -15,9 +15,9 @@ struct sample_light {
 struct sample_scene {
     float tint[3];
     float target[3];
-    char title[TL_STRING_SIZE];
-    char file[TL_STRING_SIZE];
-    char garment[TL_STRING_SIZE];
+    const char *title;
+    const char *file;
+    const char *garment;
 };
 
 struct sample {

@@ -26,20 +26,17 @@ static const tl_surface *find_surface(const tl_frame *frame, const char *name)
 
 static void print_settings(const void *what, FILE *out)
 {
-    struct tl_settings settings = *(const struct tl_settings *)what;
     struct tl_binding bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(&settings, bindings);
+    tl_settings_bind_const(what, bindings);
     tl_options_print_yaml(bindings, TL_SETTINGS_TABLES, out);
 }
 
-/* The settings with absolute paths, so that the folder can be opened from anywhere. */
-static struct tl_settings rooted(const struct tl_settings *settings)
+/* Makes paths absolute, so that the folder can be opened from anywhere. */
+static void root(struct tl_settings *settings)
 {
-    struct tl_settings copy = *settings;
     struct tl_binding bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(&copy, bindings);
+    tl_settings_bind(settings, bindings);
     tl_options_make_paths_absolute(bindings, TL_SETTINGS_TABLES);
-    return copy;
 }
 
 /* The orbit whose camera equals the frame's. */
@@ -52,21 +49,20 @@ static void set_camera(const struct tl_camera *camera, struct tl_camera_params *
     memcpy(out->target, camera->target.raw, sizeof out->target);
 }
 
-/* Settings of a still scene: everything that it shows is read from files, and nothing moves. */
-static struct tl_settings still_settings(const struct tl_settings *settings, const tl_frame *frame)
+/* Makes the scene still: everything that it shows is read from files, and nothing moves. */
+static void make_still(const tl_frame *frame, struct tl_settings *still)
 {
-    struct tl_settings still = rooted(settings);
     bool garment = find_surface(frame, "garment"), avatar = find_surface(frame, "avatar");
-    strcpy(still.scene.garment, garment ? "garment.glb" : "none");
-    strcpy(still.scene.motion, garment ? "garment.pc2" : "none");
-    strcpy(still.scene.avatar, avatar ? "avatar.glb" : "none");
-    strcpy(still.scene.environment, "environment.exr");
-    if (glms_vec3_eqv(frame->environment->ground, glms_vec3_zero()) && !(still.image.ground_grey > 0))
-        still.image.ground_grey = TL_GROUND_GREY.r; /* the file of a built-in environment shows another one */
-    strcpy(still.scene.clip, "none");
-    still.scene.units = still.scene.avatar_units = TL_UNITS_M;
-    set_camera(&frame->camera, &still.camera);
-    return still;
+    still->scene.garment = garment ? "garment.glb" : "none";
+    still->scene.motion = garment ? "garment.pc2" : "none";
+    still->scene.avatar = avatar ? "avatar.glb" : "none";
+    still->scene.environment = "environment.exr";
+    if (glms_vec3_eqv(frame->environment->ground, glms_vec3_zero()) && !(still->image.ground_grey > 0))
+        still->image.ground_grey =
+            TL_GROUND_GREY.r; /* the file of a built-in environment shows another one */
+    still->scene.clip = "none";
+    still->scene.units = still->scene.avatar_units = TL_UNITS_M;
+    set_camera(&frame->camera, &still->camera);
 }
 
 /* The pixel of a finding; false if it is not on the image. */
@@ -158,8 +154,10 @@ bool tl_check_keep(const char *folder, struct tl_headless *headless, const struc
                    const struct tl_finding *broken, tl_error *error)
 {
     const tl_surface *garment = find_surface(checked->frame, "garment");
-    struct tl_settings run = rooted(&headless->settings);
-    struct tl_settings still = still_settings(&headless->settings, checked->frame);
+    struct tl_settings run = headless->settings;
+    root(&run);
+    struct tl_settings still = run;
+    make_still(checked->frame, &still);
     if (!tl_folder_make(folder, error) || !tl_folder_print(folder, "run.yaml", &run, print_settings, error) ||
         !tl_folder_print(folder, "scene.yaml", &still, print_settings, error) ||
         !keep_environment(folder, checked->frame->environment, error) ||

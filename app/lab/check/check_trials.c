@@ -70,7 +70,7 @@ static bool fall(tl_cloth *cloth, const tl_mesh *mesh, const struct tl_settings 
 static bool is_pinned(const tl_garment *cut, const struct tl_cloth_params *params)
 {
     return cut->pin_count > 0 || params->pin_above_m > 0 || params->pin_colour != TL_PIN_NO_COLOUR ||
-           params->pin_openings[0];
+           tl_text_is_given(params->pin_openings);
 }
 
 static bool let_fall(tl_session *session, const struct tl_settings *settings, struct tl_fall *out,
@@ -102,7 +102,7 @@ static struct tl_cloth_params params_of_trial(const struct tl_settings *settings
     params.reference_substeps = SUBSTEPS_MAX;
     params.pin_above_m = 0;
     params.pin_colour = TL_PIN_NO_COLOUR;
-    params.pin_openings[0] = 0;
+    params.pin_openings = "";
     params.self_contact = false;
     return params;
 }

@@ -23,9 +23,8 @@ static void add_text(cJSON *object, const char *key, const char *text)
 static void add_settings(cJSON *summary, const struct tl_settings *settings)
 {
     cJSON *object = cJSON_AddObjectToObject(summary, "settings");
-    struct tl_settings copy = *settings;
     struct tl_binding bindings[TL_SETTINGS_TABLES];
-    tl_settings_bind(&copy, bindings);
+    tl_settings_bind_const(settings, bindings);
     for (size_t t = 0; t < TL_SETTINGS_TABLES; t++)
         for (size_t r = 0; r < bindings[t].table->row_count; r++) {
             char *key = tl_format("%s.%s", bindings[t].table->name, bindings[t].table->rows[r].name);
@@ -269,10 +268,9 @@ bool tl_flight_record_suits(const struct tl_flight_record *record, const char *f
                             const struct tl_settings *settings, bool whole, tl_error *error)
 {
     const struct tl_option_filter filter = {.any_of = whole ? UINT64_MAX : TL_AFFECTS_WORK};
-    struct tl_settings copy = *settings;
     struct tl_binding bindings[TL_SETTINGS_TABLES];
     bool suits = true;
-    tl_settings_bind(&copy, bindings);
+    tl_settings_bind_const(settings, bindings);
     for (size_t t = 0; t < TL_SETTINGS_TABLES; t++)
         for (size_t r = 0; suits && r < bindings[t].table->row_count; r++) {
             const struct tl_option *row = &bindings[t].table->rows[r];

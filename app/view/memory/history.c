@@ -82,11 +82,11 @@ static char *describe_row(const struct tl_binding *from, const struct tl_binding
 
 char *tl_history_describe(const struct tl_settings *from, const struct tl_settings *to)
 {
-    struct tl_settings old = *to, new = *to; /* bindings can be written through */
+    struct tl_settings old = *to;
     tl_history_restore(from, &old);
     struct tl_binding old_bindings[TL_SETTINGS_TABLES], new_bindings[TL_SETTINGS_TABLES];
     tl_settings_bind(&old, old_bindings);
-    tl_settings_bind(&new, new_bindings);
+    tl_settings_bind_const(to, new_bindings);
     char *first = NULL;
     size_t count = 0;
     for (size_t i = 0; i < TL_SETTINGS_TABLES; i++)

@@ -76,10 +76,9 @@ static bool has_text(const struct tl_option *row, const char *text)
 /* The options of `after` that differ from `before` (NULL: all), one a line. New string. */
 static char *lines_of(const struct tl_settings *before, const struct tl_settings *after)
 {
-    struct tl_settings old = before ? *before : *after, new = *after; /* bindings can be written through */
     struct tl_binding from[TL_SETTINGS_TABLES], to[TL_SETTINGS_TABLES];
-    tl_settings_bind(&old, from);
-    tl_settings_bind(&new, to);
+    tl_settings_bind_const(before ? before : after, from);
+    tl_settings_bind_const(after, to);
     char *lines = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&lines, &size);
@@ -255,13 +254,11 @@ static bool replay_text(char *text, struct replay *replay, size_t *whole, tl_err
 
 static bool read_all(tl_journal *journal, struct tl_recovered *out, tl_error *error)
 {
-    struct tl_binding bindings[TL_SETTINGS_TABLES];
     struct replay replay = {.to = out};
     char *text;
     size_t size, whole = 0;
     *out = (struct tl_recovered){0};
-    tl_settings_bind(&out->settings, bindings);
-    tl_options_reset(bindings, TL_SETTINGS_TABLES);
+    tl_settings_reset(&out->settings);
     if (!tl_file_read_small(journal->path, LIMIT_BYTES, &text, &size, error))
         return false;
     bool read = replay_text(text, &replay, &whole, error);

@@ -2,6 +2,7 @@
 
 #include "app/view/memory/state.h"
 #include "config/base/file.h"
+#include "config/base/intern.h"
 #include "config/base/memory.h"
 
 #include <stdlib.h>
@@ -17,7 +18,7 @@ static const struct tl_option rows[TL_RECENT_MAX] = {ROW("1", 0), ROW("2", 1), R
                                                      ROW("5", 4), ROW("6", 5), ROW("7", 6), ROW("8", 7),
                                                      ROW("9", 8), ROW("10", 9)};
 static const struct tl_option_table table =
-    TL_OPTION_TABLE("recent", "garments, the latest first", rows, struct tl_recent, .garments = {""});
+    TL_OPTION_TABLE("recent", "garments, the latest first", rows, struct tl_recent, .garments = {NULL});
 
 void tl_recent_add(struct tl_recent *recent, const char *path)
 {
@@ -26,8 +27,8 @@ void tl_recent_add(struct tl_recent *recent, const char *path)
         return;
     while (at < TL_RECENT_MAX - 1 && strcmp(recent->garments[at], path) != 0)
         at++;
-    memmove(recent->garments[1], recent->garments[0], at * sizeof recent->garments[0]);
-    strcpy(recent->garments[0], path);
+    memmove(recent->garments + 1, recent->garments, at * sizeof *recent->garments);
+    recent->garments[0] = tl_intern(path);
 }
 
 size_t tl_recent_count(const struct tl_recent *recent)

@@ -12,8 +12,8 @@
 #include <stddef.h>
 
 #define TL_RECENT_MAX 10
-struct tl_recent {                                /* table "recent" */
-    char garments[TL_RECENT_MAX][TL_STRING_SIZE]; /* "": no more */
+struct tl_recent {                       /* table "recent" */
+    const char *garments[TL_RECENT_MAX]; /* interned; "": no more */
 };
 
 /* Puts a file in front, once; the oldest of more than TL_RECENT_MAX is forgotten. A path that is too long is

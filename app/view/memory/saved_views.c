@@ -4,6 +4,7 @@
 #include "app/view/memory/state.h"
 #include "config/base/file.h"
 #include "config/base/hash.h"
+#include "config/base/intern.h"
 #include "config/base/memory.h"
 
 #include <ctype.h>
@@ -75,14 +76,14 @@ struct tl_saved_view tl_saved_view_take(const struct tl_settings *settings)
                                  .lamp = settings->lamp,
                                  .fill = settings->fill};
     char *name = full_name(settings->scene.environment);
-    snprintf(view.environment, sizeof view.environment, "%s", name);
+    view.environment = tl_intern(name);
     free(name);
     return view;
 }
 
 void tl_saved_view_apply(const struct tl_saved_view *view, struct tl_settings *settings)
 {
-    memcpy(settings->scene.environment, view->environment, sizeof settings->scene.environment);
+    settings->scene.environment = view->environment;
     settings->scene.environment_yaw_deg = view->environment_yaw_deg;
     settings->image.exposure_ev = view->exposure_ev;
     settings->camera = view->camera;

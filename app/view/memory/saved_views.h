@@ -13,7 +13,7 @@
 
 struct tl_saved_view { /* tables "view1" ...: the fields that the tables camera, lamp and fill do not have */
     bool saved;
-    char environment[TL_STRING_SIZE];
+    const char *environment;
     float environment_yaw_deg;
     float exposure_ev;
     struct tl_camera_params camera;

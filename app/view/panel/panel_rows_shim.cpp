@@ -1,5 +1,6 @@
 extern "C" {
 #include "app/view/panel/panel_rows_shim.h"
+#include "config/base/intern.h"
 }
 #include "app/view/panel/panel_colour_shim.h"
 #include "app/view/panel/panel_pictures_shim.h"
@@ -31,6 +32,17 @@ const char *default_of(const tl_binding &binding, const tl_option &row)
 bool is_text(const tl_option &row)
 {
     return row.type == TL_STRING || row.type == TL_PATH;
+}
+
+const char *text_of(const tl_binding &binding, const tl_option &row)
+{
+    return tl_option_text(field_of(binding, row));
+}
+
+void set_text(const tl_binding &binding, const tl_option &row, const char *text)
+{
+    const char *const interned = tl_intern(text);
+    memcpy(field_of(binding, row), &interned, sizeof interned);
 }
 
 double number_at(const tl_option &row, const char *field)
@@ -176,7 +188,7 @@ void show_file_name(const char *path)
     list->PopClipRect();
 }
 
-bool choose(const tl_option &row, char *field, tl_panel_pictures *pictures)
+bool choose(const tl_binding &binding, const tl_option &row, tl_panel_pictures *pictures)
 {
     bool edited = false;
     for (int i = 0; row.choices[i]; i++) {
@@ -184,8 +196,9 @@ bool choose(const tl_option &row, char *field, tl_panel_pictures *pictures)
         const float height = has_picture ? ImGui::GetItemRectSize().y : 0;
         if (has_picture)
             ImGui::SameLine();
-        if (ImGui::Selectable(row.choices[i], strcmp(row.choices[i], field) == 0, 0, ImVec2(0, height))) {
-            snprintf(field, TL_STRING_SIZE, "%s", row.choices[i]);
+        const bool is_chosen = strcmp(row.choices[i], text_of(binding, row)) == 0;
+        if (ImGui::Selectable(row.choices[i], is_chosen, 0, ImVec2(0, height))) {
+            set_text(binding, row, row.choices[i]);
             edited = true;
         }
     }
@@ -195,12 +208,14 @@ bool choose(const tl_option &row, char *field, tl_panel_pictures *pictures)
 bool edit_text(const tl_binding &binding, const tl_option &row, tl_panel_pictures *pictures,
                tl_panel_result &result)
 {
-    char *field = field_of(binding, row);
+    char typed[TL_STRING_SIZE];
+    snprintf(typed, sizeof typed, "%s", text_of(binding, row));
     if (row.choices) /* leaves room for the list's arrow */
         ImGui::SetNextItemWidth(-ImGui::GetFrameHeight());
-    ImGui::InputText("##value", field, TL_STRING_SIZE);
+    if (ImGui::InputText("##value", typed, sizeof typed))
+        set_text(binding, row, typed);
     bool edited = ImGui::IsItemDeactivatedAfterEdit(); /* a value is taken when typing has ended */
-    show_file_name(field);
+    show_file_name(typed);
     if (!row.choices)
         return edited;
     ImGui::SameLine(0, 0);
@@ -210,7 +225,7 @@ bool edit_text(const tl_binding &binding, const tl_option &row, tl_panel_picture
         return edited;
     result.listed = &row;
     ImGui::PushStyleVar(ImGuiStyleVar_SelectableTextAlign, ImVec2(0, 0.5f));
-    edited = choose(row, field, pictures) || edited;
+    edited = choose(binding, row, pictures) || edited;
     ImGui::PopStyleVar();
     ImGui::EndCombo();
     return edited;
@@ -261,8 +276,8 @@ void explain(const tl_binding &binding, const tl_option &row)
     char *text = tl_options_get_text(&usual, &row);
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 25.0f);
-    if (is_text(row) && field_of(binding, row)[0])
-        ImGui::TextUnformatted(field_of(binding, row)); /* a path is often longer than its widget */
+    if (is_text(row) && text_of(binding, row)[0])
+        ImGui::TextUnformatted(text_of(binding, row)); /* a path is often longer than its widget */
     if (row.type == TL_COLOUR)
         tl_panel_describe_colour(reinterpret_cast<const float *>(field_of(binding, row)));
     ImGui::TextUnformatted(row.help);
@@ -287,7 +302,7 @@ bool tl_panel_row_changed(const struct tl_binding *binding, const struct tl_opti
 
 const char *tl_panel_row_text(const struct tl_binding *binding, const struct tl_option *row)
 {
-    return is_text(*row) ? field_of(*binding, *row) : nullptr;
+    return is_text(*row) ? text_of(*binding, *row) : nullptr;
 }
 
 bool tl_panel_rows_begin(const char *id)

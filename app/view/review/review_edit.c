@@ -275,7 +275,7 @@ static void report_fields(struct tl_review *review, const tl_fabric_file *file)
     size_t used = 0;
     for (size_t i = 0; i < file->field_count; i++)
         used += file->fields[i].is_used;
-    if (weave->pictures[0])
+    if (tl_text_is_given(weave->pictures))
         snprintf(width, sizeof width, ", %g mm wide%s", (double)tl_weave_picture_mm(weave),
                  weave->picture_mm > 0 ? "" : " (assumed: set weave.picture_mm)");
     tl_review_report(review, "fabric %s: %zu of %zu fields are used%s%s%s", file->name, used,

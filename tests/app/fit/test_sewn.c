@@ -124,7 +124,7 @@ static void pinned_openings_are_held(void **state)
     }
     assert_true(held > 20);
     assert_true(farthest > 0.05f);
-    settings.cloth.pin_openings[0] = 'x';
+    settings.cloth.pin_openings = "xem";
     assert_false(tl_session_apply(session, &settings, &error));
     assert_int_equal(error.code, TL_USAGE);
     tl_session_destroy(&session);

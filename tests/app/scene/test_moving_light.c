@@ -147,9 +147,9 @@ static void frames_are_shown_like_the_first(void **state)
         assert_true(own.shown.g < 0.7f * factors.g); /* another one, by itself */
         tl_environment_release(&own);
         struct tl_settings settings = *tl_session_settings(session);
-        strcpy(settings.scene.environment, "studio");
+        settings.scene.environment = "studio";
         assert_ok(tl_session_apply(session, &settings, &error), error);
-        strcpy(settings.scene.environment, PATTERN);
+        settings.scene.environment = PATTERN;
         assert_ok(tl_session_apply(session, &settings, &error), error);
     }
     tl_session_destroy(&session);
@@ -169,12 +169,12 @@ static void settings_change_in_place(void **state)
     assert_int_equal(shown(session), 2);
     assert_true(revision(session) > before);
     before = revision(session);
-    strcpy(settings.scene.environment, "studio");
+    settings.scene.environment = "studio";
     assert_ok(tl_session_apply(session, &settings, &error), error);
     assert_true(revision(session) > before);
     assert_ok(tl_session_advance(session, &error), error); /* what stands still stands still */
     assert_int_equal(revision(session), before + 1);
-    strcpy(settings.scene.environment, PATTERN);
+    settings.scene.environment = PATTERN;
     assert_ok(tl_session_apply(session, &settings, &error), error);
     assert_int_equal(tl_session_frame_number(session), 4);
     assert_int_equal(shown(session), 2);

@@ -207,7 +207,7 @@ static void a_clip_moves_the_garment(void **state)
     assert_true(glms_vec3_distance(posed[2], model.mesh.positions[2]) <
                 1e-6f); /* frame 10 is before the clip */
     struct tl_settings settings = *tl_session_settings(session);
-    strcpy(settings.scene.garment, "skirt");
+    settings.scene.garment = "skirt";
     assert_false(tl_session_apply(session, &settings, &error));
     assert_non_null(strstr(error.message, "turning.glb: moves 4 points"));
     tl_model_release(&model);
@@ -275,18 +275,18 @@ static void motions_come_and_go(void **state)
     tl_error error = {0};
     tl_session *session = create(NULL, 0);
     struct tl_settings settings = *tl_session_settings(session);
-    strcpy(settings.scene.motion, SCRATCH "/skirt.pc2");
+    settings.scene.motion = SCRATCH "/skirt.pc2";
     assert_ok(tl_session_apply(session, &settings, &error), error);
     check_frame(session, 0);
     assert_null(tl_session_cloth(session));
-    strcpy(settings.scene.garment, "dress"); /* has other points */
+    settings.scene.garment = "dress"; /* has other points */
     assert_false(tl_session_apply(session, &settings, &error));
     assert_non_null(strstr(error.message, "skirt.pc2"));
     check_frame(session, 0);
-    strcpy(settings.scene.garment, "none");
+    settings.scene.garment = "none";
     assert_false(tl_session_apply(session, &settings, &error));
-    strcpy(settings.scene.garment, "skirt");
-    strcpy(settings.scene.motion, "none");
+    settings.scene.garment = "skirt";
+    settings.scene.motion = "none";
     assert_ok(tl_session_apply(session, &settings, &error), error);
     assert_non_null(tl_session_cloth(session));
     assert_ok(tl_session_advance(session, &error), error);

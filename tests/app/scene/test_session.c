@@ -35,7 +35,7 @@ static void new_scenes_and_fabrics_are_taken_over(void **state)
     uint64_t revision = tl_session_frame(session).surfaces[0].topology_revision;
     assert_true(isfinite(sum_of_frame(session)));
 
-    strcpy(settings.scene.garment, "skirt");
+    settings.scene.garment = "skirt";
     assert_ok(tl_session_apply(session, &settings, &error), error);
     assert_true(isfinite(sum_of_frame(session)));
     assert_true(tl_session_frame(session).surfaces[0].topology_revision > revision);
@@ -47,7 +47,7 @@ static void new_scenes_and_fabrics_are_taken_over(void **state)
                 0);
     assert_true(isfinite(sum_of_frame(session)));
 
-    strcpy(settings.scene.garment, "none");
+    settings.scene.garment = "none";
     assert_ok(tl_session_apply(session, &settings, &error), error);
     assert_int_equal(tl_session_frame(session).surface_count, 1);
     assert_null(tl_session_cloth(session));
@@ -220,11 +220,11 @@ static void a_failure_keeps_what_was(void **state)
     struct tl_settings settings = *tl_session_settings(session);
     double before = sum_of_frame(session);
     tl_error error = {0};
-    strcpy(settings.scene.environment, "nowhere.exr");
+    settings.scene.environment = "nowhere.exr";
     assert_false(tl_session_apply(session, &settings, &error));
     assert_non_null(strstr(error.message, "nowhere.exr"));
     settings = *tl_session_settings(session);
-    strcpy(settings.scene.avatar, "nowhere.glb");
+    settings.scene.avatar = "nowhere.glb";
     assert_false(tl_session_apply(session, &settings, &error));
     assert_true(sum_of_frame(session) == before);
     assert_string_equal(tl_session_settings(session)->scene.avatar, "auto");
@@ -293,7 +293,7 @@ static void strains_are_told_when_they_are_looked_at(void **state)
 
     assert_ok(tl_session_advance(session, &error), error); /* they follow the cloth */
     assert_true(memcmp(first, strains_shown(session), count * sizeof *first) != 0);
-    strcpy(settings.scene.garment, "skirt");
+    settings.scene.garment = "skirt";
     assert_ok(tl_session_apply(session, &settings, &error), error);
     assert_non_null(strains_shown(session));
     settings.image.view = TL_VIEW_NORMAL;
@@ -328,7 +328,7 @@ static void the_garment_fills_three_quarters(void **state)
     for (size_t g = 0; g < TL_COUNT(garments); g++) {
         struct tl_settings settings = quick_settings(NULL);
         tl_error error = {0};
-        strcpy(settings.scene.garment, garments[g]);
+        settings.scene.garment = garments[g];
         tl_session *session = tl_session_create(&settings, &error);
         assert_ok(session != NULL, error);
         for (int yaw = 25; yaw < 360; yaw += 90) {

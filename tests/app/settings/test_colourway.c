@@ -279,24 +279,24 @@ static void settings_know_whose_they_are(void **state)
     write_scene(SCENE);
     assert_ok(load("Ink", &error), error);
     assert_string_equal(settings.scene.colourways, PATH);
-    assert_true(settings.colourways.is_known);
-    assert_int_equal(settings.colourways.swatch_count, 2);
+    assert_true(settings.colourways->is_known);
+    assert_int_equal(settings.colourways->swatch_count, 2);
     struct tl_settings changed = settings;
     assert_ok(tl_settings_apply_colourway(&changed, "Work", &error), error);
     assert_false(tl_settings_equal(&changed, &settings));
     assert_ok(load("Work", &error), error);
     assert_true(tl_settings_equal(&changed, &settings));
     assert_ok(tl_settings_apply_colourway(&changed, "", &error), error);
-    assert_int_equal(changed.colourways.swatch_count, 0);
-    assert_int_equal(changed.colourways.name_count, 3);
+    assert_int_equal(changed.colourways->swatch_count, 0);
+    assert_int_equal(changed.colourways->name_count, 3);
 
     write_scene("scene: {garment: skirt}\n");
     assert_ok(load("Poppy", &error), error);
-    assert_true(settings.colourways.is_known);
+    assert_true(settings.colourways->is_known);
     assert_string_equal(tl_settings_colourways_source(&settings), "skirt");
     write_scene("scene: {garment: skirt, colourways: dress}\n");
     assert_ok(load("Ink", &error), error);
-    assert_true(settings.colourways.is_known);
+    assert_true(settings.colourways->is_known);
 }
 
 /* All built-in ones fit the garments that they are for. */
@@ -311,10 +311,10 @@ static void built_in_ones_fit(void **state)
         write_scene(scene);
         free(scene);
         assert_ok(load("", &error), error);
-        assert_true(settings.colourways.name_count >= 2);
-        for (size_t i = 0; i < settings.colourways.name_count; i++) {
+        assert_true(settings.colourways->name_count >= 2);
+        for (size_t i = 0; i < settings.colourways->name_count; i++) {
             struct tl_appearance appearance;
-            assert_ok(tl_settings_apply_colourway(&settings, settings.colourways.names[i], &error), error);
+            assert_ok(tl_settings_apply_colourway(&settings, settings.colourways->names[i], &error), error);
             assert_ok(tl_appearance_make(&settings, &garment.model, NULL, &appearance, &error), error);
             tl_appearance_release(&appearance);
         }

@@ -132,7 +132,7 @@ static void relative_files_become_absolute(void **unused)
     struct tl_settings defaults = some_settings();
     struct tl_state state = {.review = {.has_settings = true}, .settings = defaults};
     state.window = *(const struct tl_window_params *)tl_window_options.defaults;
-    strcpy(state.settings.scene.environment, "light.exr");
+    state.settings.scene.environment = "light.exr";
     char *before = realpath(".", NULL), *inside = realpath(folder, NULL);
     assert_int_equal(chdir(folder), 0);
     assert_true(tl_state_save(file, &state, &error));
@@ -179,7 +179,7 @@ static void names_tell_scenes_apart(void **unused)
     char *dress = tl_saved_views_name(&settings.scene);
     settings.scene.environment_yaw_deg = 5;
     char *same = tl_saved_views_name(&settings.scene);
-    strcpy(settings.scene.garment, "/some/where/dress.glb");
+    settings.scene.garment = "/some/where/dress.glb";
     char *other = tl_saved_views_name(&settings.scene);
     assert_string_equal(dress, same);
     assert_string_not_equal(dress, other);
