@@ -228,10 +228,9 @@ static bool draw_within_budget(struct tl_headless *headless, tl_quality_governor
     struct tl_stopwatch watch = tl_stopwatch_start();
     const tl_frame frame = tl_session_frame(headless->session);
     struct tl_quality_choice choice = tl_quality_governor_choose(governor, headless->renderer, &frame, &full);
-    headless->settings = tl_quality_apply(&choice.levels, &full);
-    bool done = tl_session_apply(headless->session, &headless->settings, error);
+    tl_quality_apply(&choice.levels, &headless->settings);
     struct tl_stopwatch cloth = tl_stopwatch_start();
-    done = done && tl_session_advance(headless->session, error);
+    bool done = tl_session_advance(headless->session, error);
     double cloth_ms = tl_stopwatch_read(&cloth).wall_ms;
     done = done && tl_headless_draw(headless, error);
     if (done)
@@ -247,17 +246,15 @@ static bool choose_levels(struct tl_headless *headless, int number, struct budge
 {
     const int learned_from = 30; /* frames */
     tl_quality_governor *governor = tl_quality_governor_create(out->budget_ms);
-    const struct tl_settings full = headless->settings;
     int first = number - 1 > learned_from ? number - 1 - learned_from : 0;
     bool done = tl_session_go_to(headless->session, first, error);
     while (done && tl_session_frame_number(headless->session) < number - 1)
         done = draw_within_budget(headless, governor, error);
     if (done) {
         const tl_frame frame = tl_session_frame(headless->session);
-        out->choice = tl_quality_governor_choose(governor, headless->renderer, &frame, &full);
-        tl_quality_governor_steps(governor, headless->renderer, &frame, &full, out->steps);
-        headless->settings = tl_quality_apply(&out->choice.levels, &full);
-        done = tl_session_apply(headless->session, &headless->settings, error);
+        out->choice = tl_quality_governor_choose(governor, headless->renderer, &frame, &headless->settings);
+        tl_quality_governor_steps(governor, headless->renderer, &frame, &headless->settings, out->steps);
+        tl_quality_apply(&out->choice.levels, &headless->settings);
     }
     tl_quality_governor_destroy(&governor);
     return done;

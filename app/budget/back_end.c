@@ -87,8 +87,8 @@ static bool draw_frame(const struct meter *meter, tl_quality_governor *governor,
     tl_renderer *renderer = meter->start->renderer;
     double began_s = tl_clock_s();
     struct tl_quality_choice choice = tl_quality_governor_choose(governor, renderer, frame, settings);
-    const struct tl_settings applied = tl_quality_apply(&choice.levels, settings);
-    const struct tl_render_settings drawn = tl_settings_render(&applied);
+    const struct tl_render_settings full = tl_settings_render(settings);
+    const struct tl_render_settings drawn = tl_quality_at(&choice.levels, &full);
     if (!tl_renderer_draw(renderer, frame, &drawn, error))
         return false;
     *ms = 1000 * (tl_clock_s() - began_s);

@@ -288,13 +288,12 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
 }
 
 struct tl_quality_rest tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
-                                                const struct tl_settings *settings)
+                                                const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings full = tl_settings_render(settings);
     struct tl_quality_rest rest = {.is_slow = true};
-    for (int level = 0; level < tl_quality_count(TL_CONTROL_RATIO, &full) && rest.is_slow; level++) {
+    for (int level = 0; level < tl_quality_count(TL_CONTROL_RATIO, settings) && rest.is_slow; level++) {
         rest.levels.of[TL_CONTROL_RATIO] = (uint8_t)level;
-        const struct tl_render_settings at = tl_quality_at(&rest.levels, &full);
+        const struct tl_render_settings at = tl_quality_at(&rest.levels, settings);
         tl_bits jobs = tl_renderer_predict_jobs(renderer, frame, &at);
         rest.is_slow = tl_renderer_predict_ms(renderer, &at, jobs) > TL_REST_MS;
     }

@@ -56,7 +56,7 @@ struct tl_quality_rest {
     bool is_slow; /* even so */
 };
 struct tl_quality_rest tl_quality_governor_rest(const tl_renderer *renderer, const tl_frame *frame,
-                                                const struct tl_settings *settings);
+                                                const struct tl_render_settings *settings);
 
 /* Learns from a frame drawn at the levels chosen last: its plan with took_ms, the time of the cloth, and the
  * total time from the choice to the finished image. */

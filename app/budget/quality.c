@@ -67,16 +67,15 @@ bool tl_quality_is_valid(const struct tl_quality *levels)
     return true;
 }
 
-struct tl_settings tl_quality_apply(const struct tl_quality *levels, const struct tl_settings *settings)
+void tl_quality_apply(const struct tl_quality *levels, struct tl_settings *settings)
 {
-    struct tl_settings changed = *settings;
+    const int visibility = settings->light.visibility; /* auto stays */
     const struct tl_render_settings full = tl_settings_render(settings);
-    struct tl_render_settings applied = tl_quality_at(levels, &full);
-    changed.light = applied.light;
-    changed.light.visibility = settings->light.visibility; /* auto stays */
-    changed.detail = applied.detail;
-    changed.image = applied.image;
-    return changed;
+    const struct tl_render_settings applied = tl_quality_at(levels, &full);
+    settings->light = applied.light;
+    settings->light.visibility = visibility;
+    settings->detail = applied.detail;
+    settings->image = applied.image;
 }
 
 /* ---- The number of levels in these settings ---- */

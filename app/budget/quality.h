@@ -30,13 +30,12 @@ struct tl_quality {
 /* True when every level exists. Levels that are read from a file must be checked before they are used. */
 bool tl_quality_is_valid(const struct tl_quality *levels);
 
-/* The settings of a frame at these levels, which must exist. */
-struct tl_settings tl_quality_apply(const struct tl_quality *levels, const struct tl_settings *settings);
-
-/* The same for what is drawn: cheap to copy. Levels change nothing else: how a garment falls does not depend
- * on how fast a machine is. */
+/* What is drawn of a frame at these levels, which must exist. Levels change nothing else: neither the session
+ * nor how a garment falls depends on how fast a machine is. */
 struct tl_render_settings tl_quality_at(const struct tl_quality *levels,
                                         const struct tl_render_settings *full);
+/* The same in the settings of a headless session. */
+void tl_quality_apply(const struct tl_quality *levels, struct tl_settings *settings);
 
 /* The number of levels of a control that differ in these settings: at least 1. */
 int tl_quality_count(enum tl_control control, const struct tl_render_settings *full);

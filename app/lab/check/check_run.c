@@ -45,18 +45,16 @@ static bool is_swung(const struct check_run *run, int number)
     return run->motion.pulls && !run->params->still && number > frames / 10 && number <= frames * 2 / 3;
 }
 
-/* The settings that frame `number` is simulated and drawn with. */
-static struct tl_settings settings_of(const struct check_run *run, int number)
+/* The settings that frame `number` is drawn with. */
+static struct tl_render_settings settings_of(const struct check_run *run, int number)
 {
-    return tl_quality_apply(&run->levels[number], &run->headless->settings);
+    const struct tl_render_settings full = tl_settings_render(&run->headless->settings);
+    return tl_quality_at(&run->levels[number], &full);
 }
 
 static bool advance(struct check_run *run, int number, tl_error *error)
 {
     tl_session *session = run->headless->session;
-    const struct tl_settings settings = settings_of(run, number);
-    if (run->governor && !tl_session_apply(session, &settings, error))
-        return false;
     if (is_swung(run, number))
         return tl_motion_advance(&run->motion, number - run->params->frames / 10, error);
     if (is_swung(run, number - 1))
@@ -218,8 +216,7 @@ static bool check_frame(struct check_run *run, int number, tl_error *error)
 {
     tl_image images[IMAGES] = {0};
     tl_frame frame = frame_of(run, number);
-    const struct tl_settings levelled = settings_of(run, number);
-    const struct tl_render_settings settings = tl_settings_render(&levelled);
+    const struct tl_render_settings settings = settings_of(run, number);
     struct tl_checked_cloth cloth;
     struct tl_checked checked = {.number = number,
                                  .frame = &frame,
@@ -305,8 +302,7 @@ static bool play_again(struct check_run *run, int count, tl_error *error)
     begin(run);
     for (int number = 0; done && number < count; number++) {
         tl_image image = {0};
-        const struct tl_settings levelled = settings_of(run, number);
-        const struct tl_render_settings settings = tl_settings_render(&levelled);
+        const struct tl_render_settings settings = settings_of(run, number);
         done = number == 0 || advance(run, number, error);
         tl_frame frame = frame_of(run, number);
         done = done && draw_with(renderer, run, &frame, &settings, &image, error);

@@ -22,21 +22,28 @@ struct recorder {
     tl_quality_governor *governor; /* NULL: a replay */
 };
 
-/* At full quality. */
-static struct tl_settings settings_at(const struct tl_headless *headless, const struct tl_flight *flight,
-                                      int number)
+/* The settings of a frame at full quality. */
+static void settings_at(const struct tl_headless *headless, const struct tl_flight *flight, int number,
+                        struct tl_settings *out)
 {
     struct tl_path_key key = tl_path_at(&flight->path, number / flight->frame_rate);
-    struct tl_settings settings = headless->settings;
-    settings.camera = key.camera;
-    settings.scene.environment_yaw_deg = key.environment_yaw_deg;
-    return settings;
+    *out = headless->settings;
+    out->camera = key.camera;
+    out->scene.environment_yaw_deg = key.environment_yaw_deg;
+}
+
+/* What is drawn of them at these levels. */
+static struct tl_render_settings drawn_at(const struct tl_quality *levels, const struct tl_settings *settings)
+{
+    const struct tl_render_settings full = tl_settings_render(settings);
+    return tl_quality_at(levels, &full);
 }
 
 static bool begin_motion(struct tl_headless *headless, const struct tl_flight *flight,
                          struct tl_motion *motion, tl_error *error)
 {
-    struct tl_settings settings = settings_at(headless, flight, 0);
+    struct tl_settings settings;
+    settings_at(headless, flight, 0, &settings);
     if (!tl_session_apply(headless->session, &settings, error))
         return false;
     tl_motion_begin(motion, headless->session);
@@ -180,18 +187,17 @@ static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_f
 {
     struct tl_headless *headless = recorder->headless;
     struct tl_quality_choice choice;
-    const struct tl_settings wanted = settings_at(headless, recorder->flight, number);
+    struct tl_settings wanted;
+    settings_at(headless, recorder->flight, number, &wanted);
     struct tl_stopwatch watch = tl_stopwatch_start();
     if (!choose(recorder, &wanted, number, &choice, error))
         return false;
-    const struct tl_settings settings = tl_quality_apply(&choice.levels, &wanted);
     struct tl_stopwatch cloth_watch = tl_stopwatch_start();
-    if (!tl_session_apply(headless->session, &settings, error) ||
-        (number > 0 && !tl_motion_advance(&recorder->motion, number, error)))
+    if (number > 0 && !tl_motion_advance(&recorder->motion, number, error))
         return false;
     frame->cloth_ms = tl_stopwatch_read(&cloth_watch).wall_ms;
     const tl_frame shown = tl_session_frame(headless->session);
-    const struct tl_render_settings render = tl_settings_render(&settings);
+    const struct tl_render_settings render = drawn_at(&choice.levels, &wanted);
     if (!tl_renderer_draw(headless->renderer, &shown, &render, error))
         return false;
     const struct tl_taken taken = tl_stopwatch_read(&watch); /* every job ends with a glFinish */
@@ -208,7 +214,8 @@ static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_f
 /* Prepares the regions of all levels, as the window does while it loads: no frame of the motion has to. */
 static void prepare_levels(struct recorder *recorder)
 {
-    const struct tl_settings wanted = settings_at(recorder->headless, recorder->flight, 0);
+    struct tl_settings wanted;
+    settings_at(recorder->headless, recorder->flight, 0, &wanted);
     const tl_frame shown = tl_session_frame(recorder->headless->session);
     while (tl_quality_governor_prepare(recorder->governor, recorder->headless->renderer, &shown, &wanted)) {
     }
@@ -317,9 +324,9 @@ bool tl_fly_judge(struct tl_headless *headless, struct tl_flight *flight, tl_err
     int judged = 0;
     for (int number = 0; done && judged < flight->kept_count; number++) {
         struct tl_flight_frame *frame = &flight->frames[number];
-        const struct tl_settings wanted = settings_at(headless, flight, number);
-        const struct tl_settings settings = tl_quality_apply(&frame->levels, &wanted);
-        done = tl_session_apply(headless->session, &settings, error) &&
+        struct tl_settings wanted;
+        settings_at(headless, flight, number, &wanted);
+        done = tl_session_apply(headless->session, &wanted, error) &&
                (number == 0 || tl_motion_advance(&motion, number, error));
         if (done && flight->kept[judged].frame == number)
             done = judge(&reference, headless->session, &flight->kept[judged++], frame, error);

@@ -136,8 +136,8 @@ static bool draw(struct run *run, struct entry *entry, int number, struct tl_tak
         return tl_variant_run_draw(variant, &frame, taken, error);
     struct tl_quality_choice choice =
         tl_quality_governor_choose(entry->governor, variant->renderer, &frame, &entry->settings);
-    struct tl_settings levelled = tl_quality_apply(&choice.levels, &entry->settings);
-    variant->settings = tl_settings_render(&levelled);
+    const struct tl_render_settings full = tl_settings_render(&entry->settings);
+    variant->settings = tl_quality_at(&choice.levels, &full);
     if (!tl_variant_run_draw(variant, &frame, taken, error))
         return false;
     tl_quality_governor_learn(entry->governor, tl_renderer_last_plan(variant->renderer), 0, taken->wall_ms);

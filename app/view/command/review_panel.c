@@ -83,8 +83,9 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     add_line(lines, &count, "cloth", "%.1f ms", review->image.times.cloth);
     add_line(lines, &count, "drawing", "%.0f ms", review->image.times.draw);
     int samples_x, samples_y;
-    const struct tl_settings drawn = tl_quality_apply(&review->image.choice.levels, &review->good);
-    tl_image_samples(&drawn.image, &samples_x, &samples_y);
+    const struct tl_render_settings full = tl_settings_render(&review->good);
+    const struct tl_image_params drawn = tl_quality_at(&review->image.choice.levels, &full).image;
+    tl_image_samples(&drawn, &samples_x, &samples_y);
     add_line(lines, &count, "image", "%d x %d of %d x %d samples", width, height, samples_x, samples_y);
     count_triangles(review, &triangles, &vertices);
     add_line(lines, &count, "surfaces", "%zu triangles, %zu vertices", triangles, vertices);
@@ -237,10 +238,11 @@ static void apply_result(struct tl_review *review, const struct tl_panel_result 
 /* Percent of the settings' samples that are drawn at the present levels. */
 static double share_of_samples(const struct tl_review *review)
 {
-    const struct tl_settings drawn = tl_quality_apply(&review->image.choice.levels, &review->good);
+    const struct tl_render_settings full = tl_settings_render(&review->good);
+    const struct tl_image_params drawn = tl_quality_at(&review->image.choice.levels, &full).image;
     int full_x, full_y, x, y;
-    tl_image_samples(&review->good.image, &full_x, &full_y);
-    tl_image_samples(&drawn.image, &x, &y);
+    tl_image_samples(&full.image, &full_x, &full_y);
+    tl_image_samples(&drawn, &x, &y);
     return 100.0 * x * y / ((double)full_x * full_y);
 }
 

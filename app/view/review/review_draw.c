@@ -166,16 +166,6 @@ static void step(struct tl_review *review)
     review->image.times.cloth = 1e3 * (tl_clock_s() - now_s);
 }
 
-static bool draw_b(struct tl_review *review, const struct tl_settings *settings, bool smooth, tl_error *error)
-{
-    if (!tl_session_apply(review->session, settings, error))
-        return false;
-    tl_frame frame = tl_session_frame(review->session);
-    frame.smooth = smooth;
-    const struct tl_render_settings render = tl_settings_render(settings);
-    return tl_renderer_draw(review->renderer, &frame, &render, error);
-}
-
 /* Both appearances share the budget. */
 static void choose_levels(struct tl_review *review, const struct tl_settings *settings)
 {
@@ -190,7 +180,7 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
  * than a preset for motion asks for, or, where these would hold a gesture up, images that are shifted by
  * parts of a pixel one after the other. The choice stands until something changes: another one would begin
  * again. */
-static void choose_rest(struct tl_review *review, struct tl_settings *settings, bool goes_on)
+static void choose_rest(struct tl_review *review, struct tl_render_settings *settings, bool goes_on)
 {
     struct tl_review_rest *rest = &review->image.rest;
     const int requested = settings->image.supersample;
@@ -199,7 +189,7 @@ static void choose_rest(struct tl_review *review, struct tl_settings *settings, 
         settings->image.supersample = requested > REST_SIDE ? requested : REST_SIDE;
         struct tl_quality_rest chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
         *rest = (struct tl_review_rest){.samples = settings->image.supersample};
-        if (chosen.is_slow && tl_settings_render(settings).light.visibility == TL_VISIBILITY_RAYS) {
+        if (chosen.is_slow && settings->light.visibility == TL_VISIBILITY_RAYS) {
             *rest = (struct tl_review_rest){.samples = requested, .is_shifted = true};
             settings->image.supersample = requested;
             chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
@@ -210,51 +200,57 @@ static void choose_rest(struct tl_review *review, struct tl_settings *settings, 
     review->image.choice.levels = rest->levels;
 }
 
+/* Chooses the levels of the image, and its samples in *settings. The session is where the image will be. */
+static void choose_quality(struct tl_review *review, const struct tl_settings *wanted, enum image_use use,
+                           struct tl_render_settings *settings)
+{
+    const bool goes_on = review->image.is_resting && !review->due.changed && !review->due.image_is_old;
+    if (use == IMAGE_IN_MOTION)
+        choose_levels(review, wanted);
+    else
+        review->image.choice.levels = (struct tl_quality){{0}};
+    if (use == IMAGE_AT_REST)
+        choose_rest(review, settings, goes_on);
+    if (use == IMAGE_SAVED && settings->image.supersample < REST_SIDE)
+        settings->image.supersample = REST_SIDE;
+}
+
+static bool draw_b(struct tl_review *review, const struct tl_render_settings *full, bool smooth,
+                   tl_error *error)
+{
+    const struct tl_render_settings render = tl_quality_at(&review->image.choice.levels, full);
+    tl_frame frame = tl_session_frame(review->session);
+    frame.smooth = smooth;
+    return tl_renderer_draw(review->renderer, &frame, &render, error);
+}
+
 /* Applies `settings` to the session, simulates a frame when one is due, and draws; both appearances when two
  * are compared. */
 static bool draw_image(struct tl_review *review, const struct tl_settings *settings, enum image_use use,
                        tl_error *error)
 {
-    struct tl_quality *levels = &review->image.choice.levels;
-    struct tl_settings smooth = *settings;
-    bool is_budgeted = use == IMAGE_IN_MOTION;
-    bool goes_on = review->image.is_resting && !review->due.changed && !review->due.image_is_old;
+    struct tl_render_settings full = tl_settings_render(settings);
     review->image.times.lap_s = tl_clock_s();
-    if (!is_budgeted)
-        *levels = (struct tl_quality){{0}};
-    struct tl_settings b = tl_quality_apply(
-        levels, settings); /* the last frame's levels: the new camera is needed to choose the next */
-    if (!tl_session_apply(review->session, &b, error))
+    if (!tl_session_apply(review->session, settings, error))
         return false;
-    if (is_budgeted)
-        choose_levels(review, settings);
-    if (use == IMAGE_AT_REST)
-        choose_rest(review, &smooth, goes_on);
-    if (use == IMAGE_SAVED && smooth.image.supersample < REST_SIDE)
-        smooth.image.supersample = REST_SIDE;
-    settings = &smooth;
-    b = tl_quality_apply(levels, settings);
-    if (!tl_session_apply(review->session, &b, error))
-        return false;
+    choose_quality(review, settings, use, &full);
     tl_review_lap(review, "settings and levels");
     if (is_step_due(review))
         step(review);
     const bool is_shifted = use == IMAGE_AT_REST && review->image.rest.is_shifted;
     double started_s = tl_clock_s();
     if (review->wipe.renderer) {
-        const struct tl_settings other = tl_review_settings_a(review, settings),
-                                 a = tl_quality_apply(levels, &other);
-        if (!tl_review_draw_a(review, &a, is_shifted, error))
+        if (!tl_review_draw_a(review, settings, is_shifted, error))
             return false;
         review->image.times.began_s +=
             tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
     }
-    if (!draw_b(review, &b, is_shifted, error))
+    if (!draw_b(review, &full, is_shifted, error))
         return false;
     review->image.times.draw = 1e3 * (tl_clock_s() - started_s);
     review->image.drawn_count++;
     review->image.is_new = true;
-    review->image.is_budgeted = is_budgeted;
+    review->image.is_budgeted = use == IMAGE_IN_MOTION;
     review->image.is_resting = use == IMAGE_AT_REST;
     review->image.is_exact = use == IMAGE_SAVED;
     tl_debug("view: image %d, frame %d, %.1f ms", review->image.drawn_count,
@@ -283,7 +279,8 @@ static bool redraw(struct tl_review *review, enum image_use use, tl_error *error
     tl_review_size(review, &width, &height);
     review->wanted.image.width = width;
     review->wanted.image.height = height;
-    struct tl_settings followed = tl_review_drawable_settings(review);
+    struct tl_settings followed;
+    tl_review_drawable_settings(review, &followed);
     if (!draw_image(review, &followed, use, error)) {
         if (tl_interrupted())
             return false;

@@ -30,8 +30,8 @@ static bool is_slow(const struct tl_review *review, const struct tl_settings *se
            needs_appearance(review, settings);
 }
 
-/* Sets the options that need loading to the values that the session has; but an appearance is the last one
- * that was drawn, because the session's own settings also hold the quality levels of the last image. */
+/* Sets the options that need loading to the values that the session has; an appearance is the last one that
+ * was drawn. */
 static void keep_present(const struct tl_review *review, struct tl_settings *settings)
 {
     const struct tl_settings *present = tl_session_settings(review->session);
@@ -40,12 +40,11 @@ static void keep_present(const struct tl_review *review, struct tl_settings *set
         tl_appearance_take(&review->good, settings);
 }
 
-struct tl_settings tl_review_drawable_settings(const struct tl_review *review)
+void tl_review_drawable_settings(const struct tl_review *review, struct tl_settings *out)
 {
-    struct tl_settings followed = review->wanted;
-    if (is_slow(review, &followed))
-        keep_present(review, &followed);
-    return followed;
+    *out = review->wanted;
+    if (is_slow(review, out))
+        keep_present(review, out);
 }
 
 /* Leaves a core to the window. */
@@ -64,7 +63,7 @@ static struct tl_prepared_request light_of(const struct tl_review *review, const
         struct tl_quality levels = {.of[TL_CONTROL_REGIONS] = (uint8_t)level};
         if (!tl_quality_is_valid(&levels))
             break;
-        int regions = tl_quality_apply(&levels, settings).light.regions;
+        int regions = tl_quality_at(&levels, &request.settings).light.regions;
         request.region_counts[level] = regions < request.region_counts[level - 1] ? regions : 0;
         if (request.region_counts[level] == 0)
             break;
@@ -81,7 +80,8 @@ static struct tl_load_lights lights_of(struct tl_review *review, enum tl_load ki
     if (kind == TL_LOAD_LIGHT &&
         needs_appearance(review, &drawn)) /* the appearance is loaded after the light */
         tl_appearance_take(tl_session_settings(review->session), &drawn);
-    const struct tl_settings other = tl_review_settings_a(review, &drawn);
+    struct tl_settings other;
+    tl_review_settings_a(review, &drawn, &other);
     struct tl_load_lights lights = {.count = review->wipe.renderer && kind != TL_LOAD_APPEARANCE ? 2 : 1,
                                     .of = {light_of(review, &drawn), light_of(review, &other)}};
     for (int i = 0; i < lights.count && kind != TL_LOAD_SCENE; i++)

@@ -22,7 +22,7 @@ void tl_review_load(struct tl_review *review);
 /* Stops loading and takes the edit that asked for it out of `wanted`. False when nothing is loading. */
 bool tl_review_stop_loading(struct tl_review *review);
 /* `wanted`, with the options that need loading as the session has them: what can be drawn now. */
-struct tl_settings tl_review_drawable_settings(const struct tl_review *review);
+void tl_review_drawable_settings(const struct tl_review *review, struct tl_settings *out);
 
 /* The loader's progress for the panel; `text` holds its words. */
 struct tl_panel_progress tl_review_progress(const struct tl_review *review, char *text, size_t size);

@@ -87,8 +87,8 @@ void tl_review_swap(struct tl_review *review)
         return;
     }
     tl_review_note_wanted(review);
-    struct tl_settings b = review->wanted;
-    review->wanted = tl_review_settings_a(review, &b);
+    const struct tl_settings b = review->wanted;
+    tl_review_settings_a(review, &b, &review->wanted);
     review->wanted.fabric = review->wipe.settings.fabric;
     review->wipe.settings = b;
     tl_renderer *renderer_b =
@@ -103,33 +103,46 @@ void tl_review_swap(struct tl_review *review)
     tl_review_report(review, "A and B exchanged");
 }
 
-/* A's own session shows what it holds in B's view: its camera, environment and lamps. */
-bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, bool smooth,
-                      tl_error *error)
+/* Brings the session of A, which may be that of B, to the frame, and describes it. A's own session shows what
+ * it holds in B's view: its camera, environment and lamps. */
+static bool frame_of_a(struct tl_review *review, const struct tl_settings *settings, tl_frame *out,
+                       tl_error *error)
 {
     const struct tl_review_wipe *wipe = &review->wipe;
-    const struct tl_render_settings render = tl_settings_render(settings);
-    struct tl_settings own = *settings;
     if (!wipe->session) {
         if (!tl_session_apply(review->session, settings, error))
             return false;
-        tl_frame shared = tl_session_frame(review->session);
-        shared.smooth = smooth;
-        return tl_renderer_draw(wipe->renderer, &shared, &render, error);
+        *out = tl_session_frame(review->session);
+        return true;
     }
+    struct tl_settings own = *settings;
     tl_settings_take(tl_session_settings(wipe->session), &own,
                      (struct tl_option_filter){.any_of = TL_AFFECTS_ENVIRONMENT});
     int number = tl_session_frame_number(review->session);
-    if (number != tl_session_frame_number(wipe->session) && !tl_session_go_to(wipe->session, number, error))
+    if ((number != tl_session_frame_number(wipe->session) &&
+         !tl_session_go_to(wipe->session, number, error)) ||
+        !tl_session_apply(wipe->session, &own, error))
         return false;
-    if (!tl_session_apply(wipe->session, &own, error))
-        return false;
-    tl_frame frame = tl_session_frame(review->session);
     const tl_frame a = tl_session_frame(wipe->session);
-    frame.surfaces = a.surfaces;
-    frame.surface_count = a.surface_count;
+    *out = tl_session_frame(review->session);
+    out->surfaces = a.surfaces;
+    out->surface_count = a.surface_count;
+    return true;
+}
+
+bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, bool smooth,
+                      tl_error *error)
+{
+    struct tl_settings a;
+    tl_frame frame;
+    tl_review_settings_a(review, settings, &a);
+    const struct tl_render_settings full = tl_settings_render(&a);
+    const struct tl_render_settings render = tl_quality_at(&review->image.choice.levels, &full);
+    if (!frame_of_a(review, &a, &frame, error))
+        return false;
     frame.smooth = smooth;
-    return tl_renderer_draw(wipe->renderer, &frame, &render, error);
+    return tl_renderer_draw(review->wipe.renderer, &frame, &render, error) &&
+           (review->wipe.session || tl_session_apply(review->session, settings, error));
 }
 
 void tl_review_move_wipe(struct tl_review *review, float place)
@@ -144,18 +157,17 @@ int tl_review_wipe_column(const struct tl_review *review, int width)
     return review->wipe.renderer ? (int)lrintf(review->wipe.place * (float)width) : 0;
 }
 
-struct tl_settings tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings)
+void tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings,
+                          struct tl_settings *out)
 {
     const struct tl_settings *a = &review->wipe.settings;
-    struct tl_settings result = *settings;
+    *out = *settings;
     if (review->wipe.session) {
-        tl_settings_take(a, &result,
-                         (struct tl_option_filter){.any_of = TL_AFFECTS_SCENE | TL_AFFECTS_GARMENT});
-        result.colourways = a->colourways;
-        result.fabric = a->fabric;
+        tl_settings_take(a, out, (struct tl_option_filter){.any_of = TL_AFFECTS_SCENE | TL_AFFECTS_GARMENT});
+        out->colourways = a->colourways;
+        out->fabric = a->fabric;
     }
-    tl_appearance_take(a, &result);
-    return result;
+    tl_appearance_take(a, out);
 }
 
 static const char *short_name(const char *name)
@@ -177,7 +189,8 @@ static void label(char *out, size_t size, const char *side, const struct tl_scen
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size)
 {
     const struct tl_settings *now = &review->good;
-    struct tl_settings same = tl_review_settings_a(review, now);
+    struct tl_settings same;
+    tl_review_settings_a(review, now, &same);
     char *difference = tl_history_describe(&same, now);
     bool has_own = review->wipe.session != NULL;
     label(a, size, "A", &same.scene, has_own, "");

@@ -24,9 +24,9 @@ void tl_review_swap(struct tl_review *review);           /* A becomes B */
 /* Keeps for A, while something is compared and A has no session of its own, the session that B has left, and
  * nulls *left. To be called before review->draped is B's. */
 void tl_review_keep_for_a(struct tl_review *review, tl_session **left);
-/* Draws A in the settings of tl_review_settings_a, with its own levels of quality; `shifts` as tl_frame has
- * it. B's session has been brought to the frame to be drawn. Errors: as tl_session_go_to, tl_session_apply
- * and tl_renderer_draw. */
+/* Draws A where `settings` show B, at the levels of the image; `smooth` as tl_frame has it. B's session has
+ * been brought to the frame to be drawn, and shows B again afterwards. Errors: as tl_session_go_to,
+ * tl_session_apply and tl_renderer_draw. */
 bool tl_review_draw_a(struct tl_review *review, const struct tl_settings *settings, bool smooth,
                       tl_error *error);
 /* Moves the line between them to a share of the view's width. */
@@ -35,7 +35,8 @@ void tl_review_move_wipe(struct tl_review *review, float place);
 int tl_review_wipe_column(const struct tl_review *review, int width);
 /* Settings that show A where `settings` show B: the same camera and light, and the same scene unless A has
  * one of its own. */
-struct tl_settings tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings);
+void tl_review_settings_a(const struct tl_review *review, const struct tl_settings *settings,
+                          struct tl_settings *out);
 /* Names of A and B, and what differs. Both of `size` bytes. */
 void tl_review_wipe_labels(const struct tl_review *review, char *a, char *b, size_t size);
 
