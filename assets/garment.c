@@ -1,7 +1,6 @@
 #include "assets/garment.h"
 
 #include "assets/model.h"
-#include "assets/obj/wavefront.h"
 
 bool tl_garment_load(const char *path, tl_garment *out, tl_error *error)
 {
@@ -15,9 +14,4 @@ bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, 
         return false;
     tl_garment_take_pins(out);
     return true;
-}
-
-bool tl_garment_has_stitches(const char *path)
-{
-    return wave_has_stitches(path);
 }

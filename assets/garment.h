@@ -16,10 +16,4 @@ bool tl_garment_load(const char *path, tl_garment *out, tl_error *error);
  * Errors, Lifetime, Threads: as tl_garment_load. */
 bool tl_garment_load_in(const char *path, enum tl_units units, tl_garment *out, tl_error *error);
 
-/* Whether a file holds panels and the stitches that sew them (assets/sewing/stitches.h): a garment, not a
- * body. False for a file that cannot be read.
- *
- * Errors: none. Lifetime: nothing is kept. Threads: any. */
-bool tl_garment_has_stitches(const char *path);
-
 #endif

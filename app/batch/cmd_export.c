@@ -1,8 +1,8 @@
 /* toile export: writes a frame as GLB or OBJ, or the garment's motion as a PC2 or MDD point cache. */
 #include "app/batch/commands.h"
-#include "app/scene/headless.h"
 #include "app/scene/session.h"
 #include "app/scene/whole_body.h"
+#include "app/settings/command.h"
 #include "assets/model_export.h"
 #include "assets/motion/point_cache.h"
 #include "config/base/file.h"
@@ -128,7 +128,7 @@ bool tl_command_export(const struct tl_arguments *arguments, tl_error *error)
     if (!check_output(arguments, error))
         return false;
     bool is_glb = tl_path_has_extension(arguments->output, "glb"); /* which also holds a body alone */
-    if (!(is_glb ? tl_headless_settings : tl_headless_garment_settings)(arguments, &settings, error))
+    if (!tl_settings_of_command(arguments, !is_glb, &settings, error))
         return false;
     settings.scene.pattern = false; /* a picture of the garment, no part of it */
     settings.scene.smooth = false;

@@ -4,6 +4,7 @@
 #include "app/cli/json.h"
 #include "app/fit/measures.h"
 #include "app/scene/headless.h"
+#include "app/settings/command.h"
 #include "assets/model.h"
 #include "cloth/mesh/topology.h"
 #include "config/base/file.h"
@@ -293,7 +294,7 @@ static bool report(const tl_session *session, const struct tl_measures *measures
 bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_settings settings;
-    if (!check_output(arguments, error) || !tl_headless_garment_settings(arguments, &settings, error))
+    if (!check_output(arguments, error) || !tl_settings_of_command(arguments, true, &settings, error))
         return false;
     settings.scene.smooth = false; /* the cloth itself is measured */
     tl_session *session = tl_session_create(&settings, error);

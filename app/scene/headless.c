@@ -1,43 +1,8 @@
 #include "app/scene/headless.h"
 
+#include "app/settings/command.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
-#include "config/base/memory.h"
-
-#include <stdlib.h>
-
-bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error)
-{
-    if (arguments->positional_count > 1)
-        return tl_fail(error, TL_USAGE,
-                       "%s: one scene at a time: name a YAML, .glb, .gltf, .obj or .json file, or none",
-                       arguments->positionals[1]);
-    const struct tl_settings_source source = {
-        .scene_file = arguments->positional_count ? arguments->positionals[0] : NULL,
-        .assignments = (const char *const *)arguments->assignments,
-        .assignment_count = arguments->assignment_count,
-    };
-    return tl_settings_load(out, &source, error);
-}
-
-bool tl_headless_garment_settings(const struct tl_arguments *arguments, struct tl_settings *out,
-                                  tl_error *error)
-{
-    const char *name = arguments->positional_count == 1 ? arguments->positionals[0] : "";
-    if (!tl_model_is_file(name))
-        return tl_headless_settings(arguments, out, error);
-    char *garment = tl_format("scene.garment=%s", name);
-    const char **assignments = TL_NEW_ARRAY(const char *, arguments->assignment_count + 1);
-    assignments[0] = garment;
-    for (size_t i = 0; i < arguments->assignment_count; i++)
-        assignments[i + 1] = arguments->assignments[i];
-    const struct tl_settings_source source = {.assignments = assignments,
-                                              .assignment_count = arguments->assignment_count + 1};
-    bool loaded = tl_settings_load(out, &source, error);
-    free(assignments);
-    free(garment);
-    return loaded;
-}
 
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error)
 {
@@ -49,6 +14,7 @@ bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *se
     headless->renderer = headless->gpu ? tl_renderer_create(headless->gpu, error) : NULL;
     headless->session = headless->renderer ? tl_session_create(&headless->settings, error) : NULL;
     if (headless->session) {
+        headless->settings = *tl_session_settings(headless->session);
         tl_debug("rendering with %s", tl_gpu_name(headless->gpu));
         return true;
     }
@@ -60,7 +26,8 @@ bool tl_headless_create(struct tl_headless *headless, const struct tl_arguments 
 {
     struct tl_settings settings;
     *headless = (struct tl_headless){0};
-    return tl_headless_settings(arguments, &settings, error) && tl_headless_open(headless, &settings, error);
+    return tl_settings_of_command(arguments, false, &settings, error) &&
+           tl_headless_open(headless, &settings, error);
 }
 
 void tl_headless_release(struct tl_headless *headless)

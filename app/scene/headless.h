@@ -13,17 +13,9 @@ struct tl_headless {
     bool aovs; /* frames are drawn with what render/inspect/aovs.h reads */
 };
 
-/* Settings from the command line: its scene and its assignments. */
-bool tl_headless_settings(const struct tl_arguments *arguments, struct tl_settings *out, tl_error *error);
-
-/* The same for commands that need a garment: a model in place of a scene is one, not a body that is looked
- * at. */
-bool tl_headless_garment_settings(const struct tl_arguments *arguments, struct tl_settings *out,
-                                  tl_error *error);
-
-/* Device and session (settled) for settings. On failure nothing is left. */
+/* Device and session (settled) for settings, which become the session's. On failure nothing is left. */
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error);
-/* tl_headless_settings, then tl_headless_open. */
+/* The same for the settings of the command line. */
 bool tl_headless_create(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error);
 void tl_headless_release(struct tl_headless *headless);
 

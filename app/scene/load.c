@@ -4,6 +4,7 @@
 #include "assets/base/placing.h"
 #include "assets/body/fit.h"
 #include "assets/garment.h"
+#include "assets/model.h"
 #include "assets/pattern/pattern.h"
 #include "assets/pattern/pattern_worn.h"
 #include "assets/refine.h"
@@ -77,8 +78,37 @@ static void simplify_avatar(const struct tl_settings *settings, tl_avatar *avata
     free(weld);
 }
 
+bool tl_scene_decide(struct tl_scene_params *scene, tl_model *out, tl_error *error)
+{
+    const bool has_units = scene->avatar_units != TL_UNITS_AUTO;
+    const int units = has_units ? scene->avatar_units : scene->units;
+    *out = (tl_model){0};
+    if (!scene->is_undecided)
+        return true;
+    if (!tl_model_load_in(scene->avatar, (enum tl_units)units, out, error))
+        return false;
+    scene->is_undecided = false;
+    if (out->stitch_count > 0 || tl_sewn_is_worn(out)) {
+        scene->garment = scene->avatar;
+        scene->avatar = "auto";
+    } else {
+        scene->avatar_units = units;
+    }
+    return true;
+}
+
+/* Moves a model that is loaded already; false when there is none. */
+static bool take_loaded(tl_model *loaded, tl_model *out)
+{
+    const bool is_there = loaded->name != NULL;
+    if (is_there)
+        *out = *loaded;
+    *loaded = (tl_model){0};
+    return is_there;
+}
+
 /* Makes or reads the avatar that the scene names, which is not "none". */
-static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_error *error)
+static bool make_avatar(const struct tl_settings *settings, tl_model *loaded, tl_avatar *out, tl_error *error)
 {
     const char *name = tl_settings_avatar(&settings->scene);
     if (strcmp(name, "form") == 0)
@@ -87,7 +117,8 @@ static bool make_avatar(const struct tl_settings *settings, tl_avatar *out, tl_e
         *out = tl_avatar_figure();
     else if (strcmp(name, "ball") == 0)
         *out = tl_specimen_ball();
-    else if (!tl_avatar_load_in(name, (enum tl_units)settings->scene.avatar_units, out, error))
+    else if (!take_loaded(loaded, &out->model) &&
+             !tl_avatar_load_in(name, (enum tl_units)settings->scene.avatar_units, out, error))
         return false;
     report_line(tl_units_describe(out->model.name, &out->model.units, "scene.avatar_units"));
     for (size_t i = 0; i < out->model.defect_count; i++)
@@ -130,18 +161,19 @@ static bool find_clip(const struct tl_settings *settings, const tl_model *model,
                    name, model->clips[0].name);
 }
 
-bool tl_scene_load_avatar(const struct tl_settings *settings, tl_avatar **out, int *clip, tl_error *error)
+bool tl_scene_load_avatar(const struct tl_settings *settings, tl_model *loaded, tl_avatar **out, int *clip,
+                          tl_error *error)
 {
-    tl_avatar loaded;
+    tl_avatar made = {0};
     *out = NULL;
     *clip = -1;
     if (strcmp(tl_settings_avatar(&settings->scene), "none") == 0)
         return true;
-    if (!make_avatar(settings, &loaded, error))
+    if (!make_avatar(settings, loaded, &made, error))
         return false;
     *out = TL_NEW(tl_avatar);
-    **out = loaded;
-    return find_clip(settings, &loaded.model, clip, error);
+    **out = made;
+    return find_clip(settings, &made.model, clip, error);
 }
 
 bool tl_scene_plays_motion(const struct tl_settings *settings)
@@ -269,11 +301,14 @@ static void report_size(char *line, struct tl_scene_standing *standing)
 }
 
 /* Reads the garment from a file, places, lifts, sews and refines it. */
-static bool read_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
-                         struct tl_scene_standing *standing, tl_error *error)
+static bool read_garment(const struct tl_settings *settings, tl_model *loaded, const tl_avatar *wearer,
+                         tl_garment *out, struct tl_scene_standing *standing, tl_error *error)
 {
     const struct tl_scene_params *scene = &settings->scene;
-    if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
+    *out = (tl_garment){0};
+    if (take_loaded(loaded, &out->model))
+        tl_garment_take_pins(out);
+    else if (!tl_garment_load_in(scene->garment, (enum tl_units)scene->units, out, error))
         return false;
     report_line(tl_units_describe(out->model.name, &out->model.units, "--units"));
     bool placed = place_garment(settings, wearer, out, error);
@@ -306,8 +341,8 @@ static double distance_to_body(const void *body, const double point[3])
     return tl_collider_query(body, point, reach_m, &contact) ? contact.distance_m : reach_m;
 }
 
-static bool make_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment *out,
-                         struct tl_scene_standing *standing, tl_error *error)
+static bool make_garment(const struct tl_settings *settings, tl_model *loaded, const tl_avatar *wearer,
+                         tl_garment *out, struct tl_scene_standing *standing, tl_error *error)
 {
     const char *name = settings->scene.garment, *wearer_name = tl_settings_avatar(&settings->scene);
     const float edge_m = settings->cloth.edge_m;
@@ -320,7 +355,7 @@ static bool make_garment(const struct tl_settings *settings, const tl_avatar *we
     if (!is_built_in_garment(name)) {
         if (settings->cut.ease_m != 0 || settings->cut.longer_m != 0 || settings->cut.sleeve_m != 0)
             tl_warn("%s: the table cut is for built-in garments: --scale alters the size of a file's", name);
-        return read_garment(settings, wearer, out, standing, error);
+        return read_garment(settings, loaded, wearer, out, standing, error);
     }
     if (!wearer || strcmp(wearer_name, "form") == 0)
         return tl_garment_cut_sized(name, edge_m, &settings->cut, NULL, out, error);
@@ -334,15 +369,15 @@ static bool make_garment(const struct tl_settings *settings, const tl_avatar *we
     return good;
 }
 
-bool tl_scene_load_garment(const struct tl_settings *settings, const tl_avatar *wearer, tl_garment **out,
-                           struct tl_scene_standing *standing, tl_error *error)
+bool tl_scene_load_garment(const struct tl_settings *settings, tl_model *loaded, const tl_avatar *wearer,
+                           tl_garment **out, struct tl_scene_standing *standing, tl_error *error)
 {
     tl_garment made;
     *out = NULL;
     *standing = (struct tl_scene_standing){0};
     if (strcmp(settings->scene.garment, "none") == 0)
         return true;
-    if (!make_garment(settings, wearer, &made, standing, error))
+    if (!make_garment(settings, loaded, wearer, &made, standing, error))
         return false;
     if (!tl_sewn_pin(settings->cloth.pin_openings, &made, error)) {
         tl_garment_release(&made);

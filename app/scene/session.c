@@ -236,15 +236,24 @@ static bool check_files(const struct tl_scene_params *scene, tl_error *error)
     return true;
 }
 
+static bool load_models(tl_session *session, tl_error *error)
+{
+    struct tl_settings *settings = &session->settings;
+    tl_model loaded;
+    const bool done = tl_scene_decide(&settings->scene, &loaded, error) &&
+                      tl_scene_load_avatar(settings, &loaded, &session->avatar, &session->clip, error) &&
+                      tl_scene_load_garment(settings, &loaded, session->avatar, &session->garment,
+                                            &session->standing, error);
+    tl_model_release(&loaded);
+    return done;
+}
+
 static bool load_all(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
-    if (!check_files(&settings->scene, error))
-        return false;
-    const char *environment = settings->scene.environment;
-    if (!tl_moving_light_open(&session->light, environment, 0, error) ||
-        !tl_scene_load_avatar(settings, &session->avatar, &session->clip, error) ||
-        !tl_scene_load_garment(settings, session->avatar, &session->garment, &session->standing, error))
+    if (!check_files(&settings->scene, error) ||
+        !tl_moving_light_open(&session->light, settings->scene.environment, 0, error) ||
+        !load_models(session, error))
         return false;
     if (!session->avatar && !session->garment)
         return tl_fail(error, TL_USAGE, "scene: neither a garment nor an avatar: name at least one");

@@ -26,7 +26,8 @@ typedef struct tl_session tl_session;
 
 /* ---- A session's life ---- */
 
-/* Loads avatar, garment and environment, drapes the garment, and reports progress in the log.
+/* Loads avatar, garment and environment, drapes the garment, and reports progress in the log. Decides what a
+ * model in place of a scene is, when `settings` leave that open: tl_session_settings has the decision.
  * Errors: NULL, with TL_USAGE (an unknown colourway; neither garment nor avatar), TL_INPUT (a file, a clip),
  * TL_INTERRUPTED, or the error of the drape.
  * Lifetime: `settings` is copied; the caller destroys the session.

@@ -1,10 +1,8 @@
 #include "app/settings/settings.h"
 
-#include "app/fit/sewn.h"
 #include "app/settings/layers.h"
 #include "assets/base/units.h"
 #include "assets/environment/studio.h"
-#include "assets/garment.h"
 #include "assets/model.h"
 #include "assets/motion/motion_mesh.h"
 #include "assets/motion/point_cache.h"
@@ -249,21 +247,7 @@ static bool wear_model(const struct tl_binding *all, const char *path, tl_error 
     return !is_worn || tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
 }
 
-/* Whether a file holds a model of something worn. False for one that cannot be read: the session reports why.
- */
-static bool is_worn(const char *path)
-{
-    tl_model model;
-    tl_error error;
-    if (!tl_model_is_file(path) || !tl_model_load(path, &model, &error))
-        return false;
-    bool worn = tl_sewn_is_worn(&model);
-    tl_model_release(&model);
-    return worn;
-}
-
-/* A pattern, panels with stitches, or a garment in place of a scene are worn by the body that the options
- * name. */
+/* A pattern or a garment in place of a scene is worn by the body that the options name. */
 static bool apply_garment(const struct tl_binding *all, const char *path, tl_error *error)
 {
     return tl_options_set(all, TL_SETTINGS_TABLES, "scene.garment", path, "SCENE", NULL, error);
@@ -310,10 +294,10 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool is_cut = tl_pattern_is_file(scene) || tl_garment_has_stitches(scene) || is_worn(scene);
-    bool is_model = !is_cut && tl_model_is_file(scene);
+    bool is_garment = tl_pattern_is_file(scene) || (source->needs_garment && tl_model_is_file(scene));
+    bool is_model = !is_garment && tl_model_is_file(scene);
     bool applied = tl_point_cache_is_file(scene) ? apply_motion(all, scene, error)
-                   : is_cut                      ? apply_garment(all, scene, error)
+                   : is_garment                  ? apply_garment(all, scene, error)
                    : is_model                    ? apply_model(all, scene, error)
                                                  : apply_scene(all, scene, error);
     for (size_t i = 0; applied && i < source->assignment_count; i++)
@@ -395,16 +379,17 @@ static bool read_colourways(struct tl_settings *settings, tl_error *error)
     return true;
 }
 
-/* A model alone is what a motion moves, and what --units means. */
+/* A model alone is what a motion moves; else its shape decides. */
 static void choose_role(struct tl_scene_params *scene)
 {
-    bool is_alone = strcmp(scene->garment, "none") == 0;
-    bool moves = strcmp(scene->motion, "none") != 0 && is_alone && tl_option_is_file_name(scene->avatar);
-    if (moves) {
+    bool is_alone = strcmp(scene->garment, "none") == 0 && tl_option_is_file_name(scene->avatar);
+    bool moves = strcmp(scene->motion, "none") != 0;
+    scene->is_undecided = is_alone && !moves;
+    if (is_alone && moves) {
         scene->garment = scene->avatar;
         scene->avatar = "none";
-    } else if (is_alone && scene->avatar_units == TL_UNITS_AUTO) {
-        scene->avatar_units = scene->units;
+    } else if (strcmp(scene->garment, scene->avatar) == 0) {
+        scene->avatar = "auto";
     }
 }
 
@@ -526,7 +511,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
                                          error) ||
         !apply_source(all, source, error))
         return false;
-    if (source->scene_file && tl_model_is_file(source->scene_file))
+    if (source->scene_file && tl_model_is_file(source->scene_file) && !source->needs_garment)
         choose_role(&named);
     settings.scene = named;
     turn_studio(&settings);

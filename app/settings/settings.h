@@ -41,6 +41,10 @@ struct tl_scene_params {     /* table "scene": what to show; names of built-ins 
     const char *clip;       /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
     float environment_rate; /* frames of a sequence a second */
+    /* No option: the avatar is a model in place of a scene, of which nothing says whether it is a garment. A
+     * session decides by its shape when it has loaded it, and its own settings state the decision
+     * (app/scene/load.h). */
+    bool is_undecided;
 };
 
 struct tl_camera_params { /* table "camera": an orbit about a target */
@@ -113,6 +117,7 @@ struct tl_settings_source {
     const char *scene_file;         /* YAML, a model or a pattern, or NULL: the built-in scene */
     const char *const *assignments; /* "table.key=value", later ones win */
     size_t assignment_count;
+    bool needs_garment; /* a model is a garment, whatever its shape */
 };
 /* Whether a name in place of a scene is one: built in, or YAML; else it is a model, a pattern or a motion.
  * Pure. */

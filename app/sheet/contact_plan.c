@@ -1,6 +1,7 @@
 #include "app/sheet/contact_plan.h"
 
-#include "app/scene/headless.h"
+#include "app/scene/load.h"
+#include "app/settings/command.h"
 #include "app/sheet/contact_names.h"
 #include "app/sheet/contact_store.h"
 #include "assets/model.h"
@@ -157,7 +158,7 @@ static bool load_row(const struct tl_arguments *arguments, const struct choice *
     struct tl_arguments changed = *arguments;
     changed.assignments = all;
     changed.assignment_count = count;
-    bool loaded = tl_headless_settings(&changed, out, error);
+    bool loaded = tl_settings_of_command(&changed, false, out, error);
     for (size_t i = 0; i < TL_COUNT(own); i++)
         free(own[i]);
     free((void *)all);
@@ -183,12 +184,31 @@ static char *row_slug(const struct tl_settings *settings)
     return slug;
 }
 
+/* All undecided rows show the model in place of a scene, so it is loaded for the first of them. One that
+ * cannot be read stays undecided: rendering its row reports the reason. */
+static void decide(const struct tl_contact_plan *plan, struct tl_scene_params *scene)
+{
+    if (scene->is_undecided && plan->row_count > 0) {
+        const struct tl_scene_params *first = &plan->rows[0].settings.scene;
+        scene->garment = first->garment;
+        scene->avatar = first->avatar;
+        scene->avatar_units = first->avatar_units;
+        scene->is_undecided = first->is_undecided;
+    } else {
+        tl_model model;
+        tl_error ignored;
+        tl_scene_decide(scene, &model, &ignored);
+        tl_model_release(&model);
+    }
+}
+
 static bool add_row(const struct tl_arguments *arguments, const struct choice *choice,
                     struct tl_contact_plan *plan, tl_error *error)
 {
     struct tl_contact_row row = {0};
     if (!load_row(arguments, choice, &row.settings, error))
         return false;
+    decide(plan, &row.settings.scene);
     row.garment = tl_contact_label_of(row.settings.scene.garment);
     row.name = row_name(choice);
     row.slug = row_slug(&row.settings);

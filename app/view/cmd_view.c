@@ -2,7 +2,7 @@
  *
  * The loop sleeps while nothing happens, so that an idle window uses no processor time. */
 #include "app/budget/back_end.h"
-#include "app/scene/headless.h"
+#include "app/settings/command.h"
 #include "app/view/command/review_begin.h"
 #include "app/view/command/review_input.h"
 #include "app/view/command/review_panel.h"
@@ -151,7 +151,7 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
     tl_warn("view: the last review cannot be restored (%s): opening the built-in one", error->message);
     tl_journal_set_aside(&review->keep.journal);
     tl_history_destroy(&review->keep.history);
-    if (!tl_headless_settings(review->keep.arguments, &review->wanted, error))
+    if (!tl_settings_of_command(review->keep.arguments, false, &review->wanted, error))
         return false;
     review->wanted.camera = restored.camera;
     return tl_review_load_first(review, error);
@@ -172,7 +172,7 @@ static bool calibrate(struct tl_review *review, tl_error *error)
 static bool open_review(struct tl_review *review, tl_error *error)
 {
     const struct tl_arguments *arguments = review->keep.arguments;
-    if (!tl_headless_settings(arguments, &review->wanted, error))
+    if (!tl_settings_of_command(arguments, false, &review->wanted, error))
         return false;
     bool is_restored = tl_review_restore_state(review);
     int steps = tl_review_recover(review);

@@ -45,9 +45,6 @@ struct wave_object {
 bool wave_read(const char *path, struct wave_object *out, tl_error *error);
 void wave_release(struct wave_object *object);
 
-/* Whether the file has stitches; false for one that cannot be read. Reads all of it, but parses nothing. */
-bool wave_has_stitches(const char *path);
-
 /* Reads an OBJ file and its MTL files into a model of which only the name is set. On failure the caller
  * releases it. */
 bool wave_load_model(const char *path, enum tl_units wanted, tl_model *out, tl_error *error);

@@ -274,19 +274,6 @@ static bool check_stitches(const struct obj_reader *reader)
     return true;
 }
 
-bool wave_has_stitches(const char *path)
-{
-    static const char keyword[] = "\nstitch ";
-    char *data;
-    size_t size;
-    tl_error error;
-    if (!tl_path_has_extension(path, "obj") || !tl_file_read(path, &data, &size, &error))
-        return false;
-    bool found = memmem(data, size, keyword, sizeof keyword - 1) != NULL;
-    free(data);
-    return found;
-}
-
 bool wave_read(const char *path, struct wave_object *out, tl_error *error)
 {
     *out = (struct wave_object){0};

@@ -6,6 +6,7 @@
 #include "app/report/folder.h"
 #include "app/scene/camera.h"
 #include "app/scene/orbit.h"
+#include "app/settings/command.h"
 #include "config/base/file.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
@@ -57,7 +58,7 @@ static bool read_settings(const struct tl_arguments *arguments, struct tl_settin
     }
     for (size_t i = 0; i < arguments->assignment_count; i++)
         sized.assignments[sized.assignment_count++] = arguments->assignments[i];
-    bool read = tl_headless_settings(&sized, out, error);
+    bool read = tl_settings_of_command(&sized, false, out, error);
     free(sized.assignments);
     return read;
 }

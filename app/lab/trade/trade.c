@@ -2,6 +2,7 @@
 
 #include "app/budget/governor.h"
 #include "app/cli/topic.h"
+#include "app/settings/command.h"
 #include "assets/image/image_file.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
@@ -376,7 +377,7 @@ static bool read_appearance(const struct tl_experiment *experiment,
         own.assignments[count++] = arguments->assignments[i];
     own.assignment_count = count;
     tl_topic_default_scene(&own, experiment->scene);
-    bool read = tl_headless_settings(&own, out, error);
+    bool read = tl_settings_of_command(&own, false, out, error);
     for (size_t i = 0; i < copied; i++)
         free(own.assignments[i]);
     free(own.assignments);
@@ -401,7 +402,7 @@ static bool begin_appearance(struct run *run, int number, tl_error *error)
         if (!read_appearance(experiment, appearance, run->arguments, &settings, error) ||
             !tl_session_restart(headless->session, &settings, error))
             return false;
-        headless->settings = settings;
+        headless->settings = *tl_session_settings(headless->session);
     }
     trade->environment = tl_session_frame(headless->session).environment;
     run->recording = tl_motion_record(headless->session, run->warm + run->measured, error);

@@ -274,6 +274,8 @@ bool tl_review_finish_first(struct tl_review *review, tl_error *error)
         return false;
     review->session = loaded.session;
     loaded.session = NULL;
+    review->wanted.scene =
+        tl_session_settings(review->session)->scene; /* garment or body, if that was open */
     review->load.draped = review->wanted.fabric;
     tl_review_note_reading(review);
     tl_review_keep_recent(review);

@@ -161,19 +161,25 @@ static const char *write_cone(const char *name, bool has_lids)
     return path;
 }
 
-/* A file alone is a garment where it has a neck or a waist, and else a model that is shown. */
+/* A file alone is a garment where it has a neck or a waist, and else a model that is shown: the session that
+ * loads it decides. */
 static void a_file_alone_is_worn(void **state)
 {
     (void)state;
     for (int lids = 0; lids < 2; lids++) {
         tl_error error = {0};
-        struct tl_settings *settings = TL_NEW(struct tl_settings);
+        struct tl_settings settings;
         const char *path = write_cone(lids ? "closed_cone.obj" : "cone.obj", lids);
-        assert_ok(tl_settings_load(settings, &(struct tl_settings_source){.scene_file = path}, &error),
+        assert_ok(tl_settings_load(&settings, &(struct tl_settings_source){.scene_file = path}, &error),
                   error);
-        assert_string_equal(settings->scene.garment, lids ? "none" : path);
-        assert_string_equal(tl_settings_avatar(&settings->scene), lids ? path : "none");
-        free(settings);
+        tl_session *session = tl_session_create(&settings, &error);
+        assert_ok(session != NULL, error);
+        const struct tl_scene_params *scene = &tl_session_settings(session)->scene;
+        assert_string_equal(scene->garment, lids ? "none" : path);
+        assert_string_equal(tl_settings_avatar(scene), lids ? path : "none");
+        assert_string_equal(scene->fabric, "none");
+        assert_true((tl_session_garment(session) != NULL) == !lids);
+        tl_session_destroy(&session);
     }
 }
 

@@ -70,7 +70,8 @@ static size_t triangles_of(const char *garment, const char *detail)
     tl_error error = {0};
     tl_avatar *avatar;
     int clip;
-    assert_ok(tl_scene_load_avatar(&settings, &avatar, &clip, &error), error);
+    tl_model none = {0};
+    assert_ok(tl_scene_load_avatar(&settings, &none, &avatar, &clip, &error), error);
     size_t count = avatar->model.mesh.index_count / 3;
     tl_avatar_release(avatar);
     free(avatar);

@@ -3,6 +3,7 @@
 #include "app/cli/topic.h"
 #include "app/lab/experiments/experiment.h"
 #include "app/lab/experiments/experiments.h"
+#include "app/settings/command.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
@@ -57,7 +58,7 @@ static const struct tl_technique *find_technique(const struct tl_experiment *exp
 static bool prepare(struct light_suite *suite, const struct tl_arguments *arguments, tl_error *error)
 {
     const struct tl_experiment *experiment = tl_experiment_find(TL_OUTPUT_BOUNDS, "light");
-    if (!tl_headless_settings(arguments, &suite->settings, error))
+    if (!tl_settings_of_command(arguments, false, &suite->settings, error))
         return false;
     suite->settings.image.width = suite->settings.image.height = SIDE;
     suite->settings.image.supersample = 1;
