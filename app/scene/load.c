@@ -87,13 +87,11 @@ bool tl_scene_decide(struct tl_scene_params *scene, tl_model *out, tl_error *err
         return true;
     if (!tl_model_load_in(scene->avatar, (enum tl_units)units, out, error))
         return false;
-    scene->is_undecided = false;
-    if (out->stitch_count > 0 || tl_sewn_is_worn(out)) {
-        scene->garment = scene->avatar;
-        scene->avatar = "auto";
-    } else {
+    if (out->stitch_count > 0 || tl_sewn_is_worn(out))
+        tl_settings_wear(scene);
+    else
         scene->avatar_units = units;
-    }
+    scene->is_undecided = false;
     return true;
 }
 

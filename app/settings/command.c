@@ -11,7 +11,10 @@ bool tl_settings_of_command(const struct tl_arguments *arguments, bool needs_gar
         .scene_file = arguments->positional_count ? arguments->positionals[0] : NULL,
         .assignments = (const char *const *)arguments->assignments,
         .assignment_count = arguments->assignment_count,
-        .needs_garment = needs_garment,
     };
-    return tl_settings_load(out, &source, error);
+    if (!tl_settings_load(out, &source, error))
+        return false;
+    if (needs_garment && out->scene.is_undecided)
+        tl_settings_wear(&out->scene);
+    return true;
 }

@@ -2,6 +2,12 @@
 
 #include "config/base/hash.h"
 
+void tl_settings_bind_const(const struct tl_settings *settings,
+                            struct tl_binding bindings[TL_SETTINGS_TABLES])
+{
+    tl_settings_bind((struct tl_settings *)settings, bindings);
+}
+
 bool tl_settings_differ(const struct tl_settings *a, const struct tl_settings *b,
                         struct tl_option_filter filter)
 {

@@ -181,12 +181,6 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[REFERENCE] = (struct tl_binding){&tl_reference_options, &settings->reference};
 }
 
-void tl_settings_bind_const(const struct tl_settings *settings,
-                            struct tl_binding bindings[TL_SETTINGS_TABLES])
-{
-    tl_settings_bind((struct tl_settings *)settings, bindings);
-}
-
 void tl_settings_reset(struct tl_settings *settings)
 {
     struct tl_binding all[TL_SETTINGS_TABLES];
@@ -294,8 +288,8 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
                          tl_error *error)
 {
     const char *scene = source->scene_file ? source->scene_file : "dress";
-    bool is_garment = tl_pattern_is_file(scene) || (source->needs_garment && tl_model_is_file(scene));
-    bool is_model = !is_garment && tl_model_is_file(scene);
+    bool is_garment = tl_pattern_is_file(scene);
+    bool is_model = tl_model_is_file(scene);
     bool applied = tl_point_cache_is_file(scene) ? apply_motion(all, scene, error)
                    : is_garment                  ? apply_garment(all, scene, error)
                    : is_model                    ? apply_model(all, scene, error)
@@ -377,6 +371,13 @@ static bool read_colourways(struct tl_settings *settings, tl_error *error)
         return false;
     settings->colourways = tl_colourways_keep(&found);
     return true;
+}
+
+void tl_settings_wear(struct tl_scene_params *scene)
+{
+    scene->garment = scene->avatar;
+    scene->avatar = "auto";
+    scene->is_undecided = false;
 }
 
 /* A model alone is what a motion moves; else its shape decides. */
@@ -511,7 +512,7 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
                                          error) ||
         !apply_source(all, source, error))
         return false;
-    if (source->scene_file && tl_model_is_file(source->scene_file) && !source->needs_garment)
+    if (source->scene_file && tl_model_is_file(source->scene_file))
         choose_role(&named);
     settings.scene = named;
     turn_studio(&settings);

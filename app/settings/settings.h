@@ -117,12 +117,14 @@ struct tl_settings_source {
     const char *scene_file;         /* YAML, a model or a pattern, or NULL: the built-in scene */
     const char *const *assignments; /* "table.key=value", later ones win */
     size_t assignment_count;
-    bool needs_garment; /* a model is a garment, whatever its shape */
 };
 /* Whether a name in place of a scene is one: built in, or YAML; else it is a model, a pattern or a motion.
  * Pure. */
 bool tl_settings_is_scene(const char *name);
 bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *source, tl_error *error);
+
+/* Makes the model of an undecided scene the garment. */
+void tl_settings_wear(struct tl_scene_params *scene);
 
 /* Turns the lights of the built-in studio by as much as the camera is turned from `from_deg`: they stand for
  * the view. Other environments stay. */

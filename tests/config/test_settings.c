@@ -235,7 +235,6 @@ static void test_shipped_files(void **state)
             const char *const assignments[] = {preset, fabric};
             assert_ok(load(NULL, assignments, TL_COUNT(assignments), &error), error);
             assert_true(tl_settings_equal(&changed, &settings));
-            assert_memory_equal(&changed, &settings, sizeof settings);
             free(preset);
             free(fabric);
         }
@@ -314,6 +313,84 @@ static void test_print_and_load_back(void **state)
     assert_false(tl_settings_equal(&settings, &before));
 }
 
+/* A text of the row's type that is not its default. */
+static char *another_value(const struct tl_option *row, const void *defaults)
+{
+    const void *usual = (const char *)defaults + row->offset;
+    switch (row->type) {
+    case TL_BOOL:
+        return tl_copy_string(*(const bool *)usual ? "false" : "true");
+    case TL_ENUM:
+        return tl_copy_string(row->choices[*(const int *)usual == 0]);
+    case TL_INT:
+        return tl_format("%d", *(const int *)usual == (int)row->minimum ? (int)row->minimum + 1
+                                                                        : (int)row->minimum);
+    case TL_FLOAT:
+        return tl_format("%.9g", *(const float *)usual == (float)row->maximum ? row->minimum : row->maximum);
+    case TL_DOUBLE:
+        return tl_format("%.17g", *(const double *)usual == row->maximum ? row->minimum : row->maximum);
+    case TL_COLOUR:
+    case TL_VECTOR:
+        return tl_format("[%.9g, %.9g, %.9g]", row->minimum, 0.25 * row->minimum + 0.75 * row->maximum,
+                         row->maximum);
+    case TL_STRING:
+        return tl_copy_string("another text");
+    case TL_PATH:
+        break;
+    }
+    return tl_copy_string("/another/file.name");
+}
+
+/* Every option of every table is kept by itself: the change is seen, by what its row affects and by the hash;
+ * no other option changes with it; the text that it gives reads back as the same value, alone and in a scene
+ * file; and to take what it affects makes the settings equal again. */
+static void test_every_option_is_kept(void **state)
+{
+    (void)state;
+    const struct tl_option_filter every = {.any_of = UINT64_MAX};
+    tl_error error = {0};
+    struct tl_settings usual, one, again, all;
+    struct tl_binding of_one[TL_SETTINGS_TABLES], of_again[TL_SETTINGS_TABLES], of_all[TL_SETTINGS_TABLES];
+    size_t count = 0;
+    tl_settings_reset(&usual);
+    all = usual;
+    tl_settings_bind(&one, of_one);
+    tl_settings_bind(&again, of_again);
+    tl_settings_bind(&all, of_all);
+    for (size_t t = 0; t < TL_SETTINGS_TABLES; t++)
+        for (size_t r = 0; r < of_one[t].table->row_count; r++, count++) {
+            const struct tl_option *row = &of_one[t].table->rows[r];
+            char *key = tl_format("%s.%s", of_one[t].table->name, row->name);
+            char *text = another_value(row, of_one[t].table->defaults);
+            one = again = usual;
+            assert_ok(tl_options_set(of_one, TL_SETTINGS_TABLES, key, text, "here", NULL, &error), error);
+            if (tl_settings_changes(&usual, &one) != row->affects ||
+                tl_settings_hash(&usual, every) == tl_settings_hash(&one, every))
+                fail_msg("%s: is not seen to change, or another option changes with it", key);
+            char *back = tl_options_get_text(&of_one[t], row);
+            assert_ok(tl_options_set(of_again, TL_SETTINGS_TABLES, key, back, "here", NULL, &error), error);
+            if (!tl_settings_equal(&one, &again))
+                fail_msg("%s: %s reads back as another value", key, back);
+            again = usual;
+            tl_settings_take(&one, &again, (struct tl_option_filter){.any_of = row->affects});
+            assert_true(tl_settings_equal(&one, &again));
+            assert_ok(tl_options_set(of_all, TL_SETTINGS_TABLES, key, text, "here", NULL, &error), error);
+            free(back);
+            free(text);
+            free(key);
+        }
+    assert_true(count > 150);
+    char *printed = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&printed, &size);
+    tl_options_print_yaml(of_all, TL_SETTINGS_TABLES, out);
+    fclose(out);
+    again = usual;
+    assert_ok(tl_options_read_yaml(of_again, TL_SETTINGS_TABLES, "all.yaml", printed, size, &error), error);
+    assert_true(tl_settings_equal(&all, &again));
+    free(printed);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -329,6 +406,7 @@ int main(void)
         cmocka_unit_test_setup(test_changes_that_fail_change_nothing, begin),
         cmocka_unit_test_setup(test_paper_preset, begin),
         cmocka_unit_test_setup(test_print_and_load_back, begin),
+        cmocka_unit_test(test_every_option_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,7 +20,9 @@ static struct tl_settings at(enum tl_control control, uint8_t level, const struc
 {
     struct tl_quality levels = {{0}};
     levels.of[control] = level;
-    return tl_quality_apply(&levels, full);
+    struct tl_settings levelled = *full;
+    tl_quality_apply(&levels, &levelled);
+    return levelled;
 }
 
 static void level_0_is_what_was_asked_for(void **state)
@@ -249,8 +251,8 @@ static struct tl_quality_choice draw_frame(struct device *device, tl_quality_gov
     const struct tl_settings settings = sampled_settings();
     struct tl_quality_choice choice =
         tl_quality_governor_choose(governor, device->renderer, frame, &settings);
-    const struct tl_settings now = tl_quality_apply(&choice.levels, &settings);
-    const struct tl_render_settings drawn = tl_settings_render(&now);
+    const struct tl_render_settings full = tl_settings_render(&settings);
+    const struct tl_render_settings drawn = tl_quality_at(&choice.levels, &full);
     assert_ok(tl_renderer_draw(device->renderer, frame, &drawn, &error), error);
     tl_quality_governor_learn(governor, tl_renderer_last_plan(device->renderer), 0.5, total_ms);
     return choice;
