@@ -6,8 +6,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-struct entry {
-    struct entry *next;
+struct interned {
+    struct interned *next;
     char text[];
 };
 
@@ -16,9 +16,9 @@ struct entry {
 const char *tl_intern(const char *text)
 {
     static pthread_mutex_t guard = PTHREAD_MUTEX_INITIALIZER;
-    static struct entry *chains[CHAINS];
+    static struct interned *chains[CHAINS];
     const size_t size = strlen(text) + 1;
-    struct entry **chain = &chains[tl_hash(TL_HASH_START, text, size) % CHAINS], *entry;
+    struct interned **chain = &chains[tl_hash(TL_HASH_START, text, size) % CHAINS], *entry;
     pthread_mutex_lock(&guard);
     for (entry = *chain; entry && strcmp(entry->text, text) != 0;)
         entry = entry->next;
