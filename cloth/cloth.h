@@ -46,17 +46,17 @@ struct tl_cloth_params {
     int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
     const char *pin_openings; /* names of openings whose vertices are pinned, with commas between
                                           them */
-    bool self_contact;    /* the cloth does not pass through itself: cloth/self_contact/keep_apart.h */
-    double gravity;       /* m/s^2, along -Y */
-    float wind[3];        /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
-    double gust;          /* 0 to 1: amplitude of the wind's speed, relative to it */
-    double settle_s;      /* longest simulated time of settling before the first frame */
-    double settle_speed;  /* m/s: the cloth is settled when no vertex moves faster over a frame */
-    bool cages;           /* settling begins on coarser versions of a fine cloth: cloth/cage/coarser.h */
-    int caged_above;      /* cloth of more vertices is moved by a cage: cloth/step/caged.c; 0: none is */
-    float edge_m;         /* target edge length of built-in garments */
-    int rest;             /* enum tl_rest_choice: of garments from files */
-    float longest_edge_m; /* longer edges of garments from files are halved; 0: never */
+    bool self_contact;        /* the cloth does not pass through itself: cloth/self_contact/keep_apart.h */
+    double gravity;           /* m/s^2, along -Y */
+    float wind[3];            /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
+    double gust;              /* 0 to 1: amplitude of the wind's speed, relative to it */
+    double settle_s;          /* longest simulated time of settling before the first frame */
+    double settle_speed;      /* m/s: the cloth is settled when no vertex moves faster over a frame */
+    bool cages;               /* settling begins on coarser versions of a fine cloth: cloth/cage/coarser.h */
+    int caged_above;          /* cloth of more vertices is moved by a cage: cloth/step/caged.c; 0: none is */
+    float edge_m;             /* target edge length of built-in garments */
+    int rest;                 /* enum tl_rest_choice: of garments from files */
+    float longest_edge_m;     /* longer edges of garments from files are halved; 0: never */
 };
 extern const struct tl_option_table tl_cloth_options;
 

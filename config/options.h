@@ -18,8 +18,8 @@
  *
  * Field types by option type: TL_BOOL bool; TL_INT int; TL_FLOAT float; TL_DOUBLE double; TL_ENUM int (index
  * into `choices`); TL_COLOUR float[3] (linear Rec. 709); TL_VECTOR float[3] (written [x, y, z]); TL_STRING
- * and TL_PATH const char *, an interned text (config/base/intern.h) or a literal, so that params are copied by
- * assignment; NULL, in a struct that was never reset, stands for "". A relative TL_PATH is taken from the
+ * and TL_PATH const char *, an interned text (config/base/intern.h) or a literal, so that params are copied
+ * by assignment; NULL, in a struct that was never reset, stands for "". A relative TL_PATH is taken from the
  * folder of the file that names it. A TL_PATH with `choices` holds either one of these names, kept as it is,
  * or a file name; tl_option_is_file_name distinguishes them.
  *
@@ -260,8 +260,8 @@ bool tl_option_passes(const struct tl_option *row, struct tl_option_filter filte
 
 /* The rows that pass a filter, over lists of bindings to the same tables in the same order. `differ` is true
  * when a value differs, `changes` is what all rows affect whose values differ; `take` copies the values of
- * `from` into `to`; `hash` continues `hash` (config/base/hash.h) over names and values. Errors: none. Lifetime:
- * keeps nothing. Threads: pure. */
+ * `from` into `to`; `hash` continues `hash` (config/base/hash.h) over names and values. Errors: none.
+ * Lifetime: keeps nothing. Threads: pure. */
 bool tl_options_differ(const struct tl_binding *a, const struct tl_binding *b, size_t count,
                        struct tl_option_filter filter);
 uint64_t tl_options_changes(const struct tl_binding *a, const struct tl_binding *b, size_t count);

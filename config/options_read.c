@@ -1,13 +1,11 @@
 /* One value from its text. */
 #include "config/base/file.h"
+#include "config/base/intern.h"
 #include "config/base/memory.h"
 #include "config/base/words.h"
 #include "config/colour/lab.h"
 #include "config/colour/names.h"
 #include "config/colour/srgb.h"
-#include "config/base/file.h"
-#include "config/base/intern.h"
-#include "config/base/memory.h"
 #include "config/options_value.h"
 
 #include <ctype.h>

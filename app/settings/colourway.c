@@ -1,11 +1,10 @@
 #include "app/settings/colourway.h"
 
 #include "app/settings/layers.h"
-#include "config/base/memory.h"
-#include "config/embedded.h"
 #include "config/base/hash.h"
 #include "config/base/intern.h"
 #include "config/base/memory.h"
+#include "config/embedded.h"
 
 #include <pthread.h>
 #include <stdlib.h>
