@@ -261,6 +261,8 @@ bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_review *review = TL_NEW(struct tl_review);
     review->keep.arguments = arguments;
+    tl_settings_reset(&review->wanted);
+    review->good = review->load.appearance = review->wipe.settings = review->wanted;
     review->due.redraws = 1;
     review->input.reported_frame = -1;
     review->screen.thumbnails = tl_thumbnails_create(tl_window_wake);

@@ -25,7 +25,7 @@ void tl_recent_add(struct tl_recent *recent, const char *path)
     size_t at = 0; /* where it was, or the place of the oldest */
     if (strlen(path) >= TL_STRING_SIZE)
         return;
-    while (at < TL_RECENT_MAX - 1 && strcmp(recent->garments[at], path) != 0)
+    while (at < TL_RECENT_MAX - 1 && strcmp(tl_option_text(&recent->garments[at]), path) != 0)
         at++;
     memmove(recent->garments + 1, recent->garments, at * sizeof *recent->garments);
     recent->garments[0] = tl_intern(path);
@@ -34,7 +34,7 @@ void tl_recent_add(struct tl_recent *recent, const char *path)
 size_t tl_recent_count(const struct tl_recent *recent)
 {
     size_t count = 0;
-    while (count < TL_RECENT_MAX && recent->garments[count][0])
+    while (count < TL_RECENT_MAX && tl_text_is_given(recent->garments[count]))
         count++;
     return count;
 }

@@ -13,7 +13,7 @@
 
 #define TL_RECENT_MAX 10
 struct tl_recent {                       /* table "recent" */
-    const char *garments[TL_RECENT_MAX]; /* interned; "": no more */
+    const char *garments[TL_RECENT_MAX]; /* interned; "" or NULL: no more */
 };
 
 /* Puts a file in front, once; the oldest of more than TL_RECENT_MAX is forgotten. A path that is too long is

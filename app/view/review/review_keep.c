@@ -38,7 +38,8 @@ void tl_review_keep_recent(struct tl_review *review)
     const struct tl_scene_params *scene = &review->wanted.scene;
     const char *name = strcmp(scene->garment, "none") != 0 ? scene->garment : scene->avatar;
     char *path = tl_option_is_file_name(name) ? realpath(name, NULL) : NULL;
-    if (path && review->edit.offered == 0 && strcmp(review->keep.recent.garments[0], path) != 0) {
+    const char *latest = tl_option_text(&review->keep.recent.garments[0]);
+    if (path && review->edit.offered == 0 && strcmp(latest, path) != 0) {
         tl_error error;
         char *file = review->keep.state_folder ? recent_file(review) : NULL;
         tl_recent_add(&review->keep.recent, path);
