@@ -30,8 +30,8 @@ struct tl_quality {
 /* True when every level exists. Levels that are read from a file must be checked before they are used. */
 bool tl_quality_is_valid(const struct tl_quality *levels);
 
-/* What is drawn of a frame at these levels, which must exist. Levels change nothing else: neither the session
- * nor how a garment falls depends on how fast a machine is. */
+/* The settings that a frame is drawn with at these levels, which must exist. Levels change nothing else:
+ * neither the session nor how a garment falls depends on how fast a machine is. */
 struct tl_render_settings tl_quality_at(const struct tl_quality *levels,
                                         const struct tl_render_settings *full);
 /* The same in the settings of a headless session. */

@@ -554,7 +554,7 @@ struct tl_option_filter tl_appearance_filter(const struct tl_settings *a, const 
                                      .none_of = same_garment ? 0 : TL_AFFECTS_GARMENT};
 }
 
-/* What follows from options that are taken (overlay_weave, colourways) is taken with them. */
+/* Takes what follows from options (overlay_weave, colourways) with them. */
 void tl_appearance_take(const struct tl_settings *from, struct tl_settings *settings)
 {
     const struct tl_option_filter filter = tl_appearance_filter(from, settings);

@@ -41,8 +41,8 @@ struct tl_scene_params {     /* table "scene": what to show; names of built-ins 
     const char *clip;       /* animation of the avatar; "": the first; "none": the rest pose */
     float environment_yaw_deg;
     float environment_rate; /* frames of a sequence a second */
-    /* No option: the avatar is a model in place of a scene, of which nothing says whether it is a garment. A
-     * session decides by its shape when it has loaded it, and its own settings state the decision
+    /* No option: the avatar is a model in place of a scene, of which nothing states whether it is a garment.
+     * A session decides by its shape when it has loaded it, and its own settings state the decision
      * (app/scene/load.h). */
     bool is_undecided;
 };
@@ -96,7 +96,7 @@ bool tl_settings_equal(const struct tl_settings *a, const struct tl_settings *b)
  * part (config/options.h). Pure. */
 bool tl_settings_differ(const struct tl_settings *a, const struct tl_settings *b,
                         struct tl_option_filter filter);
-/* What the options affect that differ: 0 when all agree. Pure. */
+/* The bits of all that the options affect that differ: 0 when all agree. Pure. */
 uint64_t tl_settings_changes(const struct tl_settings *a, const struct tl_settings *b);
 void tl_settings_take(const struct tl_settings *from, struct tl_settings *to, struct tl_option_filter filter);
 /* A hash of the values of such options. Pure. */

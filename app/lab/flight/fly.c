@@ -32,7 +32,7 @@ static void settings_at(const struct tl_headless *headless, const struct tl_flig
     out->scene.environment_yaw_deg = key.environment_yaw_deg;
 }
 
-/* What is drawn of them at these levels. */
+/* The part of them that is drawn, at these levels. */
 static struct tl_render_settings drawn_at(const struct tl_quality *levels, const struct tl_settings *settings)
 {
     const struct tl_render_settings full = tl_settings_render(settings);
