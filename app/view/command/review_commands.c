@@ -173,6 +173,7 @@ static size_t add_line(struct tl_panel_line *lines, size_t count, size_t capacit
 {
     if (count == capacity)
         return count;
+    lines[count] = (struct tl_panel_line){0};
     snprintf(lines[count].cells[0], sizeof lines[count].cells[0], "%s", left);
     snprintf(lines[count].cells[1], sizeof lines[count].cells[1], "%s", right);
     return count + 1;

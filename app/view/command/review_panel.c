@@ -41,6 +41,7 @@ static void add_line(struct tl_panel_line *lines, size_t *count, const char *lab
     if (*count == MEASURES_MAX)
         return;
     struct tl_panel_line *line = &lines[(*count)++];
+    *line = (struct tl_panel_line){0};
     snprintf(line->cells[0], sizeof line->cells[0], "%s", label);
     va_list arguments;
     va_start(arguments, format);
