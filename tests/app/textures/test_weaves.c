@@ -87,7 +87,7 @@ static void files_that_change_are_read_again(void **state)
     struct tl_weave_params params = plain();
     tl_error error;
     assert_ok(tl_folder_make(folder, &error), error);
-    snprintf(params.pictures, sizeof params.pictures, "%s", folder);
+    params.pictures = folder;
     save(file, 255, 4);
     set_time(file, 1000000);
     set_time(folder, 1000000);
@@ -113,7 +113,7 @@ static void what_nobody_uses_is_bounded(void **state)
     static const char file[] = TOILE_SCRATCH_DIR "/weaves_height.png";
     struct tl_weave_params params = plain();
     save(file, 128, 2048);
-    snprintf(params.picture, sizeof params.picture, "%s", file);
+    params.picture = file;
     const struct tl_fabric_pictures *used = take(&params);
     for (int i = 1; i <= 3; i++) {
         params.depth_mm = 0.5f + (float)i;
