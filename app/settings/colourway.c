@@ -6,6 +6,7 @@
 #include "config/base/memory.h"
 #include "config/embedded.h"
 
+#include <assert.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,8 @@ struct swatch_rows {
 
 static void add_rows(struct swatch_rows *to, const struct tl_option_table *from, size_t offset)
 {
-    for (size_t i = 0; i < from->row_count && to->table.row_count < ROWS_MAX; i++) {
+    assert(to->table.row_count + from->row_count <= ROWS_MAX); /* tl_swatch.given has a bit for each */
+    for (size_t i = 0; i < from->row_count; i++) {
         to->rows[to->table.row_count] = from->rows[i];
         to->rows[to->table.row_count++].offset += offset;
     }
