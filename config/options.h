@@ -115,8 +115,7 @@ struct tl_binding {
 };
 
 /* The offset of a text; a field of another type does not compile. */
-#define TL_OPTION_TEXT_OFFSET(s, field)                                                                      \
-    (offsetof(s, field) + 0 * sizeof(_Generic(((s *)NULL)->field, const char * : 1)))
+#define TL_OPTION_TEXT_OFFSET(s, field) _Generic(((s *)NULL)->field, const char * : offsetof(s, field))
 
 /* clang-format off: it takes the braces of an initialiser for a block. */
 #define TL_OPTION_BOOL(s, field, bits, text)                                                                 \

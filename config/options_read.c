@@ -189,7 +189,7 @@ static char *read_name(const struct tl_option *row, const char *text, float rgb[
 
 static char *read_colour(const struct tl_option *row, const char *text, float field[3])
 {
-    float rgb[3];
+    float rgb[3] = {0};
     char *reason;
     if (text[0] == '\0')
         return tl_option_refuse(row, text, "is no colour (in a file, # begins a comment unless it is quoted)",

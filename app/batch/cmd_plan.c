@@ -284,7 +284,7 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
     struct budgeted budgeted = {.budget_ms = arguments->budget_ms};
     if (!tl_headless_create(&headless, arguments, error))
         return false;
-    struct tl_back_end back_end;
+    struct tl_back_end back_end = {0};
     bool done = calibrate(&headless, arguments, &back_end, error);
     int frame = arguments->first_frame;
     if (done && budgeted.budget_ms > 0)

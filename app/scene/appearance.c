@@ -169,7 +169,8 @@ static bool take_weave(struct tl_appearance *appearance, const struct tl_weave_p
     if (!tl_weaves_take(params, out, error))
         return false;
     appearance->weaves =
-        tl_resize((void *)appearance->weaves, appearance->weave_count + 1, sizeof *appearance->weaves);
+        tl_resize((void *)appearance->weaves, appearance->weave_count + 1,
+                  sizeof *appearance->weaves); // NOLINT(bugprone-sizeof-expression): of a pointer
     appearance->weaves[appearance->weave_count++] = *out;
     return true;
 }
@@ -183,7 +184,8 @@ static bool take_measured(struct tl_appearance *appearance, const struct tl_mate
     if (!tl_measured_take(params->samples, &material->measured, error))
         return false;
     appearance->measured =
-        tl_resize((void *)appearance->measured, appearance->measured_count + 1, sizeof *appearance->measured);
+        tl_resize((void *)appearance->measured, appearance->measured_count + 1,
+                  sizeof *appearance->measured); // NOLINT(bugprone-sizeof-expression): of a pointer
     appearance->measured[appearance->measured_count++] = material->measured;
     return true;
 }

@@ -243,8 +243,9 @@ uint64_t tl_colourways_hash(const struct tl_colourways *colourways, uint64_t has
         struct tl_swatch swatch = colourways->swatches[i]; /* bindings can be written through */
         const struct tl_binding bindings[] = {{&tl_material_options, &swatch.params},
                                               {&tl_weave_options, &swatch.weave}};
+        const char *material = colourways->swatches[i].material;
         const uint64_t own[] = {swatch.has_fabric, swatch.print, swatch.given};
-        hash = tl_hash(hash, swatch.material, strlen(swatch.material) + 1);
+        hash = tl_hash(hash, material, strlen(material) + 1);
         hash = tl_hash(hash, own, sizeof own);
         hash = tl_options_hash(bindings, TL_COUNT(bindings), (struct tl_option_filter){.any_of = UINT64_MAX},
                                hash);

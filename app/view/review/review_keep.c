@@ -93,7 +93,7 @@ static uint64_t hash_of_command(const struct tl_arguments *arguments)
 
 int tl_review_recover(struct tl_review *review)
 {
-    struct tl_recovered recovered;
+    struct tl_recovered recovered = {0};
     if (review->keep.state_folder)
         review->keep.journal = tl_journal_recover(review->keep.state_folder,
                                                   hash_of_command(review->keep.arguments), &recovered);

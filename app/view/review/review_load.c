@@ -100,12 +100,17 @@ static bool hangs(const struct tl_review *review)
            tl_session_cloth(review->session) && !tl_session_is_undraped(review->session);
 }
 
+static bool is_same_fabric(const struct tl_cloth_fabric *a, const struct tl_cloth_fabric *b)
+{
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): floats as they were set
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
 /* Whether the garment hangs in another fabric than it was draped in: it would hang otherwise. Cloth that
  * moves takes a new fabric up as it moves on. */
 static bool wants_drape(const struct tl_review *review)
 {
-    return hangs(review) &&
-           memcmp(&review->load.draped, &review->wanted.fabric, sizeof review->load.draped) != 0;
+    return hangs(review) && !is_same_fabric(&review->load.draped, &review->wanted.fabric);
 }
 
 static enum tl_load what_to_load(const struct tl_review *review)
@@ -137,7 +142,7 @@ static bool is_outdated(const struct tl_review *review)
 {
     const struct tl_settings *made = tl_loader_settings(review->load.loader);
     if (review->load.drapes_again &&
-        (!hangs(review) || memcmp(&made->fabric, &review->wanted.fabric, sizeof made->fabric) != 0))
+        (!hangs(review) || !is_same_fabric(&made->fabric, &review->wanted.fabric)))
         return true;
     return tl_session_needs_scene(made, &review->wanted) || tl_session_needs_light(made, &review->wanted) ||
            ((review->load.drapes_again || tl_loader_kind(review->load.loader) == TL_LOAD_APPEARANCE) &&

@@ -45,9 +45,9 @@ static void pins_by_name(void **state)
     assert_int_equal(openings.count, 4);
     const struct tl_opening *hem = tl_openings_named(&openings, "hem");
     const struct tl_opening *armhole = tl_openings_named(&openings, "left armhole");
-    assert_true(hem && armhole);
+    assert_non_null(armhole);
     size_t own = garment.pin_count, of_hem = count_vertices(&garment, hem, weld);
-    assert_true(of_hem > hem->side_count); /* the sides' seams have a vertex on each panel */
+    assert_true(hem && of_hem > hem->side_count); /* the sides' seams have a vertex on each panel */
 
     assert_ok(tl_sewn_pin("", &garment, &error), error);
     assert_int_equal(garment.pin_count, own);

@@ -115,8 +115,10 @@ static void the_whole_body_is_at_hand(void **state)
         assert_int_equal(surface.index_count / 3, triangles);
         assert_int_equal(surface.parts[0].index_count, surface.index_count);
         assert_true(full ? body.avatar == NULL : body.avatar != NULL);
-        for (size_t i = 0; i < surface.vertex_count; i++)
-            assert_near(surface.positions[i].y, 1.7f * (float)(i / COLUMNS) / ROWS, 1e-6);
+        for (size_t i = 0; i < surface.vertex_count; i++) {
+            const size_t row = i / COLUMNS;
+            assert_near(surface.positions[i].y, 1.7f * (float)row / ROWS, 1e-6);
+        }
         tl_whole_body_release(&body);
         tl_session_destroy(&session);
     }

@@ -50,7 +50,7 @@ static void save(const char *path, uint8_t red, int side)
 {
     tl_image picture = tl_image_create(side, side, 3, TL_IMAGE_U8);
     tl_error error;
-    for (int i = 0; i < side * side; i++)
+    for (size_t i = 0; i < (size_t)side * (size_t)side; i++)
         tl_image_bytes(&picture)[3 * i] = red;
     assert_ok(tl_image_save_png(path, &picture, &error), error);
     tl_image_release(&picture);
@@ -157,7 +157,7 @@ static void threads_may_take_at_once(void **state)
     const struct tl_fabric_pictures *one = take(&params);
     size_t texels = (size_t)one->weave.height.width * (size_t)one->weave.height.height;
     tl_weaves_give(one);
-    assert_in_range(tl_weaves_unused_bytes() - before, 1, 5 * 23 * texels);
+    assert_in_range(tl_weaves_unused_bytes() - before, 1, (size_t)5 * 23 * texels);
 }
 
 int main(void)

@@ -39,8 +39,9 @@ static inline const struct oracle_texels *oracle_texels_of(const tl_image *image
     texels = (struct oracle_texels){image->width, image->height, TL_NEW_ARRAY(vec3s, (size_t)count),
                                     TL_NEW_ARRAY(double, (size_t)count)};
     for (int i = 0; i < count; i++) {
-        texels.directions[i] = tl_layout_direction(&map, i % map.width + 0.5, (double)(i / map.width) + 0.5);
-        texels.solid_angles[i] = tl_layout_solid_angle(&map, i % map.width, i / map.width);
+        const int x = i % map.width, y = i / map.width;
+        texels.directions[i] = tl_layout_direction(&map, x + 0.5, y + 0.5);
+        texels.solid_angles[i] = tl_layout_solid_angle(&map, x, y);
     }
     return &texels;
 }

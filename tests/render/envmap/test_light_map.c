@@ -42,8 +42,8 @@ static void scene_open(struct test_scene *scene)
 /* The plane's point behind a pixel's middle, unless the ball is before it. */
 static bool find_point(const struct tl_view *view, int pixel, vec3s ball, vec3s *point)
 {
-    float across = 2 * ((float)(pixel % SIDE) + 0.5f) / SIDE - 1,
-          up = 1 - 2 * ((float)(pixel / SIDE) + 0.5f) / SIDE;
+    const int row = pixel / SIDE;
+    float across = 2 * ((float)(pixel % SIDE) + 0.5f) / SIDE - 1, up = 1 - 2 * ((float)row + 0.5f) / SIDE;
     float tangent = tanf(0.5f * glm_rad(50));
     vec3s along = glms_vec3_add(
         view->forward, glms_vec3_add(glms_vec3_scale(glms_vec3_normalize(view->right), across * tangent),
