@@ -25,7 +25,7 @@ printf '{"schema": "1.1"' >cut.u3m
 echo '{"pattern": {"panels": {}}}' >panels.json # is read as a pattern, not as measurements
 $TOILE fabric satin -o own/ --quiet
 
-small_window
+first_size 780 400
 open_display
 : >log
 PATH=$PWD/bin:/nonexistent $(command -v "$TOILE" || echo "$TOILE") view $fast >out 2>log &

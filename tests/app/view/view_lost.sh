@@ -19,7 +19,7 @@ ended() {
     viewer=
 }
 
-small_window
+first_size 780 400
 open_display
 start
 ! grep -q recovered log || fail "recovered without a reason"

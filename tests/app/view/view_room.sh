@@ -17,10 +17,10 @@ export XDG_STATE_HOME=$room/state # nothing of the user's is read, or written
 # Light for windows whose pictures are compared with one another only: on the CPU it is most of what they cost.
 cheap_light="--set light.regions=24 --set light.pem_size=16 --set light.rounds=4 --set light.bounce=off"
 
-# The window opens with a view of 400 x 400 pixels beside its panel, unless --fresh.
-small_window() {
+# first_size WIDTH HEIGHT: of the window, unless --fresh. The panel takes 380 pixels of the width.
+first_size() {
     mkdir -p state/toile
-    echo "window: {width: 780, height: 400}" >state/toile/review.yaml
+    echo "window: {width: $1, height: $2}" >state/toile/review.yaml
 }
 
 fail() {

@@ -26,7 +26,7 @@ same() {
 
 open_display
 : >log
-small_window
+first_size 780 400
 $TOILE view --preset draft --garment skirt --set cloth.edge_m=0.05 $cheap_light --screenshots shots >out 2>log &
 viewer=$!
 logged "view: ready"
