@@ -1,8 +1,7 @@
 #include "cloth/step/advance.h"
 
-#include "assets/topology/sets.h"
 #include "cloth/build.h"
-#include "cloth/contact/caught.h"
+#include "cloth/contacts.h"
 #include "cloth/drive/hand.h"
 #include "cloth/drive/holds.h"
 #include "cloth/drive/wind.h"
@@ -78,106 +77,10 @@ static void pull_grabbed(tl_cloth *cloth, const struct tl_substep *substep)
 
 static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
 {
-    return (struct tl_contact_params){.friction =
-                                          tl_seams_are_closing(&cloth->seams) ? 0 : cloth->fabric.friction,
-                                      .thickness_m = cloth->fabric.thickness_m,
-                                      .push_out_speed = TL_PUSH_OUT_SPEED,
-                                      .min_slip_speed = substep->min_slip_speed,
-                                      .phase_before = substep->phase_before,
-                                      .phase = substep->phase,
-                                      .h = substep->h};
-}
-
-/* While panels are sewn, plies keep this share of the distance to the avatar at least: panels of a pattern
- * that pass each other more closely stay caught in each other. */
-#define SEWING_PLY_SHARE 0.5
-
-static double ply_distance(const tl_cloth *cloth)
-{
-    double ply = tl_cloth_fabric_ply(&cloth->fabric);
-    return tl_seams_are_closing(&cloth->seams) ? fmax(ply, SEWING_PLY_SHARE * cloth->fabric.thickness_m)
-                                               : ply;
-}
-
-/* Cloth lies on the body where it is nearer than this many times the distance that contact keeps: vertices of
- * coarse cloth stand higher than the points between them, which touch. */
-#define CARRIER_DISTANCES 3
-
-static struct tl_apart_params apart_params(const tl_cloth *cloth, double friction, double h, double phase)
-{
-    return (struct tl_apart_params){.topology = &cloth->topology,
-                                    .rest = (const vec2s(*)[3])cloth->rest,
-                                    .made_at = cloth->made_at,
-                                    .thickness_m = ply_distance(cloth),
-                                    .friction = friction,
-                                    .h = h,
-                                    .body = &cloth->contacts,
-                                    .phase = phase,
-                                    .carrier_m = CARRIER_DISTANCES * cloth->fabric.thickness_m};
-}
-
-/* Whether the garment came crossed and has not come apart yet: its layers, which know what is inside and what
- * outside, then help. */
-static bool is_tangled(const tl_cloth *cloth)
-{
-    return cloth->params.self_contact && !cloth->apart.was_clean;
-}
-
-/* Contact of the cloth with itself, then with the avatar; last, what would pass through the cloth is moved
- * back. */
-static void keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
-{
-    const struct tl_apart_params apart = apart_params(cloth, contact->friction, contact->h, contact->phase);
-    if (cloth->params.self_contact) {
-        tl_apart_solve(&cloth->apart, &apart, &cloth->particles);
-        if (is_tangled(cloth))
-            tl_layers_solve(&cloth->layers, contact, &cloth->particles);
-    }
-    tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
-    if (cloth->params.self_contact) {
-        tl_apart_carry(&cloth->apart, &apart, &cloth->particles);
-        tl_apart_truncate(&cloth->apart, &apart, cloth->particles.previous, &cloth->particles);
-    }
-}
-
-/* Distance of such cloth. Farther, so much passes that it cannot be untangled. */
-#define NO_CONTACT_M 0.012
-
-/* Joins what is near a pair that is stuck, as with a fold between its two sides: cloth may pass through
- * itself there until the pair has met, and is untangled then. */
-static void disable_self_contact_near(const tl_cloth *cloth, const struct tl_link *link, uint32_t *classes)
-{
-    const vec3d *x = cloth->particles.x;
-    for (uint32_t i = 0; i < cloth->particles.count; i++)
-        if (vec3d_distance(x[i], x[link->a]) < NO_CONTACT_M ||
-            vec3d_distance(x[i], x[link->b]) < NO_CONTACT_M)
-            tl_sets_join(classes, link->a, i);
-}
-
-/* Vertices that open seams join count as one. */
-static void prepare_apart(tl_cloth *cloth)
-{
-    if (cloth->apart.made)
-        return;
-    uint32_t *classes = tl_sets_create(cloth->particles.count);
-    for (size_t i = 0; i < cloth->seams.pair_count; i++)
-        tl_sets_join(classes, cloth->seams.links[i].a, cloth->seams.links[i].b);
-    for (size_t i = 0; i < cloth->seams.pair_count && tl_seams_are_stuck(&cloth->seams); i++)
-        disable_self_contact_near(cloth, &cloth->seams.links[i], classes);
-    for (uint32_t i = 0; i < cloth->particles.count; i++)
-        classes[i] = tl_sets_find(classes, i);
-    const struct tl_apart_params params = apart_params(cloth, 0, 1, 0);
-    tl_apart_prepare(&cloth->apart, &params, classes, cloth->particles.x);
-    free(classes);
-}
-
-/* Looks for what the cloth might touch, if what is known is outdated. */
-static void renew_self_contact(tl_cloth *cloth, const struct tl_substep *substep)
-{
-    if (!cloth->params.self_contact || !tl_apart_is_due(&cloth->apart, substep->h))
-        return;
-    const struct tl_apart_params params = apart_params(cloth, 0, substep->h, substep->phase_before);
-    tl_apart_renew(&cloth->apart, &params, &cloth->particles, substep->continues_previous);
+    struct tl_contact_params params =
+        tl_cloth_contact_params(cloth, substep->h, substep->phase_before, substep->phase);
+    params.min_slip_speed = substep->min_slip_speed;
+    return params;
 }
 
 static void draw_seams(tl_cloth *cloth, const struct tl_substep *substep)
@@ -203,7 +106,7 @@ static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep,
     if (draws_seams)
         draw_seams(cloth, substep);
     pull_grabbed(cloth, substep);
-    keep_apart(cloth, &contact);
+    tl_cloth_keep_apart(cloth, &contact);
 }
 
 /* One substep of XPBD: predict x from v and external forces, project the constraints, then take v from the
@@ -271,7 +174,7 @@ static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
     memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
-    keep_apart(cloth, &problem.contact);
+    tl_cloth_keep_apart(cloth, &problem.contact);
     tl_particles_finish(particles, substep->h);
 }
 
@@ -362,7 +265,7 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
                                            .collider = collider,
                                            .continues_previous = sub > 0 && !blown,
                                            .continues_next = (double)(sub + 1) < substeps && !blown};
-        renew_self_contact(cloth, &substep);
+        tl_cloth_renew_contact(cloth, substep.h, substep.phase_before, substep.continues_previous);
         if (blown)
             apply_wind(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
@@ -372,67 +275,6 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
         else
             advance_preview(cloth, &substep);
     }
-}
-
-/* A moving avatar catches cloth, and so does cloth that lies on itself and holds a vertex inside the avatar
- * until that is moved out: its neighbours cannot follow past the cloth between. Otherwise soft cloth on a
- * body at rest may hang at any length. */
-static void release_caught(tl_cloth *cloth, const tl_collider *collider)
-{
-    bool held = cloth->params.self_contact && cloth->contacts.caught_count > 0;
-    if (collider && (held || tl_collider_travel(collider) > 0))
-        tl_caught_release(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
-                          &cloth->particles, cloth->contacts.slipped);
-}
-
-static bool is_torn(const tl_cloth *cloth)
-{
-    return tl_caught_tears(&cloth->topology, (const vec2s(*)[3])cloth->rest, cloth->shortest_edge,
-                           cloth->particles.x);
-}
-
-/* Cloth that a moving avatar has caught may have to go where other cloth is: it pushes that aside, in at most
- * so many rounds. */
-#define MAKE_WAY_ROUNDS 100
-
-/* Lets what is caught slip, moves what is inside the avatar out, and what is in the way of both aside, until
- * nothing is inside and no edge is torn. Returns whether some vertices cannot be outside of the avatar and on
- * their side of other cloth. */
-static bool make_way(tl_cloth *cloth, const tl_collider *collider, const struct tl_contact_params *contact,
-                     vec3d *from)
-{
-    struct tl_particles *particles = &cloth->particles;
-    const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
-    bool any = true;
-    for (int round = 0; round < MAKE_WAY_ROUNDS && (any || is_torn(cloth)); round++) {
-        release_caught(cloth, collider);
-        tl_apart_push(&cloth->apart, &apart, particles);
-        tl_apart_truncate(&cloth->apart, &apart, from, particles);
-        memcpy(from, particles->x, particles->count * sizeof *from);
-        any = tl_contacts_lift(&cloth->contacts, contact, particles);
-    }
-    return any;
-}
-
-/* Moves cloth outside that a step has left inside the avatar, and keeps it on its side of other cloth. Where
- * it cannot be both, as between an arm and a hip that pass through each other, the avatar lets it go. */
-static void keep_outside(tl_cloth *cloth, const tl_collider *collider,
-                         const struct tl_contact_params *contact)
-{
-    struct tl_particles *particles = &cloth->particles;
-    size_t count = particles->count;
-    bool pressed = false;
-    vec3d *from = TL_NEW_ARRAY(vec3d, count);
-    memcpy(from, particles->x, count * sizeof *from);
-    release_caught(cloth, collider);
-    tl_contacts_enforce(&cloth->contacts, contact, particles);
-    if (tl_collider_travel(collider) > 0 && cloth->contacts.caught_count > 0)
-        pressed = make_way(cloth, collider, contact, from);
-    const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
-    tl_apart_truncate(&cloth->apart, &apart, from, particles);
-    if (pressed)
-        tl_contacts_let_go(&cloth->contacts, contact, particles);
-    free(from);
 }
 
 static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance)
@@ -448,15 +290,10 @@ static void run_steps(tl_cloth *cloth, const tl_collider *collider, const struct
                                                   .h = tl_cloth_step_seconds(cloth)};
         tl_contacts_update(&cloth->contacts, cloth->particles.x, cloth->fabric.thickness_m,
                            (double)step / steps);
-        if (is_tangled(cloth))
+        if (tl_cloth_is_tangled(cloth))
             tl_layers_update(&cloth->layers, &cloth->topology, cloth->particles.x);
         run_step(cloth, collider, advance, step);
-        if (collider && cloth->params.self_contact)
-            keep_outside(cloth, collider, &contact);
-        else {
-            release_caught(cloth, collider);
-            tl_contacts_enforce(&cloth->contacts, &contact, &cloth->particles);
-        }
+        tl_cloth_keep_outside(cloth, collider, &contact);
         tl_particles_damp(&cloth->particles, (const uint32_t(*)[2])cloth->topology.edges,
                           cloth->topology.edge_count, damping);
     }
@@ -577,9 +414,9 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
 /* Orders the layers once the panels have met: until then each panel is a piece of its own. */
 static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    if (!is_tangled(cloth))
+    if (!tl_cloth_is_tangled(cloth))
         tl_layers_release(&cloth->layers);
-    if (!is_tangled(cloth) || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
+    if (!tl_cloth_is_tangled(cloth) || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
         return true;
     return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
                             cloth->particles.x, error);
@@ -589,8 +426,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
                       tl_error *error)
 {
     cloth->cage_is_current = cloth->was_caged = false;
-    if (cloth->params.self_contact)
-        prepare_apart(cloth);
+    tl_cloth_prepare_contact(cloth);
     if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
         return false;
     uint64_t jump_followed = cloth->jump_followed;
