@@ -1,5 +1,6 @@
 #include "cloth/measure.h"
 
+#include "cloth/contacts.h"
 #include "cloth/self_contact/crossings.h"
 #include "cloth/timestep.h"
 #include "config/base/memory.h"
@@ -148,4 +149,26 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     if (collider)
         measure_depths(cloth, collider, &report);
     return report;
+}
+
+struct tl_residual tl_cloth_residual(const tl_cloth *cloth, const tl_collider *collider)
+{
+    const tl_cloth *moved = cloth->was_caged ? cloth->caged_cloth : cloth;
+    struct tl_contacts body;
+    struct tl_apart self;
+    vec3d *forces = TL_NEW_ARRAY(vec3d, moved->particles.count);
+    tl_energy_forces(&moved->energy, &moved->fabric, moved->particles.x, forces, NULL);
+    tl_cloth_find_contacts(moved, collider, &body, &self);
+    const struct tl_residual_source source = {.particles = &moved->particles,
+                                              .forces = forces,
+                                              .body = &body,
+                                              .self = self.made ? &self.contacts : NULL,
+                                              .gravity = moved->params.gravity,
+                                              .friction = moved->fabric.friction,
+                                              .thickness_m = moved->fabric.thickness_m};
+    struct tl_residual residual = tl_residual_measure(&source);
+    tl_contacts_release(&body);
+    tl_apart_release(&self);
+    free(forces);
+    return residual;
 }

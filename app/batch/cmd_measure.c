@@ -99,6 +99,9 @@ static void print_cloth(const tl_session *session)
     printf("cloth, %s: %zu vertices, %zu triangles\n",
            tl_garment_state_names[tl_session_garment_state(session)], report.vertex_count,
            report.triangle_count);
+    const struct tl_residual residual = tl_session_residual(session);
+    printf("  out of balance by %.2g of its weight rms, %.2g for 99 %% of the vertices, %.2g at most\n",
+           residual.rms, residual.high, residual.largest);
     printf("  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
            "the ground, %.1f mm deep; %zu pairs of triangles cross\n\n",
            PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,
@@ -209,6 +212,10 @@ static void add_cloth(cJSON *object, const tl_session *session)
     cJSON_AddNumberToObject(item, "inside", (double)report.inside_count);
     cJSON_AddNumberToObject(item, "deepest_mm", MM * report.deepest_m);
     cJSON_AddNumberToObject(item, "crossings", (double)report.crossing_count);
+    const struct tl_residual residual = tl_session_residual(session);
+    cJSON_AddNumberToObject(item, "unbalanced_rms", residual.rms);
+    cJSON_AddNumberToObject(item, "unbalanced_p99", residual.high);
+    cJSON_AddNumberToObject(item, "unbalanced_max", residual.largest);
     cJSON_AddNumberToObject(item, "rms_strain_percent", PERCENT * report.rms_strain);
     cJSON_AddNumberToObject(item, "max_strain_percent", PERCENT * report.max_strain);
 }

@@ -694,3 +694,10 @@ struct tl_cloth_report tl_session_report(const tl_session *session)
         return (struct tl_cloth_report){0};
     return tl_cloth_measure(session->cloth, session->collider);
 }
+
+struct tl_residual tl_session_residual(const tl_session *session)
+{
+    if (!session->cloth)
+        return (struct tl_residual){0};
+    return tl_cloth_residual(session->cloth, session->collider);
+}

@@ -1,0 +1,154 @@
+#include "cloth/balance/residual.h"
+
+#include "config/base/memory.h"
+
+#include <stdlib.h>
+
+#define STANDARD_GRAVITY 9.81
+/* Surfaces touch where their distance exceeds what contact keeps by less than this: the plane that stands for
+ * the avatar is off its surface by up to 0.07 mm (contact.c). */
+#define TOUCH_M 1e-4
+/* From 100 to 200 sweeps the residual of a dress of 3,020 vertices changes by less than a hundredth. */
+#define SWEEPS 100
+
+/* The acceleration of sum of weights[i] x[v[i]] along `normal` must not be negative. */
+struct touch {
+    uint32_t v[4];
+    int count;
+    double weights[4];
+    vec3d normal;
+    double inverse; /* 1/kg, of the point */
+    double pressed; /* N, along the normal */
+    vec3d rub;      /* N, friction */
+};
+
+struct touches {
+    size_t count, capacity;
+    struct touch *all;
+};
+
+static void add_touch(struct touches *touches, struct touch touch, const double *w)
+{
+    for (int i = 0; i < touch.count; i++)
+        touch.inverse += w[touch.v[i]] * touch.weights[i] * touch.weights[i];
+    if (!(touch.inverse > 0))
+        return;
+    if (touches->count == touches->capacity) {
+        touches->capacity = 2 * touches->capacity + 256;
+        touches->all = tl_resize(touches->all, touches->capacity, sizeof *touches->all);
+    }
+    touches->all[touches->count++] = touch;
+}
+
+static void add_body(const struct tl_residual_source *source, struct touches *touches)
+{
+    const struct tl_contacts *body = source->body;
+    const size_t count = source->particles->count;
+    for (size_t i = 0; body->collider && i < count + body->sample_count; i++) {
+        struct touch touch = {.v = {(uint32_t)i}, .count = 1, .weights = {1}};
+        vec3d x = i < count ? source->particles->x[i] : (vec3d){0};
+        struct tl_contact_height height;
+        if (i >= count) {
+            const struct tl_contact_sample *sample = &body->samples[i - count];
+            touch.count = 3;
+            for (int k = 0; k < 3; k++) {
+                touch.v[k] = sample->vertices[k];
+                touch.weights[k] = sample->weights[k];
+            }
+            x = tl_contact_sample_position(sample, source->particles->x);
+        }
+        if (!tl_contacts_height(body, i, x, 1, &height) || height.height_m > source->thickness_m + TOUCH_M)
+            continue;
+        touch.normal = height.up;
+        add_touch(touches, touch, source->particles->w);
+    }
+}
+
+static void add_self(const struct tl_residual_source *source, struct touches *touches)
+{
+    for (size_t i = 0; source->self && i < source->self->count; i++) {
+        const struct tl_apart_contact *contact = &source->self->contacts[i];
+        struct touch touch = {.count = 4, .normal = contact->normal};
+        vec3d apart = tl_apart_between(contact, source->particles->x);
+        if (vec3d_dot(apart, contact->normal) > contact->kept + TOUCH_M)
+            continue;
+        for (int k = 0; k < 4; k++) {
+            touch.v[k] = contact->v[k];
+            touch.weights[k] = contact->weights[k];
+        }
+        add_touch(touches, touch, source->particles->w);
+    }
+}
+
+/* One contact of a sweep: the forces it had are corrected by what its point still accelerates, and bounded
+ * again. */
+static void solve_touch(struct touch *touch, double friction, const double *w, vec3d *accelerations)
+{
+    vec3d at = {0};
+    for (int i = 0; i < touch->count; i++)
+        at = vec3d_muladd(at, accelerations[touch->v[i]], touch->weights[i]);
+    double along = vec3d_dot(at, touch->normal);
+    double pressed = fmax(touch->pressed - along / touch->inverse, 0);
+    vec3d slip = vec3d_muladd(at, touch->normal, -along);
+    vec3d rub = vec3d_muladd(touch->rub, slip, -1 / touch->inverse);
+    double length = vec3d_norm(rub), most = friction * pressed;
+    if (length > most)
+        rub = vec3d_scale(rub, most / length);
+    vec3d change = vec3d_sub(rub, touch->rub);
+    change = vec3d_muladd(change, touch->normal, pressed - touch->pressed);
+    touch->pressed = pressed;
+    touch->rub = rub;
+    for (int i = 0; i < touch->count; i++)
+        accelerations[touch->v[i]] =
+            vec3d_muladd(accelerations[touch->v[i]], change, w[touch->v[i]] * touch->weights[i]);
+}
+
+static int compare(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of the free particles, as shares of `gravity`. */
+static struct tl_residual summarise(const struct tl_particles *particles, const vec3d *accelerations,
+                                    double gravity)
+{
+    struct tl_residual residual = {0};
+    double *sizes = TL_NEW_ARRAY(double, particles->count), squares = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < particles->count; i++) {
+        if (!(particles->w[i] > 0))
+            continue;
+        sizes[count] = vec3d_norm(accelerations[i]) / gravity;
+        squares += sizes[count] * sizes[count];
+        count++;
+    }
+    qsort(sizes, count, sizeof *sizes, compare);
+    if (count > 0)
+        residual = (struct tl_residual){.rms = sqrt(squares / (double)count),
+                                        .high = sizes[(count - 1) * 99 / 100],
+                                        .largest = sizes[count - 1]};
+    free(sizes);
+    return residual;
+}
+
+struct tl_residual tl_residual_measure(const struct tl_residual_source *source)
+{
+    const struct tl_particles *particles = source->particles;
+    const double gravity = source->gravity;
+    struct touches touches = {0};
+    vec3d *accelerations = TL_NEW_ARRAY(vec3d, particles->count);
+    for (size_t i = 0; i < particles->count; i++)
+        if (particles->w[i] > 0)
+            accelerations[i] = vec3d_muladd((vec3d){0, -gravity, 0}, source->forces[i], particles->w[i]);
+    add_body(source, &touches);
+    add_self(source, &touches);
+    for (int sweep = 0; sweep < SWEEPS; sweep++)
+        for (size_t i = 0; i < touches.count; i++)
+            solve_touch(&touches.all[i], source->friction, particles->w, accelerations);
+    struct tl_residual residual =
+        summarise(particles, accelerations, gravity != 0 ? fabs(gravity) : STANDARD_GRAVITY);
+    free(touches.all);
+    free(accelerations);
+    return residual;
+}
