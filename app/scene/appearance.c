@@ -231,12 +231,6 @@ static void set_fabric(struct tl_appearance *appearance, const struct tl_materia
     material->weave = weave;
 }
 
-static bool is_overlay(const struct tl_settings *settings, const tl_material *material)
-{
-    return strcmp(settings->scene.overlay_fabric, "none") != 0 &&
-           strcmp(material->name, TL_GARMENT_OVERLAY) == 0;
-}
-
 /* A material in the making: `params` and `weave` are the fabric's or, where `is_file`, the file's own. */
 struct making {
     const tl_material *file;
@@ -248,10 +242,7 @@ struct making {
 
 static struct making begin(const struct tl_settings *settings, const tl_material *file)
 {
-    bool overlay = is_overlay(settings, file);
-    struct making making = {.file = file,
-                            .params = overlay ? settings->overlay : settings->material,
-                            .weave = overlay ? settings->overlay_weave : settings->weave};
+    struct making making = {.file = file, .params = settings->material, .weave = settings->weave};
     making.is_file = making.params.use_file;
     making.is_woven = !making.is_file;
     if (making.is_file) {
@@ -556,12 +547,11 @@ struct tl_option_filter tl_appearance_filter(const struct tl_settings *a, const 
                                      .none_of = same_garment ? 0 : TL_AFFECTS_GARMENT};
 }
 
-/* Takes what follows from options (overlay_weave, colourways) with them. */
+/* Takes the colourways, which follow from options, with them. */
 void tl_appearance_take(const struct tl_settings *from, struct tl_settings *settings)
 {
     const struct tl_option_filter filter = tl_appearance_filter(from, settings);
     tl_settings_take(from, settings, filter);
-    settings->overlay_weave = from->overlay_weave;
     if (!filter.none_of)
         settings->colourways = from->colourways;
 }

@@ -93,10 +93,6 @@ static const struct tl_option scene_rows[] = {
         "archive, measurements (.json), or a folder or .zip of texture maps; empty: that of the garment's "
         "kind (cotton_plain for shirts and patterns, denim "
         "for trousers, else satin), none on garment files"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, overlay_fabric,
-                           TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
-                           "second fabric of a garment, which sets the table overlay and this fabric's "
-                           "weave: built in, or a YAML file; motion follows scene.fabric"),
     TL_OPTION_STRING(struct tl_scene_params, colourway,
                      TL_AFFECTS_MATERIALS | TL_AFFECTS_APPEARANCE | TL_AFFECTS_GARMENT,
                      "colourway by its name in the scene or among a glTF file's variants; empty: the "
@@ -149,7 +145,6 @@ enum {
     WEAVE,
     MATERIAL,
     CONSTRUCTION,
-    OVERLAY,
     LIGHT,
     MAPS,
     LAMP,
@@ -170,7 +165,6 @@ void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[T
     bindings[WEAVE] = (struct tl_binding){&tl_weave_options, &settings->weave};
     bindings[MATERIAL] = (struct tl_binding){&tl_material_options, &settings->material};
     bindings[CONSTRUCTION] = (struct tl_binding){&tl_construction_options, &settings->construction};
-    bindings[OVERLAY] = (struct tl_binding){&tl_overlay_options, &settings->overlay};
     bindings[LIGHT] = (struct tl_binding){&tl_light_options, &settings->light};
     bindings[DETAIL] = (struct tl_binding){&tl_detail_options, &settings->detail};
     bindings[MAPS] = (struct tl_binding){&tl_maps_options, &settings->maps};
@@ -284,6 +278,19 @@ bool tl_settings_is_scene(const char *name)
 }
 
 /* The two topmost layers. */
+/* A second fabric had options of its own up to 0.1.0. */
+static void refer_to_colourways(tl_error *error)
+{
+    static const char *const names[] = {"scene.overlay_fabric: ", " overlay: "};
+    for (size_t i = 0; i < TL_COUNT(names); i++) {
+        char *name = strstr(error->message, names[i]), *rest = name ? name + strlen(names[i]) : NULL;
+        if (rest && strncmp(rest, "no such", strlen("no such")) == 0)
+            snprintf(rest, sizeof error->message - (size_t)(rest - error->message),
+                     "a second fabric is part of a colourway: write `colourways: {NAME: {overlay: {fabric: "
+                     "voile}}}` and `scene: {colourway: NAME}`");
+    }
+}
+
 static bool apply_source(const struct tl_binding *all, const struct tl_settings_source *source,
                          tl_error *error)
 {
@@ -298,6 +305,8 @@ static bool apply_source(const struct tl_binding *all, const struct tl_settings_
         applied = tl_options_set_assignment(all, TL_SETTINGS_TABLES, source->assignments[i], error);
     if (applied && is_model)
         applied = wear_model(all, scene, error);
+    if (!applied)
+        refer_to_colourways(error);
     return applied;
 }
 
@@ -327,8 +336,6 @@ static void choose_fabric(struct tl_scene_params *scene)
 {
     if (scene->fabric[0] == '\0')
         scene->fabric = tl_settings_own_fabric(scene->garment);
-    if (scene->overlay_fabric[0] == '\0')
-        scene->overlay_fabric = "none";
 }
 
 const char *tl_settings_avatar(const struct tl_scene_params *scene)
@@ -406,19 +413,19 @@ static bool is_layered(const struct tl_material_params *look)
            look->transmission[2] > 0;
 }
 
-static bool has_more_than_maps_show(const struct tl_settings *settings)
+/* Whether a material of the scene is such; a swatch's options that are not given are zero. */
+static bool has(const struct tl_settings *settings, bool (*is_such)(const struct tl_material_params *))
 {
-    return is_more_than_maps_show(&settings->material) || is_more_than_maps_show(&settings->overlay);
-}
-
-static bool has_layers(const struct tl_settings *settings)
-{
-    return is_layered(&settings->material) || is_layered(&settings->overlay);
+    const struct tl_colourways *colourways = settings->colourways;
+    bool found = is_such(&settings->material);
+    for (size_t i = 0; !found && i < colourways->swatch_count; i++)
+        found = is_such(&colourways->swatches[i].params);
+    return found;
 }
 
 bool tl_settings_need_rays(const struct tl_settings *settings)
 {
-    return has_more_than_maps_show(settings) || has_layers(settings);
+    return has(settings, is_more_than_maps_show) || has(settings, is_layered);
 }
 
 /* Warns of options that the chosen method does not use. */
@@ -427,7 +434,7 @@ static void warn_of_unused_options(const struct tl_settings *settings)
     const struct tl_render_settings drawn = tl_settings_render(settings);
     const struct tl_light_params *light = &drawn.light;
     bool by_maps = light->method == TL_METHOD_MAPS;
-    bool layers = has_layers(settings), others = has_more_than_maps_show(settings);
+    bool layers = has(settings, is_layered), others = has(settings, is_more_than_maps_show);
     bool shows_all =
         light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
     if (by_maps && others)
@@ -508,8 +515,6 @@ bool tl_settings_load(struct tl_settings *out, const struct tl_settings_source *
     choose_fabric(&named);
     tl_options_reset(all, TL_SETTINGS_TABLES);
     if (!apply_preset(all, named.preset, error) || !apply_fabric(all, named.fabric, error) ||
-        !tl_option_layer_read_appearance(named.overlay_fabric, &settings.overlay, &settings.overlay_weave,
-                                         error) ||
         !apply_source(all, source, error))
         return false;
     if (source->scene_file && tl_model_is_file(source->scene_file))
@@ -564,18 +569,6 @@ bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl
     tl_options_reset(&all[LIGHT], 1);
     if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.preset", name, "preset", NULL, error) ||
         !apply_preset(all, name, error))
-        return false;
-    *settings = changed;
-    return true;
-}
-
-bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error)
-{
-    struct tl_settings changed = *settings;
-    struct tl_binding all[TL_SETTINGS_TABLES];
-    tl_settings_bind(&changed, all);
-    if (!tl_options_set(all, TL_SETTINGS_TABLES, "scene.overlay_fabric", name, "fabric", NULL, error) ||
-        !tl_option_layer_read_appearance(name, &changed.overlay, &changed.overlay_weave, error))
         return false;
     *settings = changed;
     return true;

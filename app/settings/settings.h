@@ -33,8 +33,6 @@ struct tl_scene_params {     /* table "scene": what to show; names of built-ins 
     float motion_rate;                /* frames of it a second; 0: as its file states */
     const char *environment;          /* "studio", an .exr or .hdr file, or a pattern: sky.####.exr */
     const char *fabric;               /* name of an embedded fabric, a YAML file, or "none" */
-    const char *overlay_fabric;       /* as fabric: of the garment's materials named overlay; "": as the
-                                                  others */
     const char *colourway;  /* name of one of the scene's or of a model's variants; "": as they are */
     const char *colourways; /* scene, built in or YAML, that has them; "own": the garment's */
     const char *preset;     /* name of an embedded preset, or a YAML file */
@@ -67,8 +65,6 @@ struct tl_settings {
     struct tl_weave_params weave;
     struct tl_material_params material;
     struct tl_construction_params construction;
-    struct tl_material_params overlay;
-    struct tl_weave_params overlay_weave;   /* follows from scene.overlay_fabric */
     const struct tl_colourways *colourways; /* follow from scene.colourway, .colourways and .garment */
     struct tl_light_params light;
     struct tl_detail_params detail;
@@ -79,7 +75,7 @@ struct tl_settings {
     struct tl_reference_params reference;
 };
 
-#define TL_SETTINGS_TABLES 17
+#define TL_SETTINGS_TABLES 16
 /* The bindings of a settings value, in the order of the reference page. */
 void tl_settings_bind(struct tl_settings *settings, struct tl_binding bindings[TL_SETTINGS_TABLES]);
 
@@ -139,7 +135,6 @@ bool tl_settings_assign(struct tl_settings *settings, const char *const *assignm
 bool tl_settings_apply_fabric(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_preset(struct tl_settings *settings, const char *name, tl_error *error);
 /* Gives the garment's second fabric the appearance of a named one. */
-bool tl_settings_apply_overlay(struct tl_settings *settings, const char *name, tl_error *error);
 bool tl_settings_apply_colourway(struct tl_settings *settings, const char *name, tl_error *error);
 
 /* The fabric as the cloth takes it: with the thickness that the garment is sewn with. */

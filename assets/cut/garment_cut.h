@@ -8,7 +8,7 @@
 #include "config/base/error.h"
 
 /* Built-in garments, cut as flat panels: around the built-in dress form (assets/body/form.h) "dress",
- * "skirt", and "layers": the dress behind a curtain, whose material is named TL_GARMENT_OVERLAY; and drafted
+ * "skirt", and "layers": the dress behind a curtain, whose material is named "overlay"; and drafted
  * from the measures of the figure "trousers" and "shirt". `edge_m` is the target length of an edge. False
  * when the name is unknown (the message lists the names). */
 bool tl_garment_cut(const char *name, float edge_m, tl_garment *out, tl_error *error);
@@ -33,7 +33,6 @@ bool tl_garment_cut_for(const char *name, float edge_m, const struct tl_wearer *
 bool tl_garment_cut_sized(const char *name, float edge_m, const struct tl_cut_params *sizes,
                           const struct tl_wearer *wearer, tl_garment *out, tl_error *error);
 
-#define TL_GARMENT_OVERLAY "overlay"
 extern const char *const tl_garment_names[]; /* NULL-terminated */
 
 #endif

@@ -287,7 +287,7 @@ static struct tl_cut_piece curtain_piece(void)
         .half = {tl_curve_line(bottom, lower), tl_curve_line(lower, upper), tl_curve_line(upper, top)},
         .half_count = 3,
         .place = place_curtain,
-        .material = TL_GARMENT_OVERLAY,
+        .material = "overlay",
     };
 }
 

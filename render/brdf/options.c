@@ -98,6 +98,3 @@ static const struct tl_option material_rows[] = {
 const struct tl_option_table tl_material_options =
     TL_OPTION_TABLE("material", "appearance of the garment: a diffuse and a glossy lobe", material_rows,
                     material_params, DEFAULTS);
-const struct tl_option_table tl_overlay_options =
-    TL_OPTION_TABLE("overlay", "appearance of the garment's materials named overlay, as material",
-                    material_rows, material_params, DEFAULTS);

@@ -1,4 +1,4 @@
-/* Tables "material" and "overlay": a garment's appearance. */
+/* Table "material": a garment's appearance. */
 #ifndef TOILE_RENDER_BRDF_OPTIONS_H
 #define TOILE_RENDER_BRDF_OPTIONS_H
 
@@ -28,7 +28,5 @@ struct tl_material_params { /* table "material": from the fabric or by hand */
     int on_print;        /* enum tl_on_print: a garment's printed picture under a fabric */
 };
 extern const struct tl_option_table tl_material_options;
-extern const struct tl_option_table
-    tl_overlay_options; /* table "overlay": the same, of a garment's second fabric */
 
 #endif

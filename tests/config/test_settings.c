@@ -189,6 +189,12 @@ static void test_refusals(void **state)
            "or a "
            "YAML file: "
            "did you mean dress?");
+#define SECOND_FABRIC                                                                                        \
+    "a second fabric is part of a colourway: write `colourways: {NAME: {overlay: {fabric: voile}}}` and "    \
+    "`scene: {colourway: NAME}`"
+    refuse(NULL, "scene.overlay_fabric=voile", "--set: scene.overlay_fabric: " SECOND_FABRIC);
+    write_text(FOLDER "/old.yaml", "scene: {garment: layers}\noverlay: {coat: 1}\n");
+    refuse(FOLDER "/old.yaml", NULL, FOLDER "/old.yaml:2: overlay: " SECOND_FABRIC);
     refuse(NULL, "scene.fabric=satn",
            "--set: scene.fabric: satn is no name known here: expected none, cotton_plain, satin, "
            "denim, silk, charmeuse, taffeta, shot_silk, wool, jersey, interlock_tee, rib_knit, ponte, "

@@ -196,7 +196,7 @@ static bool apply_lines(char *lines, struct tl_settings *settings, tl_error *err
             return false;
         names_changed = names_changed || strncmp(line, "scene.", 6) == 0;
     }
-    return !names_changed || tl_state_follow_names(settings, error);
+    return !names_changed || tl_settings_apply_colourway(settings, settings->scene.colourway, error);
 }
 
 static bool step_back(struct tl_recovered *to, bool redo)

@@ -54,15 +54,6 @@ static size_t bind(struct tl_state *state, struct tl_binding bindings[TABLES])
     return TABLES;
 }
 
-bool tl_state_follow_names(struct tl_settings *settings, tl_error *error)
-{
-    struct tl_material_params material = settings->overlay;
-    if (!tl_settings_apply_overlay(settings, settings->scene.overlay_fabric, error))
-        return false;
-    settings->overlay = material;
-    return tl_settings_apply_colourway(settings, settings->scene.colourway, error);
-}
-
 bool tl_state_load(const char *file, const struct tl_settings *defaults, struct tl_state *out,
                    tl_error *error)
 {
@@ -75,7 +66,8 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
     if (!tl_file_exists(file))
         return true;
     if (!tl_options_read_yaml_file(bindings, count, file, error) ||
-        (read.review.has_settings && !tl_state_follow_names(&read.settings, error)))
+        (read.review.has_settings &&
+         !tl_settings_apply_colourway(&read.settings, read.settings.scene.colourway, error)))
         return false;
     *out = read;
     return true;

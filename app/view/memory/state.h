@@ -34,10 +34,6 @@ bool tl_state_load(const char *file, const struct tl_settings *defaults, struct 
                    tl_error *error);
 bool tl_state_save(const char *file, const struct tl_state *state, tl_error *error);
 
-/* After settings were read option by option: the second fabric's weave and the colourways, which are in no
- * table, are loaded by their names. */
-bool tl_state_follow_names(struct tl_settings *settings, tl_error *error);
-
 /* Writes tables as YAML, completely or not at all; creates the file's folder. */
 bool tl_state_write(const char *file, const struct tl_binding *bindings, size_t count, tl_error *error);
 

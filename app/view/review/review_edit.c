@@ -54,8 +54,6 @@ void tl_review_apply_names(struct tl_review *review)
         apply_named(review, tl_settings_apply_fabric, wanted->fabric);
     else if (is_new && was_own && strcmp(wanted->fabric, tl_settings_own_fabric(wanted->garment)) != 0)
         apply_named(review, tl_settings_apply_fabric, tl_settings_own_fabric(wanted->garment));
-    if (strcmp(wanted->overlay_fabric, good->overlay_fabric) != 0)
-        apply_named(review, tl_settings_apply_overlay, wanted->overlay_fabric);
     if (strcmp(wanted->preset, good->preset) != 0)
         apply_named(review, tl_settings_apply_preset, wanted->preset);
     if (is_new)

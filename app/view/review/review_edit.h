@@ -28,7 +28,7 @@ struct tl_review_edit {
 
 /* Sets one option as if it had been typed. False when the text is refused, which is reported. */
 bool tl_review_set(struct tl_review *review, const char *key, const char *text);
-/* After wanted.scene's fabric, overlay, preset, garment or colourway were edited: applies what these names
+/* After wanted.scene's fabric, preset, garment or colourway were edited: applies what these names
  * stand for. */
 void tl_review_apply_names(struct tl_review *review);
 void tl_review_use_fabric(struct tl_review *review, const char *name);

@@ -215,6 +215,5 @@ void tl_review_reload_edited(struct tl_review *review)
     if (review->keep.scene_file && tl_file_has_changed(&review->keep.watch, review->keep.scene_file))
         reload_scene(review);
     reload_named(review, scene->fabric, tl_settings_apply_fabric);
-    reload_named(review, scene->overlay_fabric, tl_settings_apply_overlay);
     reload_named(review, scene->preset, tl_settings_apply_preset);
 }

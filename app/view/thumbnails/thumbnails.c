@@ -21,7 +21,7 @@ struct thumbnail_list {
     atomic_size_t count;
 };
 
-enum { LISTS = 3 };
+enum { LISTS = 2 };
 
 struct tl_thumbnails {
     struct thumbnail_list lists[LISTS];
@@ -83,7 +83,6 @@ tl_thumbnails *tl_thumbnails_create(void (*wake)(void))
     tl_thumbnails *thumbnails = TL_NEW(tl_thumbnails);
     const struct thumbnail_list lists[LISTS] = {
         {.option = "fabric", .make = tl_thumbnail_of_fabric},
-        {.option = "overlay_fabric", .make = tl_thumbnail_of_fabric},
         {.option = "environment", .make = tl_thumbnail_of_environment},
     };
     for (int i = 0; i < LISTS; i++) {

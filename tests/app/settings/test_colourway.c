@@ -106,6 +106,20 @@ static void looks_follow_the_scene(void **state)
     tl_garment_release(&dress);
 }
 
+static void one_material_that_maps_do_not_show_needs_rays(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    write_scene("scene: {garment: dress, fabric: cotton_plain}\ncolourways:\n"
+                "  Plain: {skirt: {fabric: denim, diffuse: [0.1, 0.1, 0.1]}}\n"
+                "  Gloss: {skirt: {fabric: satin}}\n  Coat: {skirt: {coat: 0.5}}\n");
+    static const char *const names[] = {"", "Plain", "Gloss", "Coat"};
+    for (size_t i = 0; i < TL_COUNT(names); i++) {
+        assert_ok(load(names[i], &error), error);
+        assert_int_equal(tl_settings_need_rays(&settings), i >= 2);
+    }
+}
+
 /* Stitches in the cloth's colour are dyed with it; those that contrast with it, as denim's, are not. */
 static void stitches_follow_the_cloth(void **state)
 {
@@ -327,6 +341,7 @@ int main(void)
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(looks_follow_the_scene),
+        cmocka_unit_test(one_material_that_maps_do_not_show_needs_rays),
         cmocka_unit_test(stitches_follow_the_cloth),
         cmocka_unit_test(a_files_own_material_is_dyed),
         cmocka_unit_test(refusals_name_file_line_and_field),

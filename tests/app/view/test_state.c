@@ -64,15 +64,12 @@ static void comes_back_as_it_was(void **unused)
     state.window.budget_ms = 33.5f;
     state.review.has_settings = true;
     assert_true(tl_settings_apply_fabric(&state.settings, "silk", &error));
-    assert_true(tl_settings_apply_overlay(&state.settings, "denim", &error));
     state.settings.material.glossiness = 0.1f + 0.2f;
     state.settings.camera.yaw_deg = -123.4567f;
     assert_true(tl_state_save(file, &state, &error));
     assert_true(tl_state_load(file, &defaults, &read, &error));
     assert_true(read.review.has_settings);
     assert_true(tl_settings_equal(&read.settings, &state.settings));
-    assert_true(
-        tl_options_equal(&tl_weave_options, &read.settings.overlay_weave, &state.settings.overlay_weave));
     assert_true(tl_options_equal(&tl_window_options, &read.window, &state.window));
     free(file);
 }
@@ -102,7 +99,7 @@ static void broken_file_means_defaults(void **unused)
         "window: [\n",
         "windw: {width: 900}\n",
         "\xff\xfe\n",
-        "review: {has_settings: true}\nscene: {overlay_fabric: nosuch}\n",
+        "review: {has_settings: true}\nscene: {colourways: nosuch}\n",
     };
     tl_error error;
     struct tl_settings defaults = some_settings();
