@@ -76,17 +76,22 @@ for c in (0, 1):  # the far side of z is hidden
 assert lower[2] - 1e-3 < drawn[2] and upper[2] - 2 * pixel < drawn[5] < upper[2] + 1e-3
 PYTHON
 
+# compared TEXT ARGUMENTS...: a check by points.py, named by TEXT and its first line.
+compared() {
+    local text=$1 line right=true
+    shift
+    line=$(python3 points.py "$@" 2>&1 | head -n 1; exit "${PIPESTATUS[0]}") || right=false
+    check "$text$line" $right
+}
+
 # stands FILE METRES_PER_UNIT UP HOW OPTIONS...
 stands() {
-    local file=$data/$1 unit=$2 up=$3 how=$4 box
+    local file=$data/$1 unit=$2 up=$3 how=$4
     shift 4
     $TOILE render "$file" $small "$@" --aov -o seen.exr
-    box=$("$FORMAT_FILES" box seen.exr)
-    check "${file##*/}: $(python3 points.py drawn "$file" "$unit" "$up" "$box" 2>&1 | head -n 1)" \
-        python3 points.py drawn "$file" "$unit" "$up" "$box"
+    compared "${file##*/}: " drawn "$file" "$unit" "$up" "$("$FORMAT_FILES" box seen.exr)"
     $TOILE export "$file" --quiet "$@" -o again.obj
-    check "${file##*/}: exported where it was: $(python3 points.py $how "$file" 1 "$up" again.obj)" \
-        python3 points.py $how "$file" 1 "$up" again.obj # in the file's own unit
+    compared "${file##*/}: exported where it was: " $how "$file" 1 "$up" again.obj # in the file's own unit
 }
 
 stands garments/bjs_clothFolds.glb 1 y exported
