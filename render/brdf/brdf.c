@@ -1,7 +1,7 @@
 #include "render/brdf/brdf.h"
 
 #include "render/brdf/fresnel.h"
-#include "render/brdf/slope_fan.h"
+#include "render/brdf/lobe_set.h"
 #include "render/env/exponent.h"
 
 #include <math.h>

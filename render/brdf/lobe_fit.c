@@ -1,7 +1,7 @@
 #include "render/brdf/lobe_fit.h"
 
 #include "render/brdf/ggx/ggx_lobes.h"
-#include "render/brdf/slope_fan.h"
+#include "render/brdf/lobe_set.h"
 #include "render/brdf/ward_lanes.h"
 
 #include <math.h>
@@ -112,11 +112,10 @@ static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
 {
     struct slopes slopes = slopes_of(brdf);
     vec3s local = local_of(frame, v);
-    struct tl_slope_fan fan =
-        tl_slope_fan_of(slopes.weft, slopes.warp, local.x, local.y, local.z, least, most);
-    int count = (int)fan.count;
+    struct tl_lobe_set set = tl_lobe_set_of(slopes.weft, slopes.warp, local.x, local.y, local.z, least, most);
+    int count = (int)set.count;
     for (int k = 0; k < count; k++) {
-        struct tl_slope_lobe lobe = tl_slope_lobe_of(&fan, (float)k, local.x, local.y, local.z);
+        struct tl_slope_lobe lobe = tl_slope_lobe_of(&set, (float)k, local.x, local.y, local.z);
         vec2s slope = {{lobe.slope_x, lobe.slope_y}};
         vec3s value = value_of_slope(brdf, frame, &slopes, v, slope);
         lobes[k] = (struct tl_fitted_lobe){.direction = mirrored(facet_of(frame, slope), v),

@@ -8,7 +8,7 @@
  * covariance, each in the direction in which a facet of its slope reflects, so that they follow the cone of a
  * strongly anisotropic gloss; slopes that send light below the horizon get none. Each is as narrow as light
  * spreads across the axis about its own facet: towards a grazing viewer that changes several times along the
- * fan. Where there are too few lobes to overlap they are widened. The weight of a lobe is the gloss divided
+ * set. Where there are too few lobes to overlap they are widened. The weight of a lobe is the gloss divided
  * by the pdf of the slopes there. All weights are then scaled so that their sum is the albedo of the gloss
  * towards the viewer, computed by Gauss-Legendre quadrature; this keeps light that is the same from
  * everywhere. The part of a lobe above the horizon is scaled up for the part that lies below it.

@@ -6,7 +6,7 @@
 
 #include "render/brdf/fresnel.h"
 #include "render/brdf/lobe_fit.h"
-#include "render/brdf/slope_fan.h"
+#include "render/brdf/lobe_set.h"
 
 struct tl_ward_lanes {
     const struct tl_gloss *gloss;
@@ -47,44 +47,44 @@ TL_INLINE struct tl_ward_slope tl_ward_slope_at(const struct tl_gloss *gloss, bo
     return (struct tl_ward_slope){value, schlick ? value * square * square * rest : 0, p * q};
 }
 
-/* tl_slope_fan of each lane. */
-struct tl_fan_lanes {
+/* tl_lobe_set of each lane. */
+struct tl_lobe_set_lanes {
     float count[TL_LANES], first[TL_LANES], step[TL_LANES], overlap[TL_LANES], least[TL_LANES];
     float slope_x[TL_LANES], slope_y[TL_LANES], across_x[TL_LANES], across_y[TL_LANES];
 };
 
-TL_INLINE void tl_ward_fans(const struct tl_ward_lanes *w, int max_count, struct tl_fan_lanes *fans)
+TL_INLINE void tl_ward_lobe_sets(const struct tl_ward_lanes *w, int max_count, struct tl_lobe_set_lanes *sets)
 {
     const float root_half = 0.707106781f;
     for (int i = 0; i < TL_LANES; i++) {
-        const struct tl_slope_fan fan =
-            tl_slope_fan_of(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
-                            w->viewer[0][i], w->viewer[1][i], w->viewer[2][i], 1, max_count);
-        fans->count[i] = fan.count, fans->first[i] = fan.first, fans->step[i] = fan.step;
-        fans->overlap[i] = fan.overlap, fans->least[i] = fan.least;
-        fans->slope_x[i] = fan.slope_x, fans->slope_y[i] = fan.slope_y;
-        fans->across_x[i] = fan.across_x, fans->across_y[i] = fan.across_y;
+        const struct tl_lobe_set set =
+            tl_lobe_set_of(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
+                           w->viewer[0][i], w->viewer[1][i], w->viewer[2][i], 1, max_count);
+        sets->count[i] = set.count, sets->first[i] = set.first, sets->step[i] = set.step;
+        sets->overlap[i] = set.overlap, sets->least[i] = set.least;
+        sets->slope_x[i] = set.slope_x, sets->slope_y[i] = set.slope_y;
+        sets->across_x[i] = set.across_x, sets->across_y[i] = set.across_y;
     }
 }
 
 TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_count, int lane_count)
 {
-    struct tl_fan_lanes fans;
-    tl_ward_fans(w, max_count, &fans);
+    struct tl_lobe_set_lanes sets;
+    tl_ward_lobe_sets(w, max_count, &sets);
     w->count = 1;
     for (int i = 0; i < lane_count; i++)
-        w->count = fans.count[i] > (float)w->count ? (int)fans.count[i] : w->count;
+        w->count = sets.count[i] > (float)w->count ? (int)sets.count[i] : w->count;
     for (int i = 0; i < TL_LANES; i++)
         w->sum[0][i] = w->sum[1][i] = 0;
     for (int k = 0; k < w->count; k++)
         for (int i = 0; i < TL_LANES; i++) {
-            const struct tl_slope_fan fan = {fans.count[i],    fans.first[i],   fans.step[i],
-                                             fans.slope_x[i],  fans.slope_y[i], fans.across_x[i],
-                                             fans.across_y[i], fans.overlap[i], fans.least[i]};
+            const struct tl_lobe_set set = {sets.count[i],    sets.first[i],   sets.step[i],
+                                            sets.slope_x[i],  sets.slope_y[i], sets.across_x[i],
+                                            sets.across_y[i], sets.overlap[i], sets.least[i]};
             float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
-            struct tl_slope_lobe at = tl_slope_lobe_of(&fan, (float)k, x, y, z);
+            struct tl_slope_lobe at = tl_slope_lobe_of(&set, (float)k, x, y, z);
             struct tl_ward_slope lobe = tl_ward_slope_at(w->gloss, schlick, x, y, z, at.slope_x, at.slope_y);
-            float share = (float)k < fan.count ? at.share : 0;
+            float share = (float)k < set.count ? at.share : 0;
             float exponent = tl_slope_exponent(at.variance), axis = 2 * lobe.towards - z;
             float above = tl_slope_above(axis, exponent);
             w->exponent[k][i] = exponent;

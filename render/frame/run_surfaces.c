@@ -103,7 +103,7 @@ bool tl_run_shade_materials(const struct tl_shade_materials_job *job, tl_error *
 {
     (void)error;
     tl_shade_materials_make(job->shade_materials, job->shapes->drawn, job->shapes->drawn_count,
-                            job->shapes->revision, job->detail_options, job->light_options->fan);
+                            job->shapes->revision, job->detail_options, job->light_options->lobes);
     return true;
 }
 

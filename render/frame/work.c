@@ -74,7 +74,7 @@ struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts)
 /* A matt lobe, a glossy lobe, those of a multi-lobe fit. */
 static double lobes_of(const struct tl_work_counts *counts, const struct tl_light_params *light)
 {
-    return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->fan : 0);
+    return 1 + (counts->is_glossy ? 1 : 0) + (counts->is_faceted ? light->lobes : 0);
 }
 
 struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources,

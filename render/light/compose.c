@@ -290,8 +290,8 @@ static float viewed_by(const struct lobes *lobes, vec3s normal)
     return fmaxf(glms_vec3_dot(normal, lobes->viewer), 0);
 }
 
-static void add_fan(const struct block *block, const tl_sample *sample, const tl_material *material,
-                    struct lobes *lobes)
+static void add_lobe_set(const struct block *block, const tl_sample *sample, const tl_material *material,
+                         struct lobes *lobes)
 {
     const struct tl_compose_request *request = block->request;
     const vec4s stored = tl_sample_tangent(sample, request->ranges);
@@ -302,7 +302,7 @@ static void add_fan(const struct block *block, const tl_sample *sample, const tl
                                   stored.w * side, sample->widening);
     lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
     lobes->facets =
-        tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->viewer, request->params->fan, lobes->items);
+        tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->viewer, request->params->lobes, lobes->items);
     for (int k = 0; k < lobes->facets; k++)
         lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
     lobes->count = lobes->facets;
@@ -338,7 +338,7 @@ static void split_material_lobes(const struct block *block, const tl_material *m
     }
     lobes->base = lobes->fibres.under * (1 - material->coat * tl_coat_reflectance(facing));
     if (material->gloss.model != TL_REFLECT_PHONG) {
-        add_fan(block, sample, material, lobes);
+        add_lobe_set(block, sample, material, lobes);
         sample->specular = (vec3s){{0, 0, 0}};
         sample->glossiness = 0;
     }

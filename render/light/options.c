@@ -78,7 +78,7 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_INT(light_params, bounce_shares, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, 256, "",
                   "bounced light is renewed at every N-th of the vertices that are seen in each frame of "
                   "motion, at a fourth of that elsewhere; larger: faster, it lags"),
-    TL_OPTION_INT(light_params, fan, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
+    TL_OPTION_INT(light_params, lobes, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
                   "rays: maximum number of cosine lobes that approximate gloss of another shape; larger: "
                   "more exact, slower"),
     TL_OPTION_BOOL(
@@ -104,7 +104,7 @@ static const struct tl_option light_rows[] = {
 const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
     "light", "light and shadows of the environment", light_rows, light_params, .method = TL_METHOD_PEM,
     .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128, .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12,
-    .rounds = 1, .rays = 1, .bounce_shares = 8, .fan = 5, .map_size = 256, .blur_m = 0.05f,
+    .rounds = 1, .rays = 1, .bounce_shares = 8, .lobes = 5, .map_size = 256, .blur_m = 0.05f,
     .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
 
 struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light)

@@ -7,7 +7,7 @@
 #include "render/env/exponent.h"
 #include "render/light/compose.h"
 
-#define TL_SEEN_LOBES_MAX (TL_LOBE_FIT_SUM_MAX + 1) /* a fan for each gloss, and a coat */
+#define TL_SEEN_LOBES_MAX (TL_LOBE_FIT_SUM_MAX + 1) /* a set for each gloss, and a coat */
 
 /* Visibility of group g at a sample. */
 TL_INLINE void tl_read_visibility(const uint16_t *values, size_t stride, const struct tl_taps *taps, int g,

@@ -18,7 +18,7 @@ struct tl_look_lanes {
     int count; /* the other lanes are not read for texels; what they hold does not matter */
     /* Given: */
     float normal[3][TL_LANES];  /* towards the front, not normalised */
-    float tangent[4][TL_LANES]; /* along u, and handedness; read where the part has bumps or a fan */
+    float tangent[4][TL_LANES]; /* along u, and handedness; read where the part has bumps or lobes */
     float viewer[3][TL_LANES];  /* unit, towards the eye */
     float side[TL_LANES];       /* 1: the front is seen; -1: the back, whose whole frame turns over */
     /* Values of the part's maps: */

@@ -19,11 +19,11 @@ struct tl_shade_image {
 };
 
 /* Materials that differ in colour or maps only share a table. */
-struct tl_shade_fan {
+struct tl_shade_lobe_set {
     struct tl_gloss gloss;
     float low, high; /* of glossiness */
     int max_count;
-    struct tl_fan_table table;
+    struct tl_lobe_set_table table;
 };
 
 static bool fits(const tl_material *material, const struct tl_detail_params *detail)
@@ -119,23 +119,24 @@ static void glossiness_range(const struct tl_shade_part *part, float *low, float
     *high = fminf(fmaxf(*high, 0), 1);
 }
 
-static const struct tl_fan_table *find_fan(struct tl_shade_materials *materials,
-                                           const struct tl_shade_part *part, int max_count)
+static const struct tl_lobe_set_table *find_lobe_set(struct tl_shade_materials *materials,
+                                                     const struct tl_shade_part *part, int max_count)
 {
     float low, high;
     glossiness_range(part, &low, &high);
-    for (size_t i = 0; i < materials->fan_count; i++) {
-        const struct tl_shade_fan *fan = materials->fans[i];
-        if (same_gloss(&fan->gloss, &part->material->gloss) && fan->low == low && fan->high == high &&
-            fan->max_count == max_count)
-            return &fan->table;
+    for (size_t i = 0; i < materials->lobe_set_count; i++) {
+        const struct tl_shade_lobe_set *set = materials->lobe_sets[i];
+        if (same_gloss(&set->gloss, &part->material->gloss) && set->low == low && set->high == high &&
+            set->max_count == max_count)
+            return &set->table;
     }
-    materials->fans = tl_resize(materials->fans, materials->fan_count + 1, sizeof(struct tl_shade_fan *));
-    struct tl_shade_fan *made = TL_NEW(struct tl_shade_fan);
-    *made = (struct tl_shade_fan){
+    materials->lobe_sets =
+        tl_resize(materials->lobe_sets, materials->lobe_set_count + 1, sizeof(struct tl_shade_lobe_set *));
+    struct tl_shade_lobe_set *made = TL_NEW(struct tl_shade_lobe_set);
+    *made = (struct tl_shade_lobe_set){
         .gloss = part->material->gloss, .low = low, .high = high, .max_count = max_count};
-    tl_fan_table_make(part->material, low, high, max_count, &made->table);
-    materials->fans[materials->fan_count++] = made;
+    tl_lobe_set_table_make(part->material, low, high, max_count, &made->table);
+    materials->lobe_sets[materials->lobe_set_count++] = made;
     return &made->table;
 }
 
@@ -194,7 +195,7 @@ static void forget_constructions(struct tl_shade_materials *materials)
 }
 
 static struct tl_shade_part make_part(struct tl_shade_materials *materials, const tl_material *material,
-                                      const tl_borders *borders, float uv_metres, int fan)
+                                      const tl_borders *borders, float uv_metres, int max_lobes)
 {
     const struct tl_map *maps[TL_MAP_USES] = {[TL_MAP_DIFFUSE] = &material->diffuse_map,
                                               [TL_MAP_NORMAL] = &material->normal_map,
@@ -229,7 +230,7 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     materials->have_fuzz |= part.has_fuzz;
     materials->openness = fmaxf(materials->openness, material->openness);
     part.is_faceted = material->gloss.model != TL_REFLECT_PHONG;
-    part.fan_count = fan;
+    part.lobe_set_count = max_lobes;
     for (int i = 0; i < material->thread_count; i++) {
         part.thread_squares[i][0] = material->threads[i].width_weft * material->threads[i].width_weft;
         part.thread_squares[i][1] = material->threads[i].width_warp * material->threads[i].width_warp;
@@ -239,14 +240,14 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
         part.ward_squares[0] = brdf.gloss.width_weft * brdf.gloss.width_weft;
         part.ward_squares[1] = brdf.gloss.width_warp * brdf.gloss.width_warp;
     } else if (part.is_faceted) {
-        part.fan = find_fan(materials, &part, fan);
+        part.lobe_set = find_lobe_set(materials, &part, max_lobes);
     }
     return part;
 }
 
 void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surface *const *surfaces,
                              size_t count, uint64_t shapes_revision, const struct tl_detail_params *detail,
-                             int fan)
+                             int max_lobes)
 {
     if (materials->shapes_revision != shapes_revision) {
         tl_shade_materials_release(materials);
@@ -269,7 +270,7 @@ void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surf
             const struct tl_mesh_part *part = &surfaces[s]->parts[p];
             materials->parts[materials->first_parts[s] + p] =
                 make_part(materials, &surfaces[s]->materials[part->material], surfaces[s]->borders,
-                          part->uv_metres, fan);
+                          part->uv_metres, max_lobes);
         }
 }
 
@@ -279,21 +280,21 @@ void tl_shade_materials_release(struct tl_shade_materials *materials)
         tl_texels_release(&materials->images[i]->texels);
         free(materials->images[i]);
     }
-    for (size_t i = 0; i < materials->fan_count; i++) {
-        tl_fan_table_release(&materials->fans[i]->table);
-        free(materials->fans[i]);
+    for (size_t i = 0; i < materials->lobe_set_count; i++) {
+        tl_lobe_set_table_release(&materials->lobe_sets[i]->table);
+        free(materials->lobe_sets[i]);
     }
     forget_constructions(materials);
     free(materials->images);
-    free(materials->fans);
+    free(materials->lobe_sets);
     free(materials->first_parts);
     free(materials->parts);
     /* one by one: clang's analyser does not follow pointers through the assignment of a whole struct */
     materials->images = NULL;
-    materials->fans = NULL;
+    materials->lobe_sets = NULL;
     materials->first_parts = NULL;
     materials->parts = NULL;
-    materials->image_count = materials->fan_count = materials->surface_count = 0;
+    materials->image_count = materials->lobe_set_count = materials->surface_count = 0;
     materials->shapes_revision = 0;
 }
 
@@ -302,9 +303,9 @@ size_t tl_shade_materials_bytes(const struct tl_shade_materials *materials)
     size_t bytes = materials->construction_count * sizeof(struct tl_construction_tables);
     for (size_t i = 0; i < materials->image_count; i++)
         bytes += tl_texels_bytes(&materials->images[i]->texels);
-    for (size_t i = 0; i < materials->fan_count; i++)
-        bytes += (size_t)materials->fans[i]->table.gloss_count * TL_FAN_COSINES * TL_FAN_AZIMUTHS *
-                 sizeof(struct tl_fan_node);
+    for (size_t i = 0; i < materials->lobe_set_count; i++)
+        bytes += (size_t)materials->lobe_sets[i]->table.gloss_count * TL_LOBE_SET_COSINES *
+                 TL_LOBE_SET_AZIMUTHS * sizeof(struct tl_lobe_set_node);
     return bytes;
 }
 

@@ -11,7 +11,7 @@
 #include "render/construction/tables.h"
 #include "render/detail/options.h"
 #include "render/gbuffer/samples.h"
-#include "render/shade/fan_table.h"
+#include "render/shade/lobe_set_table.h"
 #include "render/shade/texels.h"
 #include "render/surfaces/surfaces.h"
 
@@ -35,21 +35,21 @@ struct tl_shade_part {
     float uv_metres;              /* of a UV unit; read where there is a weave */
     const tl_borders *borders;    /* NULL: nothing is sewn; with the profiles of seams and hems: */
     const struct tl_construction_tables *construction;
-    float turn_cosine, turn_sine;            /* of gloss.rotation */
-    bool has_maps;                           /* UV is read */
-    bool has_bumps;                          /* the tangent is read */
-    bool is_glossy;                          /* something is reflected */
-    bool transmits;                          /* light comes through from the other side */
-    bool has_fuzz;                           /* fibres stand on it */
-    bool is_faceted;                         /* the gloss is not one cosine lobe: */
-    float ward_squares[2];                   /* squared widths of Ward's facets without maps and bumps */
-    float thread_squares[TL_THREADS_MAX][2]; /* ... of each system of threads */
-    int fan_count;                           /* lobes at most that stand for them */
-    const struct tl_fan_table *fan;          /* of other facets than Ward's */
+    float turn_cosine, turn_sine;             /* of gloss.rotation */
+    bool has_maps;                            /* UV is read */
+    bool has_bumps;                           /* the tangent is read */
+    bool is_glossy;                           /* something is reflected */
+    bool transmits;                           /* light comes through from the other side */
+    bool has_fuzz;                            /* fibres stand on it */
+    bool is_faceted;                          /* the gloss is not one cosine lobe: */
+    float ward_squares[2];                    /* squared widths of Ward's facets without maps and bumps */
+    float thread_squares[TL_THREADS_MAX][2];  /* ... of each system of threads */
+    int lobe_set_count;                       /* lobes at most that stand for them */
+    const struct tl_lobe_set_table *lobe_set; /* of other facets than Ward's */
 };
 
 struct tl_shade_image;
-struct tl_shade_fan;
+struct tl_shade_lobe_set;
 struct tl_shade_materials {
     struct tl_detail_params detail;
     uint64_t shapes_revision;
@@ -58,9 +58,9 @@ struct tl_shade_materials {
     struct tl_shade_part *parts;
     float openness; /* the greatest; 0: no part can be looked through */
     bool have_fuzz; /* of any part */
-    size_t image_count, fan_count, construction_count;
+    size_t image_count, lobe_set_count, construction_count;
     struct tl_shade_image **images; /* each image is packed once */
-    struct tl_shade_fan **fans;
+    struct tl_shade_lobe_set **lobe_sets;
     struct tl_construction_tables **constructions; /* [construction_count] by part, of those that are sewn */
 };
 
@@ -68,10 +68,10 @@ struct tl_shade_materials {
 bool tl_shade_materials_fit(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail);
 
 /* Makes the materials and replaces the previous ones. Maps and tables of the same `shapes_revision` are kept.
- * `fan`: lobes at most that stand for a gloss of facets. */
+ * `max_lobes`: lobes at most that stand for a gloss of facets. */
 void tl_shade_materials_make(struct tl_shade_materials *materials, const tl_surface *const *surfaces,
                              size_t count, uint64_t shapes_revision, const struct tl_detail_params *detail,
-                             int fan);
+                             int max_lobes);
 void tl_shade_materials_release(struct tl_shade_materials *materials);
 size_t tl_shade_materials_bytes(const struct tl_shade_materials *materials);
 

@@ -217,7 +217,7 @@ TL_INLINE struct reflected of_thread(const struct tl_look_lanes *look, int threa
     return (struct reflected){colour * (one - f.plain), zero - colour * f.away};
 }
 
-/* The lobes of a fan. */
+/* The lobes of a set. */
 struct lobe_lanes {
     int count;
     float local[TL_LOBE_FIT_MAX][3][TL_LANES]; /* in the frame of the threads, not normalised */
@@ -225,20 +225,20 @@ struct lobe_lanes {
     tl_quad weight[TL_LOBE_FIT_MAX][TL_LANES];
 };
 
-TL_INLINE void fetch_fan(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
-                         struct lobe_lanes *lobes)
+TL_INLINE void fetch_lobe_set(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
+                              struct lobe_lanes *lobes)
 {
-    const struct tl_fan_table *fan = lanes->look.part->fan;
-    struct tl_fan_place places[TL_LANES];
-    lobes->count = fan->lobe_count;
+    const struct tl_lobe_set_table *set = lanes->look.part->lobe_set;
+    struct tl_lobe_set_place places[TL_LANES];
+    lobes->count = set->lobe_count;
     for (int i = 0; i < TL_LANES; i++)
-        places[i] = tl_fan_place(fan, gloss->viewer[0][i], gloss->viewer[1][i], gloss->viewer[2][i],
-                                 lanes->look.glossiness[i]);
+        places[i] = tl_lobe_set_place(set, gloss->viewer[0][i], gloss->viewer[1][i], gloss->viewer[2][i],
+                                      lanes->look.glossiness[i]);
     for (int i = 0; i < lanes->look.count; i++) {
-        const struct tl_fan_shares shares = tl_fan_shares(lanes->look.f0[i]);
+        const struct tl_lobe_set_shares shares = tl_lobe_set_shares(lanes->look.f0[i]);
         tl_quad nodes[2 * TL_LOBE_FIT_MAX];
-        tl_fan_fetch(fan, &places[i], nodes);
-        for (int k = 0; k < fan->lobe_count; k++) {
+        tl_lobe_set_fetch(set, &places[i], nodes);
+        for (int k = 0; k < set->lobe_count; k++) {
             const size_t node = 2 * (size_t)k;
             const tl_quad local = nodes[node], weight = nodes[node + 1];
             lobes->local[k][0][i] = places[i].side * local[0];
@@ -276,7 +276,7 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         ward.viewer[1][i] = cosine[i] * y - sine[i] * x;
         ward.viewer[2][i] = tl_maxf(gloss->viewer[2][i], least);
     }
-    tl_ward_fit(&ward, look->part->fan_count, look->count);
+    tl_ward_fit(&ward, look->part->lobe_set_count, look->count);
     lobes->count = ward.count;
     for (int k = 0; k < ward.count; k++)
         for (int i = 0; i < TL_LANES; i++) {
@@ -306,9 +306,10 @@ TL_INLINE void place_lobe(const struct tl_pixel_scene *scene, const struct gloss
     }
 }
 
-/* The exact light of the lobes of a fan. */
-TL_INLINE void add_fan(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
-                       const struct gloss_lanes *gloss, struct lobe_lanes *lobes, tl_quad light[TL_LANES])
+/* The exact light of the lobes of a set. */
+TL_INLINE void add_lobe_set(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                            const struct gloss_lanes *gloss, struct lobe_lanes *lobes,
+                            tl_quad light[TL_LANES])
 {
     const int count = lanes->look.count;
     for (int k = 0; k < lobes->count; k++) {
@@ -328,14 +329,14 @@ TL_INLINE void add_facets(const struct tl_pixel_scene *scene, const struct tl_pi
     assert(lanes->look.count > 0); /* what idle lanes hold is the first one's */
     struct lobe_lanes lobes;
     find_frames(lanes, gloss);
-    if (lanes->look.part->fan)
-        fetch_fan(lanes, gloss, &lobes);
+    if (lanes->look.part->lobe_set)
+        fetch_lobe_set(lanes, gloss, &lobes);
     else
         fit_ward(lanes, gloss, -1, &lobes);
-    add_fan(scene, lanes, gloss, &lobes, light);
+    add_lobe_set(scene, lanes, gloss, &lobes, light);
     for (int k = 0; k < lanes->look.part->material->thread_count; k++) {
         fit_ward(lanes, gloss, k, &lobes);
-        add_fan(scene, lanes, gloss, &lobes, light);
+        add_lobe_set(scene, lanes, gloss, &lobes, light);
     }
 }
 

@@ -18,7 +18,7 @@ void test_path_set(struct test_scene *scene, enum test_path path, vec3s towards_
     settings->light.cut = TL_CUT_SPHERE;
     settings->light.regions = 48;
     settings->light.pem_size = 64;
-    settings->light.fan = 7;
+    settings->light.lobes = 7;
     settings->detail.minify = TL_DETAIL_MINIFY_LEAN;
     settings->image.supersample = 1;
     settings->reference.strata = settings->reference.lobe_samples = 16;

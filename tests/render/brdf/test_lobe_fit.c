@@ -1,4 +1,4 @@
-/* Fans of lobes against the gloss that they stand for, by brute force over the hemisphere: how much of the
+/* Sets of lobes against the gloss that they stand for, by brute force over the hemisphere: how much of the
  * light is sent elsewhere (L1 over the gloss's own integral), and that none is lost. */
 #include "render/brdf/lobe_fit.h"
 
@@ -121,7 +121,7 @@ static vec3s from_angles(float polar, float azimuth)
 }
 
 struct sums {
-    double gloss, fan, difference;
+    double gloss, lobes_sum, difference;
 };
 
 static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct tl_fitted_lobe *lobes,
@@ -141,13 +141,14 @@ static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct t
             l = glms_vec3_muladds(across, (float)(sin(angle) * sin(turn)), l);
             if (!(l.z > 0))
                 continue;
-            double gloss = (double)tl_brdf_gloss(brdf, &frame, l, v).x, fan = 0;
+            double gloss = (double)tl_brdf_gloss(brdf, &frame, l, v).x, lobes_sum = 0;
             for (int k = 0; k < count; k++)
-                fan += (double)(lobes[k].weight.x *
-                                tl_lobe_cosine(lobes[k].exponent, glms_vec3_dot(lobes[k].direction, l)));
+                lobes_sum +=
+                    (double)(lobes[k].weight.x *
+                             tl_lobe_cosine(lobes[k].exponent, glms_vec3_dot(lobes[k].direction, l)));
             sums.gloss += part * gloss;
-            sums.fan += part * fan;
-            sums.difference += part * fabs(gloss - fan);
+            sums.lobes_sum += part * lobes_sum;
+            sums.difference += part * fabs(gloss - lobes_sum);
         }
     }
     return sums;
@@ -172,8 +173,8 @@ static void test_lobes_match_the_gloss(void **state)
                     int count = tl_lobe_fit_make(&brdf, &frame, v, 1, counts[n], lobes);
                     struct sums sums = integrate(&brdf, v, lobes, count);
                     sum += sums.difference / sums.gloss;
-                    least = fmin(least, sums.fan / sums.gloss);
-                    greatest = fmax(greatest, sums.fan / sums.gloss);
+                    least = fmin(least, sums.lobes_sum / sums.gloss);
+                    greatest = fmax(greatest, sums.lobes_sum / sums.gloss);
                 }
             const size_t directions = 1 + (TL_COUNT(polars) - 1) * TL_COUNT(azimuths);
             errors[n] = sum / (double)directions;
@@ -193,5 +194,5 @@ static void test_lobes_match_the_gloss(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_lobes_match_the_gloss)};
-    return cmocka_run_group_tests_name("fan", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("lobe_fit", tests, NULL, NULL);
 }

@@ -45,9 +45,9 @@ static struct tl_brdf_sum sum_of(const tl_material *material)
     return tl_brdf_sum_of(material, material->specular, material->diffuse, material->glossiness, 1, none);
 }
 
-/* Integrals by channel of one lobe, and of the fan that stands for it. */
+/* Integrals by channel of one lobe, and of the set of lobes that stands for it. */
 struct sums {
-    double gloss[3], fan[3], off[3];
+    double gloss[3], fit[3], off[3];
 };
 
 static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct tl_fitted_lobe *lobes,
@@ -60,16 +60,16 @@ static struct sums integrate(const struct tl_brdf *brdf, vec3s v, const struct t
         for (int column = 0; column < COLUMNS; column++) {
             float azimuth = 2 * GLM_PIf * ((float)column + 0.5f) / COLUMNS;
             vec3s l = {{radius * cosf(azimuth), radius * sinf(azimuth), z}};
-            vec3s gloss = tl_brdf_gloss(brdf, &frame, l, v), fan = {{0, 0, 0}};
+            vec3s gloss = tl_brdf_gloss(brdf, &frame, l, v), fit = {{0, 0, 0}};
             for (int k = 0; k < count; k++)
-                fan = glms_vec3_add(
-                    fan,
+                fit = glms_vec3_add(
+                    fit,
                     glms_vec3_scale(lobes[k].weight,
                                     tl_lobe_cosine(lobes[k].exponent, glms_vec3_dot(lobes[k].direction, l))));
             for (int c = 0; c < 3; c++) {
                 sums.gloss[c] += part * (double)gloss.raw[c];
-                sums.fan[c] += part * (double)fan.raw[c];
-                sums.off[c] += part * fabs((double)(gloss.raw[c] - fan.raw[c]));
+                sums.fit[c] += part * (double)fit.raw[c];
+                sums.off[c] += part * fabs((double)(gloss.raw[c] - fit.raw[c]));
             }
         }
     }
@@ -164,9 +164,9 @@ static void test_widening(void **state)
     assert_near(sum.items[1].gloss.width_warp, 0.124, 1e-6);
 }
 
-/* The fan of a thread's lobe keeps its light, and how much of it goes elsewhere: measured with 7 lobes,
+/* The lobes of a thread's lobe keeps its light, and how much of it goes elsewhere: measured with 7 lobes,
  * rounded up. test_layered has the error of images. */
-static void test_fan(void **state)
+static void test_lobes_of_thread(void **state)
 {
     (void)state;
     const tl_material satin = cloth_of(1);
@@ -180,11 +180,11 @@ static void test_fan(void **state)
             int count = tl_lobe_fit_make(&sum.items[1], &frame, v, 1, 7, lobes);
             struct sums sums = integrate(&sum.items[1], v, lobes, count);
             for (int c = 0; c < 2; c++)
-                assert_near(sums.fan[c] / sums.gloss[c], 1, 0.06);
-            assert_near(sums.fan[2], 0, 0);
+                assert_near(sums.fit[c] / sums.gloss[c], 1, 0.06);
+            assert_near(sums.fit[2], 0, 0);
             off += sums.off[0] / sums.gloss[0];
         }
-    print_message("fan of a thread: %.1f %% of its light off\n", 100 * off / views);
+    print_message("lobes of a thread: %.1f %% of its light off\n", 100 * off / views);
     assert_true(off / views < 0.35);
 }
 
@@ -220,8 +220,9 @@ static void test_fit_of_sum(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_furnace), cmocka_unit_test(test_reciprocity),
-                                       cmocka_unit_test(test_colours), cmocka_unit_test(test_widening),
-                                       cmocka_unit_test(test_fan),     cmocka_unit_test(test_fit_of_sum)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_furnace),         cmocka_unit_test(test_reciprocity),
+        cmocka_unit_test(test_colours),         cmocka_unit_test(test_widening),
+        cmocka_unit_test(test_lobes_of_thread), cmocka_unit_test(test_fit_of_sum)};
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
 }

@@ -128,7 +128,7 @@ static void test_a_lobe_is_the_mean_of_its_normals(void **state)
 }
 
 /* What is sampled, its pdf and its fit follow the axes of the correlated slopes: the pdf integrates to 1, and
- * the fan has the albedo of the lobe. */
+ * the set of lobes has the albedo of the lobe. */
 static void test_samples_follow_the_axes(void **state)
 {
     (void)state;
@@ -232,8 +232,8 @@ static double highlight_error(tl_renderer *renderer, enum test_path path, const 
 }
 
 /* By every path, on both sides, with UVs of both hands and with threads that are turned. Measured: 5 to 9 %,
- * and 5 to 13 % of turned threads, whose broad lobes the fan approximates. Without covariance 21 to 34 %;
- * with the other hand 52 % of turned threads at samples, 63 % of all else under lamps. */
+ * and 5 to 13 % of turned threads, whose broad lobes the set of lobes approximates. Without covariance 21 to
+ * 34 %; with the other hand 52 % of turned threads at samples, 63 % of all else under lamps. */
 static void test_far_grooves_are_the_mean_of_near(void **state)
 {
     struct test_device *device = *state;

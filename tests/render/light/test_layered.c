@@ -32,7 +32,7 @@ static void scene_open(struct test_scene *scene, test_radiance *radiance)
     ball->diffuse = (vec3s){{0.2f, 0.3f, 0.5f}};
     scene->frame.still = true;
     test_scene_use_rays(scene, 96, 8);
-    scene->settings.light.fan = 7;
+    scene->settings.light.lobes = 7;
     scene->settings.reference.strata = 512;
     scene->settings.reference.replicates = 4;
 }
@@ -132,10 +132,10 @@ static void set_feature(const struct feature *feature, tl_material *material)
 }
 
 /* Images may err as much as the method does with two lobes (3 to 5 % when each pixel has one sample), though
- * the sheet is seen at some 70 degrees from its normal, where the horizon cuts lobes in half and a fan errs
- * most. Threads are narrow, and the oracle itself has 2 % there; the tails of GGX reach below that horizon.
- * The fan's own error is in test_lobe_fit. Alpha is what is covered and not looked through, and must agree
- * but for the edges' pixels. */
+ * the sheet is seen at some 70 degrees from its normal, where the horizon cuts lobes in half and a set of
+ * lobes errs most. Threads are narrow, and the oracle itself has 2 % there; the tails of GGX reach below that
+ * horizon. The set's own error is in test_lobe_fit. Alpha is what is covered and not looked through, and must
+ * agree but for the edges' pixels. */
 static void test_against_the_oracle(void **state)
 {
     const struct test_device *device = *state;
@@ -213,7 +213,7 @@ static void test_only_what_the_scene_requires(void **state)
     assert_true(runs(tl_renderer_last_plan(device->renderer), "transparency"));
     assert_true(with.transparency > 0);
     assert_int_equal(with.targets - before.targets, 8 * WIDTH * HEIGHT); /* the layer of facets */
-    assert_true(with.pems > before.pems); /* exponents of the fan and the coat */
+    assert_true(with.pems > before.pems); /* exponents of the lobes and the coat */
     tl_image_release(&image);
 
     set_feature(&plain, &scene.shapes[0].material);

@@ -216,7 +216,7 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
 {
     const tl_surface *surface = one->scene->listed[hit->surface];
     size_t part = tl_shade_part_at(one->materials, surface, hit->surface, hit->triangle);
-    const struct tl_fan_table *fan = one->materials->parts[part].fan;
+    const struct tl_lobe_set_table *set = one->materials->parts[part].lobe_set;
     const bool is_faceted = one->materials->parts[part].is_faceted;
     *light = (vec3s){{0, 0, 0}};
     assert_int_equal(is_faceted, point->layered && point->layers.faceted);
@@ -225,11 +225,11 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     } else {
         for (int g = 0; g < point->layers.gloss.count; g++) {
             struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-            int count = g == 0 && fan ? tl_fan_table_look_up(fan, &point->layers.frame, point->viewer,
-                                                             point->f0, point->glossiness, lobes)
+            int count = g == 0 && set ? tl_lobe_set_table_look_up(set, &point->layers.frame, point->viewer,
+                                                                  point->f0, point->glossiness, lobes)
                                       : tl_lobe_fit_make(&point->layers.gloss.items[g], &point->layers.frame,
                                                          point->viewer, 1,
-                                                         one->materials->parts[part].fan_count, lobes);
+                                                         one->materials->parts[part].lobe_set_count, lobes);
             for (int k = 0; k < count; k++)
                 *light = glms_vec3_add(
                     *light,

@@ -1,8 +1,8 @@
 /* Places of the lobes of a fit that stand for facets with Gaussian slopes (lobe_fit.h), and the quadrature
  * for their albedo: scalar arithmetic without branches, which render/shade evaluates for many pixels at a
  * time. Directions are in the frame (tangent, bitangent, normal). Pure; threads: any. */
-#ifndef TOILE_RENDER_BRDF_SLOPE_FAN_H
-#define TOILE_RENDER_BRDF_SLOPE_FAN_H
+#ifndef TOILE_RENDER_BRDF_SLOPE_LOBE_SET_H
+#define TOILE_RENDER_BRDF_SLOPE_LOBE_SET_H
 
 #include "config/base/simd.h"
 
@@ -40,7 +40,7 @@ TL_INLINE struct tl_slope_axes tl_slope_axes_of(float weft, float warp, float x,
 
 /* The lobes towards one viewer. Lobe k stands for the slopes about `first + k step` standard deviations along
  * the axis along which light spreads most; slopes that send light below the horizon are left out. */
-struct tl_slope_fan {
+struct tl_lobe_set {
     float count; /* a whole number */
     float first, step;
     float slope_x, slope_y;   /* one standard deviation along the axis, towards the viewer */
@@ -53,11 +53,11 @@ struct tl_slope_fan {
  * are as many as it takes; else a gap between them costs more than what they leave out. These and the figure
  * for up to four lobes had the least L1 error of some twenty sets, over satin's facets and threads and a
  * round gloss, from in front to 1.45 rad; the next best sets are within a tenth of it. */
-#define TL_FAN_REACH         2.5f
-#define TL_FAN_OVERLAP       0.42f
-#define TL_FAN_REACH_FEW     2.0f
-#define TL_FAN_OVERLAP_FEW   0.31f
-#define TL_FAN_REACH_OF_FOUR 2.1f
+#define TL_LOBE_SET_REACH         2.5f
+#define TL_LOBE_SET_OVERLAP       0.42f
+#define TL_LOBE_SET_REACH_FEW     2.0f
+#define TL_LOBE_SET_OVERLAP_FEW   0.31f
+#define TL_LOBE_SET_REACH_OF_FOUR 2.1f
 
 /* The mean of the slopes that the viewer sees, in standard deviations towards the viewer, where those below
  * `cut`, at most 0, are turned away: phi / Phi of a normal distribution within .13, which only a
@@ -70,8 +70,8 @@ TL_INLINE float tl_slope_mean_seen(float cut)
 
 /* `least`, `most`: of lobes. As many as it takes for neighbours to overlap, or else `most`, which are wider.
  */
-TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, float y, float z, int least,
-                                              int most)
+TL_INLINE struct tl_lobe_set tl_lobe_set_of(float weft, float warp, float x, float y, float z, int least,
+                                            int most)
 {
     float flat = sqrtf(x * x + y * y), scale = 1 / tl_maxf(flat, 1e-4f);
     float seen_x = x * scale * weft, seen_y = y * scale * warp;
@@ -91,30 +91,30 @@ TL_INLINE struct tl_slope_fan tl_slope_fan_of(float weft, float warp, float x, f
     float highest = (towards + root) / tl_maxf(square * z, 1e-9f);
 
     float thin = 2 * TL_SLOPE_LEAST_COSINE * tl_minf(weft, warp), narrow = tl_maxf(axes.narrow, thin * thin);
-    float span = tl_minf(highest, TL_FAN_REACH) - tl_maxf(lowest, -TL_FAN_REACH);
+    float span = tl_minf(highest, TL_LOBE_SET_REACH) - tl_maxf(lowest, -TL_LOBE_SET_REACH);
     float apart = sqrtf(tl_maxf(axes.broad - narrow, 0) / narrow);
-    float wanted = tl_minf(TL_FAN_OVERLAP * apart * span, (float)most + 1);
+    float wanted = tl_minf(TL_LOBE_SET_OVERLAP * apart * span, (float)most + 1);
     wanted = (float)(int)(wanted + 0.9999f);
     float is_broad = axes.broad > 1.5f * narrow ? 1.0f : 0.0f;
     wanted = 1 + is_broad * (tl_maxf(wanted, 3) - 1);
     float few = wanted > (float)most ? 1.0f : 0.0f;
     float count = tl_minf(tl_maxf(wanted, (float)least), (float)most);
-    float reach = TL_FAN_REACH + few * (TL_FAN_REACH_FEW - TL_FAN_REACH);
-    reach = count <= 4 ? TL_FAN_REACH_OF_FOUR : reach;
+    float reach = TL_LOBE_SET_REACH + few * (TL_LOBE_SET_REACH_FEW - TL_LOBE_SET_REACH);
+    reach = count <= 4 ? TL_LOBE_SET_REACH_OF_FOUR : reach;
     float from = tl_maxf(lowest, -reach), step = (tl_minf(highest, reach) - from) / count;
     float first = tl_minf(count - 1, 1) * (from + step / 2);
-    return (struct tl_slope_fan){count,
-                                 first,
-                                 step,
-                                 slope_x,
-                                 slope_y,
-                                 -slope_y * weft / warp,
-                                 slope_x * warp / weft,
-                                 TL_FAN_OVERLAP + few * (TL_FAN_OVERLAP_FEW - TL_FAN_OVERLAP),
-                                 thin * thin};
+    return (struct tl_lobe_set){count,
+                                first,
+                                step,
+                                slope_x,
+                                slope_y,
+                                -slope_y * weft / warp,
+                                slope_x * warp / weft,
+                                TL_LOBE_SET_OVERLAP + few * (TL_LOBE_SET_OVERLAP_FEW - TL_LOBE_SET_OVERLAP),
+                                thin * thin};
 }
 
-/* A lobe of a fan. */
+/* A lobe of a set. */
 struct tl_slope_lobe {
     float slope_x, slope_y; /* in whose mirror direction it lies */
     float share;            /* of all lobes, not normalised: the density of the slopes */
@@ -129,22 +129,22 @@ TL_INLINE float tl_slope_turned(float dp, float dn_n, float dn_dn, float p, floa
     return along * along * square + 2 * along * own * dn_n + own * own * dn_dn;
 }
 
-/* Lobe `k` towards the viewer (x, y, z). Its own width adds to that of the fan, which is made narrower by as
+/* Lobe `k` towards the viewer (x, y, z). Its own width adds to that of the set, which is made narrower by as
  * much. */
-TL_INLINE struct tl_slope_lobe tl_slope_lobe_of(const struct tl_slope_fan *fan, float k, float x, float y,
+TL_INLINE struct tl_slope_lobe tl_slope_lobe_of(const struct tl_lobe_set *set, float k, float x, float y,
                                                 float z)
 {
-    float at = fan->first + k * fan->step, slope_x = at * fan->slope_x, slope_y = at * fan->slope_y;
+    float at = set->first + k * set->step, slope_x = at * set->slope_x, slope_y = at * set->slope_y;
     float p = z + x * slope_x + y * slope_y, square = 1 + slope_x * slope_x + slope_y * slope_y;
     float broad =
-        tl_slope_turned(x * fan->slope_x + y * fan->slope_y, slope_x * fan->slope_x + slope_y * fan->slope_y,
-                        fan->slope_x * fan->slope_x + fan->slope_y * fan->slope_y, p, square);
-    float narrow = tl_slope_turned(x * fan->across_x + y * fan->across_y,
-                                   slope_x * fan->across_x + slope_y * fan->across_y,
-                                   fan->across_x * fan->across_x + fan->across_y * fan->across_y, p, square);
-    float between = fan->overlap * fan->step;
+        tl_slope_turned(x * set->slope_x + y * set->slope_y, slope_x * set->slope_x + slope_y * set->slope_y,
+                        set->slope_x * set->slope_x + set->slope_y * set->slope_y, p, square);
+    float narrow = tl_slope_turned(x * set->across_x + y * set->across_y,
+                                   slope_x * set->across_x + slope_y * set->across_y,
+                                   set->across_x * set->across_x + set->across_y * set->across_y, p, square);
+    float between = set->overlap * set->step;
     float alone = sqrtf(tl_maxf(broad * narrow, 0)), variance = tl_maxf(narrow, between * between * broad);
-    variance = tl_maxf(fan->count > 1 ? variance : alone, fan->least);
+    variance = tl_maxf(set->count > 1 ? variance : alone, set->least);
     float shrink = sqrtf(tl_maxf(1 - variance / tl_maxf(broad, 1e-20f), 0));
     return (struct tl_slope_lobe){shrink * slope_x, shrink * slope_y, tl_exp2(-0.72134752f * at * at),
                                   variance};

@@ -3,7 +3,7 @@
  * albedo, which is the sum of their weights, their exponent, and the light that they fetch from a smooth
  * environment whose convolution with a lobe is known. */
 #include "render/brdf/ward_lanes.h"
-#include "render/shade/fan_table.h"
+#include "render/shade/lobe_set_table.h"
 
 #include "tests/testing.h"
 
@@ -14,14 +14,14 @@
 #include <string.h>
 
 #define VIEWERS  4000
-#define LOBES    5    /* of the option light.fan */
+#define LOBES    5    /* of the option light.lobes */
 #define GRAZING  0.1f /* cosine; a pixel in fifty of a figure is seen at a smaller one */
 #define CHANNELS 3
 
 /* What has facets and a table. The bounds are measured errors and a third of them; they detect a table
  * that became worse. The largest errors lie where the fit changes its number of lobes from one viewer to the
  * next; test_pixels.c measures the error of the image. */
-struct fan_case {
+struct lobe_set_case {
     const char *name;
     int model, facets, fresnel;
     float weft, warp;   /* 0: from glossiness */
@@ -30,7 +30,7 @@ struct fan_case {
     double grazing;     /* mean of the light of the others */
 };
 
-static const struct fan_case cases[] = {
+static const struct lobe_set_case cases[] = {
     {"torrance-sparrow .2",
      TL_REFLECT_TORRANCE_SPARROW,
      TL_FACETS_BECKMANN,
@@ -134,7 +134,7 @@ static vec3s random_direction(struct tl_random *random)
     return (vec3s){{radius * cosf(turn), radius * sinf(turn), z}};
 }
 
-static struct query random_query(const struct fan_case *item, struct tl_random *random)
+static struct query random_query(const struct lobe_set_case *item, struct tl_random *random)
 {
     struct query query = {.glossiness = item->gloss[0] +
                                         (item->gloss[1] - item->gloss[0]) * (float)tl_random_unit(random)};
@@ -148,7 +148,7 @@ static struct query random_query(const struct fan_case *item, struct tl_random *
     return query;
 }
 
-static tl_material material_of(const struct fan_case *item)
+static tl_material material_of(const struct lobe_set_case *item)
 {
     tl_material material = tl_material_default("test");
     material.glossiness = item->gloss[1];
@@ -166,8 +166,8 @@ struct case_errors {
     struct errors albedo, light, grazing, exponent;
 };
 
-static void compare(const struct fan_case *item, const struct tl_fan_table *table, struct tl_random *random,
-                    struct case_errors *errors)
+static void compare(const struct lobe_set_case *item, const struct tl_lobe_set_table *table,
+                    struct tl_random *random, struct case_errors *errors)
 {
     const tl_material material = material_of(item);
     struct query query = random_query(item, random);
@@ -176,8 +176,8 @@ static void compare(const struct fan_case *item, const struct tl_fan_table *tabl
         struct tl_brdf brdf = tl_brdf_of(&material, reflectances[i], query.glossiness);
         int count =
             tl_lobe_fit_make(&brdf, &query.frame, query.viewer, table->lobe_count, table->lobe_count, fitted);
-        int known =
-            tl_fan_table_look_up(table, &query.frame, query.viewer, reflectances[i], query.glossiness, found);
+        int known = tl_lobe_set_table_look_up(table, &query.frame, query.viewer, reflectances[i],
+                                              query.glossiness, found);
         struct fetched is = fetch(found, known), want = fetch(fitted, count);
         bool grazing = query.cosine < GRAZING;
         for (int c = 0; c < CHANNELS; c++) {
@@ -201,15 +201,15 @@ static void test_table_matches_the_fit(void **state)
     (void)state;
     printf("%-32s %-16s %-16s %-16s\n", "percent, mean and worst:", "albedo", "light", "light, grazing");
     for (size_t k = 0; k < TL_COUNT(cases); k++) {
-        const struct fan_case *item = &cases[k];
+        const struct lobe_set_case *item = &cases[k];
         const tl_material material = material_of(item);
         struct tl_random random = tl_random_begin(18, k + 3);
-        struct tl_fan_table table;
+        struct tl_lobe_set_table table;
         struct case_errors errors = {0};
-        tl_fan_table_make(&material, item->gloss[0], item->gloss[1], LOBES, &table);
+        tl_lobe_set_table_make(&material, item->gloss[0], item->gloss[1], LOBES, &table);
         for (int i = 0; i < VIEWERS; i++)
             compare(item, &table, &random, &errors);
-        tl_fan_table_release(&table);
+        tl_lobe_set_table_release(&table);
         printf("%-32s %6.3f %8.2f  %6.3f %8.2f  %6.3f %8.2f  exponent %.3f %.2f\n", item->name,
                100 * mean_of(&errors.albedo), 100 * errors.albedo.worst, 100 * mean_of(&errors.light),
                100 * errors.light.worst, 100 * mean_of(&errors.grazing), 100 * errors.grazing.worst,
@@ -220,7 +220,7 @@ static void test_table_matches_the_fit(void **state)
     }
 }
 
-static const struct fan_case ward_cases[] = {
+static const struct lobe_set_case ward_cases[] = {
     {"ward .3 .1, satin", TL_REFLECT_WARD, 0, 0, 0.3f, 0.1f, {0.9f, 0.95f}, 1e-5, 1e-3, 1e-5},
     {"ward .1 .4", TL_REFLECT_WARD, 0, 0, 0.1f, 0.4f, {0.9f, 0.95f}, 1e-5, 1e-3, 1e-5},
     {"ward by glossiness", TL_REFLECT_WARD, 0, 0, 0, 0, {0.5f, 0.95f}, 1e-5, 1e-3, 1e-5},
@@ -274,7 +274,7 @@ static void test_lanes_match_the_fit(void **state)
 {
     (void)state;
     for (size_t k = 0; k < 2 * TL_COUNT(ward_cases); k++) {
-        const struct fan_case *item = &ward_cases[k / 2];
+        const struct lobe_set_case *item = &ward_cases[k / 2];
         tl_material material = material_of(item);
         material.gloss.ward = k % 2 ? TL_WARD_BOUNDED : TL_WARD_PUBLISHED;
         struct tl_random random = tl_random_begin(18, k);
@@ -301,14 +301,16 @@ static void test_nothing_below_the_surface(void **state)
     (void)state;
     const tl_material material = material_of(&cases[0]);
     const struct tl_brdf_frame frame = {{{0, 0, 1}}, {{1, 0, 0}}, {{0, 1, 0}}};
-    struct tl_fan_table table;
+    struct tl_lobe_set_table table;
     struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-    tl_fan_table_make(&material, 0.9f, 0.9f, LOBES, &table);
+    tl_lobe_set_table_make(&material, 0.9f, 0.9f, LOBES, &table);
     assert_int_equal(
-        tl_fan_table_look_up(&table, &frame, (vec3s){{0.6f, 0, -0.8f}}, reflectances[0], 0.9f, lobes), 0);
+        tl_lobe_set_table_look_up(&table, &frame, (vec3s){{0.6f, 0, -0.8f}}, reflectances[0], 0.9f, lobes),
+        0);
     assert_int_equal(
-        tl_fan_table_look_up(&table, &frame, (vec3s){{0.6f, 0, 0.8f}}, reflectances[0], 0.9f, lobes), LOBES);
-    tl_fan_table_release(&table);
+        tl_lobe_set_table_look_up(&table, &frame, (vec3s){{0.6f, 0, 0.8f}}, reflectances[0], 0.9f, lobes),
+        LOBES);
+    tl_lobe_set_table_release(&table);
 }
 
 int main(void)
