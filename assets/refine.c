@@ -254,7 +254,7 @@ static bool refine_once(tl_model *model, const struct split_edges *edges)
 }
 
 /* A lower bound of the number of triangles: one with sides of at most l covers at most sqrt(3)/4 l^2. */
-static double least_triangles(const tl_mesh *mesh, double longest_m)
+static double min_triangles(const tl_mesh *mesh, double longest_m)
 {
     double area = 0;
     for (size_t i = 0; i + 2 < mesh->index_count; i += 3) {
@@ -272,7 +272,7 @@ bool tl_garment_refine(tl_garment *garment, float longest_m, tl_error *error)
     struct split_edges edges = find_long_edges(&model->mesh, longest_m);
     if (edges.count > 0)
         rig_destroy(&model->rig);
-    bool fits = 3 * least_triangles(&model->mesh, (double)longest_m) <= (double)TL_LIMIT_MESH_INDICES;
+    bool fits = 3 * min_triangles(&model->mesh, (double)longest_m) <= (double)TL_LIMIT_MESH_INDICES;
     while (fits && edges.count > 0) {
         fits = refine_once(model, &edges);
         free(edges.items);

@@ -177,8 +177,8 @@ uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out);
 /* Measures the state; penetration only against a collider that is not NULL. Takes longer than a substep. */
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider);
 
-/* How far the cloth's forces are from balance where it is now, with what touches it; searches that, and so
- * takes as long as some substeps. Of cloth that a cage moves it is the cage's. `collider` may be NULL. */
+/* Measures how far the cloth's forces are from balance where it is now, contact included; searches that, and
+ * so takes as long as some substeps. Of cloth that a cage moves it is the cage's. `collider` may be NULL. */
 struct tl_residual tl_cloth_residual(const tl_cloth *cloth, const tl_collider *collider);
 
 #endif

@@ -34,7 +34,7 @@ void tl_cloth_keep_apart(tl_cloth *cloth, const struct tl_contact_params *contac
 void tl_cloth_keep_outside(tl_cloth *cloth, const tl_collider *collider,
                            const struct tl_contact_params *contact);
 
-/* What touches the cloth where it is now, by searches of its own: the planes of `body` and the contacts of
+/* Finds what touches the cloth where it is now, by searches of its own: the planes of `body` and contacts of
  * `self`, which stays {0} where the cloth passes through itself. End with tl_contacts_release and
  * tl_apart_release. Borrows the cloth and the collider. */
 void tl_cloth_find_contacts(const tl_cloth *cloth, const tl_collider *collider, struct tl_contacts *body,

@@ -35,14 +35,14 @@ static char *format_number(const char *format, int precision, double value)
 /* The shortest decimal that reads back to the same value: 0.05, not 0.0500000007; 100, not 1e+02. */
 static char *shortest_number(double value, bool single)
 {
-    int most = single ? 9 : 17; /* digits that always suffice for IEEE 754 */
+    int maximum = single ? 9 : 17; /* digits that always suffice for IEEE 754 */
     int precision = 1;
     for (double power = 10; precision < 7 && fabs(value) >= power; power *= 10)
         precision++; /* %g turns to exponents when the digits before the point outnumber the precision */
     for (;; precision++) {
         char *text = format_number("%.*g", precision, value);
         double back = parse_number(text, NULL);
-        if (precision >= most || (single ? (float)back == (float)value : back == value))
+        if (precision >= maximum || (single ? (float)back == (float)value : back == value))
             return text;
         free(text);
     }

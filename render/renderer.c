@@ -84,13 +84,13 @@ static bool check_light_size(const struct tl_render_settings *settings, uint64_t
     return true;
 }
 
-bool tl_renderer_ask(const struct tl_render_settings *settings, tl_error *error)
+bool tl_renderer_request(const struct tl_render_settings *settings, tl_error *error)
 {
     uint64_t bytes = 0;
     char what[64];
     snprintf(what, sizeof what, "image: %d x %d pixels", settings->image.width, settings->image.height);
     return check_light_size(settings, &bytes, error) &&
-           tl_memory_ask(what, bytes + sample_count(&settings->image) * CPU_SAMPLE_BYTES, error);
+           tl_memory_request(what, bytes + sample_count(&settings->image) * CPU_SAMPLE_BYTES, error);
 }
 
 tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)

@@ -35,7 +35,7 @@ void tl_renderer_destroy(tl_renderer **renderer);
 
 /* Asks for the memory that drawing takes with these settings, besides that of the scene
  * (config/base/memory.h). Before the first draw: afterwards it is in use. Errors: false, with `error` set. */
-bool tl_renderer_ask(const struct tl_render_settings *settings, tl_error *error);
+bool tl_renderer_request(const struct tl_render_settings *settings, tl_error *error);
 
 /* Draws a frame into the renderer's own HDR target and makes it the last frame.
  *

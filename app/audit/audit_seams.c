@@ -63,12 +63,12 @@ static bool make_border(const tl_mesh *mesh, const struct tl_topology *topology,
 static struct border *find_borders(const tl_mesh *mesh, const struct tl_topology *topology, size_t *count)
 {
     uint8_t *counts = count_triangles(topology);
-    size_t most = 0;
+    size_t maximum = 0;
     for (size_t e = 0; e < topology->edge_count; e++)
-        most += counts[e] == 1;
-    struct border *borders = TL_NEW_ARRAY(struct border, most);
+        maximum += counts[e] == 1;
+    struct border *borders = TL_NEW_ARRAY(struct border, maximum);
     *count = 0;
-    for (uint32_t i = 0; *count < most && i < 3 * topology->triangle_count; i++) {
+    for (uint32_t i = 0; *count < maximum && i < 3 * topology->triangle_count; i++) {
         const uint32_t *corners = topology->triangles[i / 3];
         uint32_t edge = tl_topology_edge(topology, corners[i % 3], corners[(i + 1) % 3]);
         if (counts[edge] == 1)

@@ -23,7 +23,7 @@ static bool load_linear(const char *path, tl_image *out, tl_error *error)
     if (!tl_image_load(path, &encoded, error))
         return false;
     size_t texels = (size_t)encoded.width * (size_t)encoded.height;
-    if (!tl_memory_ask(path, texels * (size_t)encoded.channels * sizeof(float), error)) {
+    if (!tl_memory_request(path, texels * (size_t)encoded.channels * sizeof(float), error)) {
         tl_image_release(&encoded);
         return false;
     }

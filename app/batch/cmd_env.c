@@ -117,7 +117,7 @@ static bool convert(const struct tl_arguments *arguments, enum tl_layout layout,
 {
     struct tl_sphere_map to;
     if (!find_target(arguments, from, layout, &to, error) ||
-        !tl_memory_ask(arguments->output, tl_convert_bytes(from, &to), error))
+        !tl_memory_request(arguments->output, tl_convert_bytes(from, &to), error))
         return false;
     double worst;
     tl_image image = tl_image_convert(source, from, &to, &worst);

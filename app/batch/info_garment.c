@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* A body scan may have thousands of holes. */
-#define MOST_OPENINGS 40
+#define MAX_OPENINGS 40
 
 static void add_count(cJSON *object, const char *key, size_t count)
 {
@@ -43,10 +43,10 @@ static void describe_openings(cJSON *object, const tl_model *model)
 {
     struct tl_openings openings = tl_sewn_openings_of_model(model);
     cJSON *lengths = cJSON_AddObjectToObject(object, "openings_mm");
-    for (size_t i = 0; i < openings.count && i < MOST_OPENINGS; i++)
+    for (size_t i = 0; i < openings.count && i < MAX_OPENINGS; i++)
         cJSON_AddNumberToObject(lengths, openings.items[i].name, 1e3 * openings.items[i].length);
-    if (openings.count > MOST_OPENINGS)
-        add_count(object, "openings_not_listed", openings.count - MOST_OPENINGS);
+    if (openings.count > MAX_OPENINGS)
+        add_count(object, "openings_not_listed", openings.count - MAX_OPENINGS);
     tl_openings_release(&openings);
 }
 

@@ -54,8 +54,8 @@ struct tl_render_settings tl_quality_at(const struct tl_quality *levels,
     light->regions = halved(light->regions, levels->of[TL_CONTROL_REGIONS], REGIONS_MIN);
     *steps = halved(*steps, levels->of[TL_CONTROL_RELIEF], RELIEF_MIN);
     assert(levels->of[TL_CONTROL_SCALE] < TL_COUNT(scales));
-    float least = SAMPLES_MIN / (float)applied.image.supersample;
-    *scale = fmaxf(*scale * scales[levels->of[TL_CONTROL_SCALE]], fminf(*scale, least));
+    float minimum = SAMPLES_MIN / (float)applied.image.supersample;
+    *scale = fmaxf(*scale * scales[levels->of[TL_CONTROL_SCALE]], fminf(*scale, minimum));
     return applied;
 }
 

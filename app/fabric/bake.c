@@ -169,11 +169,12 @@ static bool save_fabric(const struct baking *baking, tl_error *error)
 static float steepest(const struct baking *baking)
 {
     tl_image slopes = tl_bake_slopes(&baking->field);
-    float most = 0;
+    float maximum = 0;
     for (size_t i = 0; i < (size_t)slopes.width * (size_t)slopes.height; i++)
-        most = fmaxf(most, hypotf(tl_image_floats(&slopes)[2 * i], tl_image_floats(&slopes)[2 * i + 1]));
+        maximum =
+            fmaxf(maximum, hypotf(tl_image_floats(&slopes)[2 * i], tl_image_floats(&slopes)[2 * i + 1]));
     tl_image_release(&slopes);
-    return most;
+    return maximum;
 }
 
 bool tl_fabric_bake(const struct tl_arguments *arguments, tl_error *error)

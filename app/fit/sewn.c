@@ -85,11 +85,11 @@ static bool is_one_piece(const tl_mesh *mesh)
  * together from plates has many pieces. */
 static bool is_open_cloth(const tl_model *model, const struct tl_openings *openings)
 {
-    const size_t most_openings = 6; /* neck, cuffs, waist and legs */
-    const double least_rim = 1.2;
+    const size_t max_openings = 6; /* neck, cuffs, waist and legs */
+    const double min_rim = 1.2;
     const tl_mesh *mesh = &model->mesh;
     double rim_m = 0, area_m2 = 0;
-    if (openings->count == 0 || openings->count > most_openings || !is_one_piece(mesh))
+    if (openings->count == 0 || openings->count > max_openings || !is_one_piece(mesh))
         return false;
     for (size_t i = 0; i < openings->count; i++)
         rim_m += openings->items[i].length;
@@ -98,7 +98,7 @@ static bool is_open_cloth(const tl_model *model, const struct tl_openings *openi
                     c = mesh->positions[mesh->indices[i + 2]];
         area_m2 += 0.5 * (double)glms_vec3_norm(glms_vec3_cross(glms_vec3_sub(b, a), glms_vec3_sub(c, a)));
     }
-    return rim_m > least_rim * sqrt(area_m2);
+    return rim_m > min_rim * sqrt(area_m2);
 }
 
 bool tl_sewn_is_worn(const tl_model *model)

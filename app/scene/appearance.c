@@ -152,13 +152,13 @@ static void set_construction(const struct tl_construction_params *params, tl_mat
 static void match_stitches(const float cloth[3], const float dyed[3], tl_material *material)
 {
     const vec3s thread = material->construction.thread;
-    float least = INFINITY, most = 0;
+    float minimum = INFINITY, maximum = 0;
     for (int c = 0; c < 3; c++) {
         const float ratio = (thread.raw[c] + 1e-3f) / (cloth[c] + 1e-3f);
-        least = fminf(least, ratio);
-        most = fmaxf(most, ratio);
+        minimum = fminf(minimum, ratio);
+        maximum = fmaxf(maximum, ratio);
     }
-    for (int c = 0; c < 3 && most < MATCHING_RATIO * least; c++)
+    for (int c = 0; c < 3 && maximum < MATCHING_RATIO * minimum; c++)
         material->construction.thread.raw[c] = fminf(thread.raw[c] / fmaxf(cloth[c], 1e-3f) * dyed[c], 1);
 }
 

@@ -8,7 +8,7 @@ bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *se
 {
     *headless = (struct tl_headless){.settings = *settings};
     const struct tl_render_settings drawn = tl_settings_render(&headless->settings);
-    if (!tl_renderer_ask(&drawn, error))
+    if (!tl_renderer_request(&drawn, error))
         return false;
     headless->gpu = tl_gpu_create_headless(error);
     headless->renderer = headless->gpu ? tl_renderer_create(headless->gpu, error) : NULL;

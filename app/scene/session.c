@@ -2,8 +2,8 @@
 
 #include "app/display/board.h"
 #include "app/scene/drape.h"
+#include "app/scene/inset_body.h"
 #include "app/scene/session_internal.h"
-#include "app/scene/tuck.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/self_contact/crossings.h"
 #include "config/base/file.h"
@@ -24,9 +24,9 @@ static void pose_avatar(tl_session *session, double time_s)
     tl_moving_update(&session->body);
     if (session->collider)
         tl_collider_move(session->collider, session->body.positions);
-    if (session->tucked)
-        tl_tuck_apply(session->tucked, session->body.normals, session->body.positions,
-                      session->avatar->model.mesh.vertex_count);
+    if (session->inset)
+        tl_inset_body_apply(session->inset, session->body.normals, session->body.positions,
+                            session->avatar->model.mesh.vertex_count);
 }
 
 /* About the ground, onto which a garment without an avatar is lifted after it was placed. */
@@ -107,7 +107,7 @@ static bool drape(tl_session *session, tl_error *error)
     if (!session->cloth)
         return false;
     if (session->authored && body &&
-        !(session->tucked = tl_tuck_find(&session->garment->model.mesh, body, error)))
+        !(session->inset = tl_inset_body_find(&session->garment->model.mesh, body, error)))
         return false;
     tl_moving_create(&session->dress, &session->garment->model, tl_cloth_weld(session->cloth));
     read_back_start(session);
@@ -311,7 +311,7 @@ void tl_session_destroy(tl_session **handle)
     tl_moving_light_release(&session->light);
     tl_strains_destroy(&session->strain.rest);
     free(session->strain.of_vertices);
-    free(session->tucked);
+    free(session->inset);
     free(session->crossed.triangles);
     tl_light_mesh_release(&session->cage.light_mesh);
     free(session->standing.size);
@@ -562,7 +562,7 @@ tl_frame tl_session_frame(tl_session *session)
     if (session->avatar) {
         tl_surface *body = &session->surfaces[session->surface_count++];
         *body = tl_moving_surface(&session->body, "avatar", &session->appearance.avatar);
-        body->has_own_normals = session->tucked != NULL;
+        body->has_own_normals = session->inset != NULL;
     }
     if (session->garment)
         add_garment(session);

@@ -245,7 +245,8 @@ const tl_garment *tl_session_cut(const tl_session *session);
  * Errors: none. Threads: the session's. */
 struct tl_cloth_report tl_session_report(const tl_session *session);
 
-/* How far the cloth is from balance in the present frame (tl_cloth_residual); zeros without cloth. */
+/* Measures how far the cloth is from balance in the present frame (tl_cloth_residual); zeros without cloth.
+ */
 struct tl_residual tl_session_residual(const tl_session *session);
 
 #endif

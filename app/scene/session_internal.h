@@ -23,7 +23,7 @@ struct tl_session {
 
     int clip; /* -1: rest pose */
     struct tl_moving body;
-    float *tucked; /* by how much the drawn body is moved inwards, under a garment as authored; or NULL */
+    float *inset; /* by how much the drawn body is moved inwards, under a garment as authored; or NULL */
 
     tl_cloth *cloth; /* NULL: no garment, or one that is played back */
     bool authored;   /* the cloth starts as the garment's file has it */

@@ -1,7 +1,7 @@
 #include "app/scene/whole_body.h"
 
+#include "app/scene/inset_body.h"
 #include "app/scene/session_internal.h"
-#include "app/scene/tuck.h"
 #include "config/base/memory.h"
 
 #include <stdlib.h>
@@ -15,11 +15,11 @@ static bool pose(const tl_session *session, struct tl_whole_body *body, tl_error
     tl_model_pose(model, session->clip, session->frame / session->settings.cloth.frame_rate,
                   moving->positions);
     tl_moving_update(moving);
-    if (!session->tucked)
+    if (!session->inset)
         return true;
-    float *depths = tl_tuck_find(&session->garment->model.mesh, &model->mesh, error);
+    float *depths = tl_inset_body_find(&session->garment->model.mesh, &model->mesh, error);
     if (depths)
-        tl_tuck_apply(depths, moving->normals, moving->positions, model->mesh.vertex_count);
+        tl_inset_body_apply(depths, moving->normals, moving->positions, model->mesh.vertex_count);
     free(depths);
     return depths != NULL;
 }

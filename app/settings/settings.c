@@ -208,12 +208,12 @@ static bool apply_fabric(const struct tl_binding *all, const char *name, tl_erro
     return tl_option_layer_apply(&tl_option_layer_fabric, name, bindings, TL_COUNT(bindings), NULL, error);
 }
 
-bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t maximum,
                         tl_error *error)
 {
     struct tl_binding bindings[TL_SETTINGS_TABLES];
     tl_settings_bind(settings, bindings);
-    for (size_t i = 0; i < most && assignments[i]; i++)
+    for (size_t i = 0; i < maximum && assignments[i]; i++)
         if (!tl_options_set_assignment(bindings, TL_SETTINGS_TABLES, assignments[i], error))
             return false;
     return true;

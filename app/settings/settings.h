@@ -127,7 +127,7 @@ void tl_settings_wear(struct tl_scene_params *scene);
 void tl_settings_turn_studio(struct tl_settings *settings, float from_deg);
 
 /* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */
-bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t most,
+bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t maximum,
                         tl_error *error);
 
 /* Layers a named fabric, preset or colourway ("": none) over settings already there (the panel does this,

@@ -149,7 +149,7 @@ static bool open_scene(struct tl_review *review, bool is_restored, tl_error *err
     if (review->due.closing || !is_restored || tl_interrupted())
         return false;
     tl_warn("view: the last review cannot be restored (%s): opening the built-in one", error->message);
-    tl_journal_set_aside(&review->keep.journal);
+    tl_journal_park(&review->keep.journal);
     tl_history_destroy(&review->keep.history);
     if (!tl_settings_of_command(review->keep.arguments, false, &review->wanted, error))
         return false;

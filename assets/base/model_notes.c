@@ -6,11 +6,11 @@
 #include <string.h>
 
 /* A damaged file may have a note for each of its bytes. */
-#define MOST_NOTES 200
+#define MAX_NOTES 200
 
 static void note(char ***list, size_t *count, const char *format, va_list arguments)
 {
-    if (*count == MOST_NOTES)
+    if (*count == MAX_NOTES)
         return;
     char text[256];
     vsnprintf(text, sizeof text, format, arguments);
@@ -35,7 +35,7 @@ void model_unread(tl_model *model, const char *file, bool is_absent, const char 
     for (size_t i = 0; i < model->unread_count; i++)
         if (strcmp(model->unread[i].reason, reason) == 0)
             return;
-    if (model->unread_count == MOST_NOTES)
+    if (model->unread_count == MAX_NOTES)
         return;
     model->unread = tl_resize(model->unread, model->unread_count + 1, sizeof *model->unread);
     model->unread[model->unread_count++] =

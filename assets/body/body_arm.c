@@ -20,10 +20,11 @@ struct arm_section {
 };
 
 /* Sections of the arm from a height downwards; returns how many there are until the arm ends. */
-static size_t follow_arm(const tl_mesh *mesh, double from, double step, struct arm_section *out, size_t most)
+static size_t follow_arm(const tl_mesh *mesh, double from, double step, struct arm_section *out,
+                         size_t maximum)
 {
     size_t count = 0;
-    for (bool found = true; found && count < most; count += found) {
+    for (bool found = true; found && count < maximum; count += found) {
         const struct tl_plane plane = tl_plane_level((float)(from - step * (double)count));
         struct tl_section *sections;
         size_t section_count = tl_mesh_sections(mesh, &plane, &sections);
@@ -79,11 +80,11 @@ static void turn_frames(struct tl_body_arm *arm)
 
 bool tl_body_measure_arm(const tl_mesh *mesh, double underarm_y, struct tl_body_arm *out)
 {
-    enum { MOST = 256, LEAST = 20 };
+    enum { MAXIMUM = 256, MINIMUM = 20 };
     const double step = 0.005, hand = 0.25; /* the hand's share of the arm's height */
-    struct arm_section sections[MOST];
-    size_t count = follow_arm(mesh, underarm_y, step, sections, MOST), wrist = 0;
-    if (count < LEAST)
+    struct arm_section sections[MAXIMUM];
+    size_t count = follow_arm(mesh, underarm_y, step, sections, MAXIMUM), wrist = 0;
+    if (count < MINIMUM)
         return false;
     for (size_t i = 0; (double)i < (1 - hand) * (double)count; i++)
         if (sections[i].girth < sections[wrist].girth)

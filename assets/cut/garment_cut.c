@@ -103,10 +103,10 @@ static uint32_t outline_vertex(const struct cutting *cutting, size_t piece_index
 static void sew(const struct cutting *cutting, tl_garment *garment)
 {
     const struct tl_cut_plan *plan = cutting->plan;
-    size_t most = 0;
+    size_t maximum = 0;
     for (size_t s = 0; s < plan->seam_count; s++)
-        most += curve_segments(cutting, plan->seams[s].piece_a, plan->seams[s].curve_a) + 1;
-    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, most);
+        maximum += curve_segments(cutting, plan->seams[s].piece_a, plan->seams[s].curve_a) + 1;
+    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, maximum);
     for (size_t s = 0; s < plan->seam_count; s++) {
         const struct tl_cut_seam *seam = &plan->seams[s];
         size_t segments = curve_segments(cutting, seam->piece_a, seam->curve_a);
@@ -409,11 +409,11 @@ static bool check_length(const char *option, double requested, struct tl_cut_ran
                          const struct cut_kind *kind, tl_error *error)
 {
     const double rounding = 1e-6;
-    if (requested >= range.least - rounding && requested <= range.most + rounding)
+    if (requested >= range.minimum - rounding && requested <= range.maximum + rounding)
         return true;
-    bool is_short = requested < range.least;
+    bool is_short = requested < range.minimum;
     /* The limit to the millimetre, inwards: what is printed is accepted. */
-    double limit = is_short ? ceil(range.least * 1e3) / 1e3 : floor(range.most * 1e3) / 1e3;
+    double limit = is_short ? ceil(range.minimum * 1e3) / 1e3 : floor(range.maximum * 1e3) / 1e3;
     return tl_fail(error, TL_USAGE, "%s: %g m: the %s for this body can have no %s than %g m", option,
                    requested, kind->name, is_short ? "less" : "more", limit + 0.0);
 }

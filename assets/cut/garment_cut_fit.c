@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LEAST_PASSES = 100, PASSES_PER_PUSH = 4 };
+enum { MIN_PASSES = 100, PASSES_PER_PUSH = 4 };
 #define SHORT_STIFFNESS 0.15 /* weak: slack cloth buckles instead of pushing its vertices apart */
 #define SIDE_M          0.001
 #define CLEARANCE_M     0.006 /* kept between the cloth and the body */
@@ -48,7 +48,7 @@ void tl_cut_fit(double (*positions)[3], size_t count, const bool *fixed, const s
     double total = 0;
     for (size_t e = 0; e < edge_count; e++)
         total += edges[e].length;
-    const int passes = (int)fmax(reach_m * (double)edge_count / total, LEAST_PASSES);
+    const int passes = (int)fmax(reach_m * (double)edge_count / total, MIN_PASSES);
     for (int pass = 0; pass < passes; pass++) {
         for (size_t e = 0; e < edge_count; e++)
             pull(positions[edges[e].a], positions[edges[e].b], fixed[edges[e].a], fixed[edges[e].b],

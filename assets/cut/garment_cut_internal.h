@@ -61,7 +61,7 @@ struct tl_cut_piece tl_cut_flared_piece(const struct tl_cut_flared *flared);
 
 /* The additional length that a garment can have, metres; most of them are bounded on one side only. */
 struct tl_cut_range {
-    double least, most;
+    double minimum, maximum;
 };
 
 struct tl_cut_plan tl_cut_plan_dress(const struct tl_cut_params *sizes);

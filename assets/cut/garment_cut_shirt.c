@@ -15,7 +15,7 @@
 #define UNDERARM_DROP 0.020 /* the armhole's bottom below the body's armpit */
 #define HEM_ABOVE     0.030 /* above the crotch */
 #define HEM_BELOW     0.020 /* the waist, at least */
-#define SLEEVE_LEAST  0.050 /* without its cuff */
+#define SLEEVE_MIN    0.050 /* without its cuff */
 #define WAIST_SHAPE   0.010 /* how far the side seam moves in at the waist */
 #define SHOULDER_EASE 0.014 /* cloth over the shoulder */
 #define NECK_WIDER    0.016 /* the neckline's half width over the neck's */
@@ -452,7 +452,7 @@ struct tl_cut_range tl_cut_longer_shirt(const struct tl_body *body)
 
 struct tl_cut_range tl_cut_longer_sleeves(const struct tl_body *body)
 {
-    return (struct tl_cut_range){CUFF_HEIGHT + SLEEVE_START + SLEEVE_LEAST - body->arm.length, INFINITY};
+    return (struct tl_cut_range){CUFF_HEIGHT + SLEEVE_START + SLEEVE_MIN - body->arm.length, INFINITY};
 }
 
 static void draft(const struct tl_body *body, const struct tl_cut_params *sizes, struct shirt *s)

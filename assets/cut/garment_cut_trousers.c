@@ -22,8 +22,8 @@
 #define FOOT_EASE    0.015 /* of the hem around the lowest place of the leg that it reaches */
 #define SHORTEST_LEG 0.15  /* of shorts, below the fork */
 #define HIP_ABOVE    0.060 /* at least so far above the crotch */
-#define FORKS_LEAST  0.13  /* of the hip's girth: the width of front's and back's forks together */
-#define FORKS_MOST   0.26
+#define FORKS_MIN    0.13  /* of the hip's girth: the width of front's and back's forks together */
+#define FORKS_MAX    0.26
 #define FRONT_FORK   0.38  /* of the forks' width */
 #define BACK_MORE    0.010 /* the back is wider, to each side */
 #define FRONT_SLANT  0.008 /* of the middle seam, hip to waist */
@@ -31,8 +31,8 @@
 #define BACK_RISE    0.020 /* of the back's middle above its side */
 #define FRONT_CURVE  0.060 /* height of the crotch's curve */
 #define BACK_CURVE   0.100
-#define DART_MOST    0.028
-#define DART_LEAST   0.008
+#define DART_MAX     0.028
+#define DART_MIN     0.008
 #define FRONT_DART   0.085 /* length */
 #define BACK_DART    0.120
 
@@ -129,7 +129,7 @@ static void cut_waist(const struct trousers *t, const struct leg_draft *draft, c
     struct tl_point hip = {draft->width, t->hip_y}, waist = {draft->width - side->waist, t->band_y};
     struct tl_point middle = {draft->slant, t->band_y + draft->rise}, start = {0, t->fork_y + draft->curve};
     double length = hypot(waist.x - middle.x, waist.y - middle.y), rise = t->band_y - t->hip_y;
-    out->dart_width = fmax(length - draft->waist, 0.5 * DART_LEAST);
+    out->dart_width = fmax(length - draft->waist, 0.5 * DART_MIN);
     struct tl_point outer = between(middle, waist, 0.5 + 0.5 * out->dart_width / length);
     struct tl_point inner = between(middle, waist, 0.5 - 0.5 * out->dart_width / length);
     struct tl_point axis = between(inner, outer, 0.5);
@@ -338,8 +338,8 @@ static double cut_legs(struct trousers *t, struct leg_draft draft[2], double for
     double excess = 0.5 * (front->width + back->width - front->waist - back->waist);
     struct side_shape side = {.knee = front->width - crease - 0.5 * front->knee,
                               .hem = front->width - crease - 0.5 * front->hem};
-    side.waist = fmax(0.4 * excess, excess - BACK_SLANT - DART_MOST);
-    side.waist = fmin(side.waist, fmax(excess - BACK_SLANT - DART_LEAST, 0));
+    side.waist = fmax(0.4 * excess, excess - BACK_SLANT - DART_MAX);
+    side.waist = fmin(side.waist, fmax(excess - BACK_SLANT - DART_MIN, 0));
     cut_outside(t, front, &side, &t->front);
     cut_outside(t, back, &side, &t->back);
     cut_waist(t, front, &side, &t->front);
@@ -383,7 +383,7 @@ static void draft(const struct tl_body *body, const struct tl_cut_params *sizes,
     struct leg_draft draft[2];
     draft_widths(body, t, (double)sizes->ease_m, draft);
     double seat = tl_body_crotch_length(body, t->band_y) + SEAT_EASE;
-    double low = FORKS_LEAST * body->hip, high = FORKS_MOST * body->hip;
+    double low = FORKS_MIN * body->hip, high = FORKS_MAX * body->hip;
     for (int step = 0; step < 30; step++) {
         double middle = 0.5 * (low + high);
         if (cut_legs(t, draft, middle) < seat)

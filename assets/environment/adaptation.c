@@ -82,7 +82,7 @@ vec3s tl_adaptation_to(const tl_environment *environment)
         white[c] = pow(bright / fmax(card[c], 0.05 * bright), (double)TL_ADAPTED_WHITE);
     const double turned[3] = {white[0] * card[0], white[1] * card[1], white[2] * card[2]};
     total = (double)TL_ADAPTED_LUMINANCE / luminance(turned);
-    total = fmin(fmax(total, 1 / (double)TL_ADAPTED_MOST), (double)TL_ADAPTED_MOST);
+    total = fmin(fmax(total, 1 / (double)TL_ADAPTED_MAX), (double)TL_ADAPTED_MAX);
     return (vec3s){{(float)(total * white[0]), (float)(total * white[1]), (float)(total * white[2])}};
 }
 

@@ -13,7 +13,7 @@
 /* The share of a place's tint that is removed, in the logarithm: the eye adapts to most of it. */
 #define TL_ADAPTED_WHITE 0.75f
 /* Places that are darker or brighter than this factor are adapted to only so far. */
-#define TL_ADAPTED_MOST 4096.0f
+#define TL_ADAPTED_MAX 4096.0f
 
 /* The factors of red, green and blue with which a picture shows light from an environment. They make the
  * luminance of upright cards under it, whichever way they face (the mean of all: cylindrical irradiance, EN

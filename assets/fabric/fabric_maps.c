@@ -305,10 +305,10 @@ static tl_image specular_of(const struct loading *loading)
 static tl_image opacity_of(const struct loading *loading)
 {
     const tl_image *own = &loading->plane[TL_PICTURE_OPACITY], *alpha = own->texels ? own : &loading->alpha;
-    float least = 1;
+    float minimum = 1;
     for (size_t i = 0; alpha->texels && i < texel_count(alpha); i++)
-        least = fminf(least, tl_image_floats(alpha)[i]);
-    if (least > 254.5f / 255) /* covers all */
+        minimum = fminf(minimum, tl_image_floats(alpha)[i]);
+    if (minimum > 254.5f / 255) /* covers all */
         return (tl_image){0};
     tl_image out = tl_image_create(loading->width, loading->height, 4, TL_IMAGE_U8);
     memset(out.texels, 255, 4 * texel_count(&out));
@@ -350,7 +350,7 @@ static tl_image gloss_of(const struct loading *loading)
  * for what a picture that is not quite periodic may have. */
 static float level(tl_image *normals)
 {
-    const float steepest = 0.05f, most_deg = 15;
+    const float steepest = 0.05f, max_deg = 15;
     double sums[2] = {0};
     size_t count = texel_count(normals);
     for (size_t i = 0; i < count; i++) {
@@ -360,7 +360,7 @@ static float level(tl_image *normals)
     }
     const float mean[2] = {(float)(sums[0] / (double)count), (float)(sums[1] / (double)count)};
     float lean_deg = atanf(hypotf(mean[0], mean[1])) * 57.29578f;
-    if (!(lean_deg > most_deg))
+    if (!(lean_deg > max_deg))
         return 0;
     for (size_t i = 0; i < count; i++) {
         float *n = tl_image_floats(normals) + 3 * i;

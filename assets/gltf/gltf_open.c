@@ -91,8 +91,8 @@ static bool check_json(const char *path, const struct chunks *chunks, tl_error *
     if (facts.depth > deepest)
         return tl_fail(error, TL_INPUT, "%s: its JSON is nested more than %d deep: export it again", path,
                        deepest);
-    return tl_memory_ask_for_file(path, chunks->json_size,
-                                  facts.commas * value_bytes + facts.objects * object_bytes, error);
+    return tl_memory_request_for_file(path, chunks->json_size,
+                                      facts.commas * value_bytes + facts.objects * object_bytes, error);
 }
 
 bool gltf_open(const char *path, gltf_document *out, tl_error *error)

@@ -96,10 +96,10 @@ static bool check_accessor(const gltf_document *document, int index, const char 
             "%s: %s: accessor %d holds %d numbers of type %d an element where %d are expected: export "
             "the file again",
             path, what, index, accessor->components, accessor->component_type, components);
-    size_t most = accessor->view < 0 && limit > LIMIT_ZEROS ? LIMIT_ZEROS : limit;
-    if (accessor->count == 0 || accessor->count > most || accessor->sparse_count > accessor->count)
+    size_t maximum = accessor->view < 0 && limit > LIMIT_ZEROS ? LIMIT_ZEROS : limit;
+    if (accessor->count == 0 || accessor->count > maximum || accessor->sparse_count > accessor->count)
         return tl_fail(error, TL_INPUT, "%s: %s: accessor %d has %zu elements: between 1 and %zu can be read",
-                       path, what, index, accessor->count, most);
+                       path, what, index, accessor->count, maximum);
     return true;
 }
 

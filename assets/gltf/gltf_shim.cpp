@@ -74,7 +74,7 @@ bool read_file(std::vector<unsigned char> *out, std::string *message, const std:
         return false;
     }
     (named->paths.insert(path).second ? named->bytes : named->repeated_bytes) += tl_file_size(path.c_str());
-    if (!tl_memory_ask_for_file(named->path, named->bytes, named->repeated_bytes, &error) ||
+    if (!tl_memory_request_for_file(named->path, named->bytes, named->repeated_bytes, &error) ||
         !tl_file_read(path.c_str(), &data, &size, &error)) {
         if (message)
             *message = error.message;

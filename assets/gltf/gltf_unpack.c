@@ -110,8 +110,8 @@ static void begin(gltf_document *document, size_t packed_views, size_t draco_pri
 /* Whether `bytes` more may be decompressed. */
 static bool has_room(const gltf_document *document, size_t bytes, tl_error *error)
 {
-    return tl_memory_ask_for_file(document->path, document->file_bytes,
-                                  document->unpacked->byte_count + bytes, error);
+    return tl_memory_request_for_file(document->path, document->file_bytes,
+                                      document->unpacked->byte_count + bytes, error);
 }
 
 /* Adds bytes, which the document owns from now on, as a buffer; its index. */

@@ -256,9 +256,9 @@ void add_sheen(Writer &writer, const tl_material &from, tinygltf::Material &to)
         return;
     float roughness = model_sheen_of_fuzz(from.fuzz.roughness);
     double amount = static_cast<double>(model_fuzz_of_sheen(roughness).amount);
-    double most = static_cast<double>(glms_vec3_max(from.fuzz.colour));
+    double maximum = static_cast<double>(glms_vec3_max(from.fuzz.colour));
     extend(writer, to, "KHR_materials_sheen",
-           {{"sheenColorFactor", colour(from.fuzz.colour, std::fmax(amount, most))},
+           {{"sheenColorFactor", colour(from.fuzz.colour, std::fmax(amount, maximum))},
             {"sheenRoughnessFactor", number(static_cast<double>(roughness))}});
 }
 

@@ -109,10 +109,10 @@ float model_sheen_of_fuzz(float roughness)
 static void apply_sheen(const struct material_build *build)
 {
     const struct gltf_extensions *from = &build->from->extensions;
-    float most = 0;
+    float maximum = 0;
     for (int c = 0; c < 3; c++)
-        most = fmaxf(most, unit(from->sheen_colour[c]));
-    if (most <= 0)
+        maximum = fmaxf(maximum, unit(from->sheen_colour[c]));
+    if (maximum <= 0)
         return;
     struct model_mean tint =
         model_map_mean(build, &from->sheen_colour_map, "colour", "KHR_materials_sheen: its colour");

@@ -114,7 +114,7 @@ static bool request_memory(const struct gltf_builder *builder, size_t vertices, 
     if (all_vertices > TL_LIMIT_MESH_VERTICES || all_indices > TL_LIMIT_MESH_INDICES)
         return tl_fail(error, TL_INPUT, "%s: has more than %zu vertices or %zu triangles: simplify it",
                        builder->document->path, TL_LIMIT_MESH_VERTICES, TL_LIMIT_MESH_INDICES / 3);
-    return tl_memory_ask_for_file(
+    return tl_memory_request_for_file(
         builder->document->path, builder->document->file_bytes,
         capacity * (all_vertices * vertex_bytes + all_indices * sizeof *mesh->indices), error);
 }

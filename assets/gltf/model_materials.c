@@ -22,7 +22,7 @@ static float mask_cutoff(const struct gltf_material *from)
  * others have their mean. */
 static void apply_blending(const struct material_build *build, const struct texture_loaded *base)
 {
-    const float closed_from = 0.995f, most_open = 0.99f;
+    const float closed_from = 0.995f, max_open = 0.99f;
     float opacity = unit(build->from->base_colour[3], 1);
     tl_material *to = build->to;
     if (base->has_alpha) {
@@ -35,7 +35,7 @@ static void apply_blending(const struct material_build *build, const struct text
                               to->name);
     }
     float open = 1 - (1 - to->openness) * opacity;
-    to->openness = open > 1 - closed_from ? fminf(open, most_open) : 0;
+    to->openness = open > 1 - closed_from ? fminf(open, max_open) : 0;
 }
 
 /* glTF 2.0, 3.9.3, and KHR_materials_emissive_strength: radiance, in the units of the environment. */
@@ -107,8 +107,8 @@ bool model_read_materials(const gltf_document *document, tl_model *model, tl_err
 {
     size_t count = document->material_count;
     const size_t map_bytes = sizeof(struct texture_loaded) + sizeof(tl_image);
-    if (!tl_memory_ask_for_file(document->path, document->file_bytes,
-                                count * (MAPS_MAX * map_bytes + sizeof(tl_material)), error))
+    if (!tl_memory_request_for_file(document->path, document->file_bytes,
+                                    count * (MAPS_MAX * map_bytes + sizeof(tl_material)), error))
         return false;
     struct texture_reader textures = {.document = document,
                                       .model = model,

@@ -154,8 +154,8 @@ static const struct texture_loaded *load_image(struct texture_reader *reader, in
     tl_error error;
     reader->decoded_bytes +=
         copies * (uint64_t)decoded.width * (uint64_t)decoded.height * (uint64_t)decoded.channels;
-    if (!tl_memory_ask_for_file(reader->document->path, reader->document->file_bytes, reader->decoded_bytes,
-                                &error)) {
+    if (!tl_memory_request_for_file(reader->document->path, reader->document->file_bytes,
+                                    reader->decoded_bytes, &error)) {
         model_unread(reader->model, "", false, error.message);
         reader->is_full = true;
         tl_image_release(&decoded);

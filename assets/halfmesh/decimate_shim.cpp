@@ -3,7 +3,7 @@ extern "C" {
 #include "assets/halfmesh/quadric.h"
 }
 
-#ifndef __clang__ /* which has no such warning */
+#ifndef __clang__                                      /* which has no such warning */
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* in OpenMesh's properties, which are inlined */
 #endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -386,7 +386,7 @@ int add_node(Decimation &work, Vec position)
  * for each face that it gets, which takes the square of their number. */
 void add_face(Decimation &work, size_t triangle, const std::vector<int> &node_of, std::vector<uint32_t> &uses)
 {
-    const uint32_t most_faces = 128;
+    const uint32_t max_faces = 128;
     const tl_decimate_source &source = *work.source;
     Facet face;
     OpenMesh::VertexHandle handles[3];
@@ -395,7 +395,7 @@ void add_face(Decimation &work, size_t triangle, const std::vector<int> &node_of
         face.corners[k] = source.triangles[triangle][k];
         face.nodes[k] = node_of[source.weld[face.corners[k]]];
         handles[k] = OpenMesh::VertexHandle(face.nodes[k]);
-        crowded |= uses[static_cast<size_t>(face.nodes[k])]++ >= most_faces;
+        crowded |= uses[static_cast<size_t>(face.nodes[k])]++ >= max_faces;
     }
     if (face.nodes[0] == face.nodes[1] || face.nodes[1] == face.nodes[2] || face.nodes[2] == face.nodes[0])
         return;

@@ -2,7 +2,7 @@ extern "C" {
 #include "assets/halfmesh/loops.h"
 }
 
-#ifndef __clang__ /* which has no such warning */
+#ifndef __clang__                                      /* which has no such warning */
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* in OpenMesh's properties, which are inlined */
 #endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -50,13 +50,13 @@ OpenMesh::VertexHandle add_vertex(Builder &builder, uint32_t vertex)
 void add_face(Builder &builder, const uint32_t *v)
 {
     /* OpenMesh goes round a vertex for each face that it gets, which takes the square of their number. */
-    const unsigned most_faces = 128;
+    const unsigned max_faces = 128;
     OpenMesh::VertexHandle corners[3];
     bool crowded = false;
     for (size_t k = 0; k < 3; k++) {
         corners[k] = OpenMesh::VertexHandle(static_cast<int>(v[k]));
         builder.uses[key_of(v[k], v[(k + 1) % 3])]++;
-        crowded |= builder.faces[v[k]]++ >= most_faces;
+        crowded |= builder.faces[v[k]]++ >= max_faces;
     }
     if (!crowded && builder.mesh.add_face(corners, 3).is_valid())
         return;

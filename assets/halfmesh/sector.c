@@ -217,10 +217,10 @@ size_t tl_sector_locate(const struct tl_sector *sector, size_t target, size_t fr
             continue;
         const double *const corners[3] = {sector->spokes[target], sector->spokes[i],
                                           sector->spokes[spoke_after(sector, i)]};
-        double least = weigh(corners, point, here);
-        if (!(least > *inside))
+        double minimum = weigh(corners, point, here);
+        if (!(minimum > *inside))
             continue;
-        *inside = least;
+        *inside = minimum;
         best = i;
         for (int k = 0; k < 3; k++)
             found[k] = here[k];

@@ -190,10 +190,11 @@ static bool check_cost(const struct exr_reader *reader, tl_error *error)
     uint64_t width = (uint64_t)reader->width, height = (uint64_t)reader->height;
     uint64_t chunk = part->is_tiled ? (uint64_t)part->tile_width * (uint64_t)part->tile_height
                                     : width * (height < rows ? height : rows);
-    return tl_memory_ask_for_file(reader->source->path, reader->source->size,
-                                  width * height * channels * sizeof(float) * (reader->luminance ? 2 : 1) +
-                                      buffers * chunk * part->texel_bytes, /* below 2^30 x 2^32 */
-                                  error);
+    return tl_memory_request_for_file(reader->source->path, reader->source->size,
+                                      width * height * channels * sizeof(float) *
+                                              (reader->luminance ? 2 : 1) +
+                                          buffers * chunk * part->texel_bytes, /* below 2^30 x 2^32 */
+                                      error);
 }
 
 static const struct tl_exr_channel *find_channel(const struct tl_exr_part *part, const char *name)

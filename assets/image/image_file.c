@@ -157,7 +157,7 @@ static bool check_cost(const char *name, const uint8_t *bytes, size_t size, bool
     struct jpeg_facts jpeg = png ? (struct jpeg_facts){0} : jpeg_facts_of(bytes, size);
     uint64_t needed = png ? png_bytes(bytes, width, height, channels)
                           : jpeg_bytes(jpeg.progressive, width, height, channels);
-    if (!tl_memory_ask_for_file(name, size, needed, error))
+    if (!tl_memory_request_for_file(name, size, needed, error))
         return false;
     if (jpeg.scans > SCANS_MAX)
         return tl_fail(error, TL_INPUT, "%s: the JPEG has %d scans, at most %d are read: write it again",
@@ -237,7 +237,7 @@ bool tl_image_decode_values(const char *name, const void *data, size_t size, tl_
     if (tl_tiff_is(data, size))
         return tl_tiff_decode_values(name, data, size, out, error);
     if (!check_before_decoding(name, data, size, error) ||
-        !tl_memory_ask_for_file(name, size, values_bytes(data, size), error))
+        !tl_memory_request_for_file(name, size, values_bytes(data, size), error))
         return false;
     uint16_t *texels = stbi_load_16_from_memory(data, (int)size, &width, &height, &channels, 0);
     if (!texels)

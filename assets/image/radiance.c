@@ -143,8 +143,8 @@ bool tl_radiance_decode(const char *name, const void *data, size_t size, tl_imag
     struct rgbe_header header;
     if (!read_header(name, &reader, &header, error))
         return false;
-    if (!tl_memory_ask_for_file(name, size,
-                                (uint64_t)header.width * (uint64_t)header.height * 3 * sizeof(float), error))
+    if (!tl_memory_request_for_file(
+            name, size, (uint64_t)header.width * (uint64_t)header.height * 3 * sizeof(float), error))
         return false;
     tl_image image = tl_image_create(header.width, header.height, 3, TL_IMAGE_F32);
     uint8_t *row = TL_NEW_ARRAY(uint8_t, 4 * (size_t)header.width);

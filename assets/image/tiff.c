@@ -102,7 +102,7 @@ static bool check_size(const char *name, TIFF *tiff, size_t size, uint32_t *widt
     TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, width);
     TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, height);
     return tl_image_size_check(name, *width, *height, error) &&
-           tl_memory_ask_for_file(name, size, (uint64_t)*width * *height * BYTES_PER_TEXEL, error);
+           tl_memory_request_for_file(name, size, (uint64_t)*width * *height * BYTES_PER_TEXEL, error);
 }
 
 static TIFF *open_checked(const char *name, struct memory *memory, uint32_t *width, uint32_t *height,

@@ -131,7 +131,7 @@ static bool request_memory(struct mtl_reader *reader, const char *path, const tl
         copies * (uint64_t)image->width * (uint64_t)image->height * (uint64_t)image->channels;
     reader->file_bytes += tl_file_size(path);
     reader->is_full =
-        !tl_memory_ask_for_file(reader->text.path, reader->file_bytes, reader->decoded_bytes, error);
+        !tl_memory_request_for_file(reader->text.path, reader->file_bytes, reader->decoded_bytes, error);
     return !reader->is_full;
 }
 

@@ -50,11 +50,11 @@ static void choose_segments(const struct pattern_cutting *cutting)
 {
     for (size_t p = 0; p < cutting->pattern->panel_count; p++) {
         const struct tl_pattern_panel *panel = &cutting->pattern->panels[p];
-        int least = panel->edge_count == 2 ? 2 : 1; /* two edges of one segment would be one line */
+        int minimum = panel->edge_count == 2 ? 2 : 1; /* two edges of one segment would be one line */
         for (size_t e = 0; e < panel->edge_count; e++) {
             double count = ceil(tl_pattern_edge_length(&panel->edges[e]) / cutting->edge_m - SEGMENT_SLACK);
             cutting->segments[cutting->first_edge[p] + e] =
-                (int)fmin(fmax(count, least), (double)TL_LIMIT_PATTERN_VERTICES);
+                (int)fmin(fmax(count, minimum), (double)TL_LIMIT_PATTERN_VERTICES);
         }
     }
     agree(cutting);
@@ -215,10 +215,10 @@ static uint32_t edge_vertex(const struct pattern_cutting *cutting, const struct 
 static void sew(const struct pattern_cutting *cutting, tl_garment *garment)
 {
     const tl_pattern *pattern = cutting->pattern;
-    size_t most = 0;
+    size_t maximum = 0;
     for (size_t s = 0; s < pattern->stitch_count; s++)
-        most += (size_t)*segments_of(cutting, &pattern->stitches[s].sides[0]) + 1;
-    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, most);
+        maximum += (size_t)*segments_of(cutting, &pattern->stitches[s].sides[0]) + 1;
+    garment->seams = TL_NEW_ARRAY(struct tl_seam_pair, maximum);
     for (size_t s = 0; s < pattern->stitch_count; s++) {
         const struct tl_pattern_stitch *stitch = &pattern->stitches[s];
         size_t segments = (size_t)*segments_of(cutting, &stitch->sides[0]);

@@ -168,14 +168,14 @@ static bool read_line(const struct reader *reader, const cJSON *value, size_t in
 }
 
 /* The number of elements of a list, or a failure when it is no list or its length is out of range. */
-static bool count_list(const struct reader *reader, const cJSON *list, const char *key, size_t least,
-                       size_t most, size_t *out)
+static bool count_list(const struct reader *reader, const cJSON *list, const char *key, size_t minimum,
+                       size_t maximum, size_t *out)
 {
     *out = (size_t)cJSON_GetArraySize(list);
-    if (cJSON_IsArray(list) && *out >= least && *out <= most)
+    if (cJSON_IsArray(list) && *out >= minimum && *out <= maximum)
         return true;
     return tl_fail(reader->error, TL_INPUT, "%s: %s: expected a list of %zu to %zu, found %zu", reader->where,
-                   key, least, most, cJSON_IsArray(list) ? *out : 0);
+                   key, minimum, maximum, cJSON_IsArray(list) ? *out : 0);
 }
 
 /* Rotations are angles about the fixed axes x, y and z, one after another: R = Rz Ry Rx. */

@@ -324,8 +324,8 @@ bool scan_read_ply(struct tl_text *text, struct scan_soup *soup, tl_error *error
         const struct ply_element *element = &reader.elements[e];
         size_t left = reader.format == PLY_TEXT ? (size_t)(text->end - text->next) + 1
                                                 : (size_t)(reader.end - reader.at);
-        size_t least = smallest(&reader, element);
-        if (element->count > 0 && (least == 0 || element->count > left / least))
+        size_t minimum = smallest(&reader, element);
+        if (element->count > 0 && (minimum == 0 || element->count > left / minimum))
             return tl_fail(
                 error, TL_INPUT,
                 "%s: claims %zu elements but has %zu bytes for them: it is cut short, fetch it again",

@@ -171,13 +171,13 @@ struct interval {
 static struct interval find_half(const struct weighted *values, struct interval from)
 {
     const double equal = 1e-4, rounding = 1e-9;
-    const double least = from.weight / 2 * (1 - rounding);
+    const double minimum = from.weight / 2 * (1 - rounding);
     struct interval best = from;
     double within = 0, shortest = values[from.end - 1].value - values[from.first].value;
     for (size_t i = from.first, j = i; i < from.end; within -= values[i++].weight) {
-        while (j < from.end && within < least)
+        while (j < from.end && within < minimum)
             within += values[j++].weight;
-        if (within < least)
+        if (within < minimum)
             break;
         double length = values[j - 1].value - values[i].value;
         if (length < shortest - equal) {
@@ -241,15 +241,15 @@ static void fit_scales(const struct chart_map *maps, size_t count, struct weight
 
 /* ---- Judgement ---- */
 
-static double clamp(double x, double most)
+static double clamp(double x, double maximum)
 {
-    return fmin(fmax(x, -most), most);
+    return fmin(fmax(x, -maximum), maximum);
 }
 
 /* Adds a triangle to the sums that finish() turns into means. */
 static void add_triangle(struct tl_chart *chart, const struct chart_map *map, const double scale[2])
 {
-    const double most = log(2);
+    const double maximum = log(2);
     double logs[2];
     chart->area += map->area;
     if (!map->mapped) {
@@ -257,7 +257,7 @@ static void add_triangle(struct tl_chart *chart, const struct chart_map *map, co
         return;
     }
     stretch_of(map, scale, logs);
-    chart->residual += map->area * (pow(clamp(logs[0], most), 2) + pow(clamp(logs[1], most), 2)) / 2;
+    chart->residual += map->area * (pow(clamp(logs[0], maximum), 2) + pow(clamp(logs[1], maximum), 2)) / 2;
     chart->log_scale += map->area * (logs[0] + logs[1]) / 2;
     chart->stretched_share += fmax(fabs(logs[0]), fabs(logs[1])) > TL_CHART_STRETCHED ? map->area : 0;
     chart->folded_share += map->faces_back ? map->area : 0;
@@ -296,10 +296,10 @@ static enum tl_chart_verdict judge_whole(const struct tl_charts *charts)
         areas[charts->items[c].verdict] += charts->items[c].area;
     if (2 * areas[TL_CHART_IS_PATTERN] >= charts->whole.area && areas[TL_CHART_IS_PATTERN] > 0)
         return TL_CHART_IS_PATTERN;
-    enum tl_chart_verdict most = TL_CHART_IS_UNMAPPED;
-    for (enum tl_chart_verdict v = most; v <= TL_CHART_IS_STRETCHED; v++)
-        most = areas[v] > areas[most] ? v : most;
-    return most;
+    enum tl_chart_verdict maximum = TL_CHART_IS_UNMAPPED;
+    for (enum tl_chart_verdict v = maximum; v <= TL_CHART_IS_STRETCHED; v++)
+        maximum = areas[v] > areas[maximum] ? v : maximum;
+    return maximum;
 }
 
 /* Measures and judges the charts at a scale. */

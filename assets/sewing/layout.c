@@ -121,12 +121,12 @@ static vec2s place_pieces(struct cutting_table *layout)
         area += (size.x + TL_LAYOUT_GAP_M) * (size.y + TL_LAYOUT_GAP_M);
         widest = fmaxf(widest, size.x);
     }
-    float most = fmaxf(widest, TABLE_ASPECT * sqrtf(area)), left = 0, top = 0, row = 0;
+    float maximum = fmaxf(widest, TABLE_ASPECT * sqrtf(area)), left = 0, top = 0, row = 0;
     vec2s table = {{0, 0}};
     for (size_t i = 0; i < layout->count; i++) {
         struct table_piece *piece = &layout->pieces[i];
         vec2s size = size_of(piece);
-        if (left > 0 && left + size.x > most) {
+        if (left > 0 && left + size.x > maximum) {
             top += row + TL_LAYOUT_GAP_M;
             left = row = 0;
         }

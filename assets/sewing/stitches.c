@@ -24,7 +24,7 @@ static bool are_near(const struct stitches *stitches, uint32_t a, uint32_t b)
 {
     uint32_t after = a, before = a;
     bool found = a == b;
-    for (int i = 0; !found && i <= STITCHES_MOST_LEFT_OVER; i++) {
+    for (int i = 0; !found && i <= STITCHES_MAX_LEFT_OVER; i++) {
         after = after == STITCHES_NONE ? after : stitches->borders[after].next;
         before = before == STITCHES_NONE ? before : stitches->borders[before].previous;
         found = after == b || before == b;
@@ -112,8 +112,8 @@ struct tl_stitches_report tl_stitches_sew(tl_garment *garment)
     for (size_t i = 0; i < points; i++)
         stitches.first[i] = stitches.lists[i] = STITCHES_NONE;
     /* Room for the splits, the stitches, and one more a point, which may be left over. */
-    size_t most = model->mesh.vertex_count + model->stitch_count + points;
-    garment->seams = tl_resize(garment->seams, most, sizeof *garment->seams);
+    size_t maximum = model->mesh.vertex_count + model->stitch_count + points;
+    garment->seams = tl_resize(garment->seams, maximum, sizeof *garment->seams);
     garment->seam_count = 0;
     garment->welds_seams_only = true;
     join_splits(&stitches, garment);

@@ -11,8 +11,8 @@
 struct divided_edge {
     uint32_t corner; /* where in the indices it begins */
     uint32_t count;
-    uint32_t points[STITCHES_MOST_LEFT_OVER]; /* in the edge's direction */
-    float at[STITCHES_MOST_LEFT_OVER];        /* shares of the edge, from its corner */
+    uint32_t points[STITCHES_MAX_LEFT_OVER]; /* in the edge's direction */
+    float at[STITCHES_MAX_LEFT_OVER];        /* shares of the edge, from its corner */
 };
 
 struct gaps {
@@ -25,8 +25,8 @@ struct gaps {
 
 /* Points left over between two that are sewn, in the border's direction. */
 struct left_over {
-    uint32_t from, to, count, points[STITCHES_MOST_LEFT_OVER];
-    float lengths[STITCHES_MOST_LEFT_OVER + 1]; /* from `from` to each, and to `to` */
+    uint32_t from, to, count, points[STITCHES_MAX_LEFT_OVER];
+    float lengths[STITCHES_MAX_LEFT_OVER + 1]; /* from `from` to each, and to `to` */
 };
 
 static vec3s place_of(const struct gaps *gaps, uint32_t point)
@@ -58,7 +58,7 @@ static bool find_row(const struct gaps *gaps, uint32_t from, struct left_over *r
         row->to = point;
         if (stitches->lists[point] != STITCHES_NONE)
             return row->count > 0;
-        if (row->count == STITCHES_MOST_LEFT_OVER || is_corner(gaps, point))
+        if (row->count == STITCHES_MAX_LEFT_OVER || is_corner(gaps, point))
             return false;
         row->points[row->count++] = point;
     }

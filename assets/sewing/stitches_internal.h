@@ -6,7 +6,7 @@
 
 #define STITCHES_NONE UINT32_MAX
 /* Points in a row without a stitch: more are no remainder of a division, but an opening. */
-#define STITCHES_MOST_LEFT_OVER 4
+#define STITCHES_MAX_LEFT_OVER 4
 
 /* Along the border of its panel; NONE where a point is on no border, or on several. */
 struct stitches_border {

@@ -55,7 +55,7 @@ static struct buckets sort_sides(const tl_mesh *mesh, const uint32_t *places)
     return sorted;
 }
 
-enum relation { APART, SEWN, JOINED };
+enum relation { SEPARATE, SEWN, JOINED };
 
 /* The relation of two sides that begin in one bucket: JOINED within one piece. */
 static enum relation relation_of(const tl_mesh *mesh, const uint32_t *places, uint32_t s, uint32_t t)
@@ -65,7 +65,7 @@ static enum relation relation_of(const tl_mesh *mesh, const uint32_t *places, ui
     bool same = places[a] == places[c] && places[b] == places[d];
     bool opposite = places[a] == places[d] && places[b] == places[c];
     if (!same && !opposite)
-        return APART;
+        return SEPARATE;
     return opposite && same_uv(mesh, a, d) && same_uv(mesh, b, c) ? JOINED : SEWN;
 }
 
@@ -81,7 +81,7 @@ static void pair_sides(const tl_mesh *mesh, struct tl_pieces *pieces)
                     pieces->across[t] == TL_NO_BORDER) {
                     pieces->across[s] = t;
                     pieces->across[t] = s;
-                } else if (relation != APART) {
+                } else if (relation != SEPARATE) {
                     pieces->partners[s] = pieces->partners[s] == TL_NO_BORDER ? t : pieces->partners[s];
                     pieces->partners[t] = pieces->partners[t] == TL_NO_BORDER ? s : pieces->partners[t];
                 }

@@ -217,7 +217,7 @@ struct tl_simplified tl_simplify_model(tl_model *model, const uint32_t *weld)
     tl_error error;
     if (before <= TL_SIMPLIFY_ABOVE)
         return report;
-    if (!tl_memory_ask("simplifying the body", before * TRIANGLE_BYTES, &error)) {
+    if (!tl_memory_request("simplifying the body", before * TRIANGLE_BYTES, &error)) {
         tl_info("%s", error.message);
         return report;
     }

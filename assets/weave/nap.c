@@ -106,7 +106,7 @@ static void lay_tips(const struct tl_weave_params *params, struct tl_tile *tile)
 static void lean(const struct tl_weave_params *params, struct tl_tile *tile)
 {
     const int cells = cells_of(tile, (double)params->clump_mm);
-    const double most = LEAN_MAX * (double)params->lean;
+    const double maximum = LEAN_MAX * (double)params->lean;
     tile->leans = TL_NEW_ARRAY(float, 2 * (size_t)tile->width * (size_t)tile->height);
 #pragma omp parallel for schedule(static)
     for (int row = 0; row < tile->height; row++)
@@ -114,7 +114,7 @@ static void lean(const struct tl_weave_params *params, struct tl_tile *tile)
             const double u = (column + 0.5) / tile->width, v = (tile->height - row - 0.5) / tile->height;
             float *slopes = tile->leans + 2 * ((size_t)row * (size_t)tile->width + (size_t)column);
             for (uint32_t k = 0; k < 2; k++)
-                slopes[k] = (float)(most * noise_at(5900u + 1024 * k, u, v, cells));
+                slopes[k] = (float)(maximum * noise_at(5900u + 1024 * k, u, v, cells));
         }
 }
 

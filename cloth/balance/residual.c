@@ -8,7 +8,7 @@
 /* Surfaces are in contact where their distance exceeds what contact keeps by less than this: the plane that
  * stands for the avatar is off its surface by up to 0.07 mm (contact.c). */
 #define WITHIN_M 1e-4
-/* From 100 to 200 sweeps the residual of a dress of 3,020 vertices changes by less than a hundredth. */
+/* The residual of a dress of 3,020 vertices changes by less than a hundredth from 100 to 200 sweeps. */
 #define SWEEPS 100
 
 /* The acceleration of sum of weights[i] x[v[i]] along `normal` must not be negative. */
@@ -109,7 +109,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Of the free particles, as shares of `gravity`. */
+/* Summarises free particles, as shares of `gravity`. */
 static struct tl_residual summarise(const struct tl_particles *particles, const vec3d *accelerations,
                                     double gravity)
 {

@@ -73,7 +73,8 @@ bool tl_file_read(const char *path, char **data, size_t *size, tl_error *error)
 bool tl_file_read_small(const char *path, size_t limit, char **data, size_t *size, tl_error *error)
 {
     struct stat status = {0};
-    if (!check_status(path, limit, &status, error) || !tl_memory_ask(path, (uint64_t)status.st_size, error))
+    if (!check_status(path, limit, &status, error) ||
+        !tl_memory_request(path, (uint64_t)status.st_size, error))
         return false;
     FILE *stream = fopen(path, "rb");
     if (!stream)

@@ -167,7 +167,7 @@ static struct amount amount_of(uint64_t bytes)
     return amount;
 }
 
-bool tl_memory_ask(const char *what, uint64_t bytes, tl_error *error)
+bool tl_memory_request(const char *what, uint64_t bytes, tl_error *error)
 {
     uint64_t allowed = tl_memory_allowed(), resident = resident_bytes();
     if (resident <= allowed && bytes <= allowed - resident)
@@ -178,7 +178,7 @@ bool tl_memory_ask(const char *what, uint64_t bytes, tl_error *error)
         what, amount_of(bytes).text, amount_of(allowed).text, amount_of(resident).text);
 }
 
-bool tl_memory_ask_for_file(const char *name, size_t file_bytes, uint64_t bytes, tl_error *error)
+bool tl_memory_request_for_file(const char *name, size_t file_bytes, uint64_t bytes, tl_error *error)
 {
     const uint64_t small = 1 << 20;
     uint64_t of_file = TL_MEMORY_OF_SMALL / small * (file_bytes > small ? file_bytes : small);
@@ -188,5 +188,5 @@ bool tl_memory_ask_for_file(const char *name, size_t file_bytes, uint64_t bytes,
             "%s: needs %s, but %s are allowed for a file of %.1f MiB: make it smaller, or allow more with "
             "--memory",
             name, amount_of(bytes).text, amount_of(of_file).text, (double)file_bytes / (double)small);
-    return tl_memory_ask(name, bytes, error);
+    return tl_memory_request(name, bytes, error);
 }

@@ -2,7 +2,7 @@
  *
  * Out of memory ends the program: one line, exit status 2, and no temporary file is left, because no caller
  * has a way to continue. Sizes that come from a file or an option must be checked against TL_LIMIT_*, or
- * asked for with tl_memory_ask or tl_memory_ask_for_file, before they reach the allocating functions.
+ * asked for with tl_memory_request or tl_memory_request_for_file, before they reach the allocating functions.
  * Threads: any. */
 #ifndef TOILE_CONFIG_BASE_MEMORY_H
 #define TOILE_CONFIG_BASE_MEMORY_H
@@ -40,14 +40,14 @@ uint64_t tl_memory_allowed(void);
 
 /* Whether the process may take `bytes` more than it has resident. False, with a line that names `what`, how
  * much it needs and how much is allowed (TL_INPUT). Nothing is reserved. */
-bool tl_memory_ask(const char *what, uint64_t bytes, tl_error *error);
+bool tl_memory_request(const char *what, uint64_t bytes, tl_error *error);
 
 /* The same for what a file of `file_bytes` becomes in memory, copies that exist at the same time included.
  * Unless the user has set the allowance, a file may also become at most TL_MEMORY_OF_SMALL bytes if it is
  * smaller than a mebibyte, and as many times its size if it is larger: a small file costs little, whatever it
  * claims. */
 #define TL_MEMORY_OF_SMALL ((uint64_t)128 << 20)
-bool tl_memory_ask_for_file(const char *name, size_t file_bytes, uint64_t bytes, tl_error *error);
+bool tl_memory_request_for_file(const char *name, size_t file_bytes, uint64_t bytes, tl_error *error);
 
 /* The limit of a process by the text of its /proc/self/cgroup: the lowest of its control group (version 1 or
  * 2) and those above, whose files are below `root` ("/sys/fs/cgroup"). UINT64_MAX: no limit. */

@@ -189,10 +189,10 @@ static vec3s transmitted(const struct tl_bounce *bounce, const struct tl_bounce_
 
 static enum tl_bounce_state state_after(const struct tl_bounce_request *request, enum tl_bounce_state state)
 {
-    const enum tl_bounce_state least = request->at_once ? TL_BOUNCE_FIRST : TL_BOUNCE_OLD;
+    const enum tl_bounce_state minimum = request->at_once ? TL_BOUNCE_FIRST : TL_BOUNCE_OLD;
     if (request->moved)
-        return least;
-    return state >= least ? state + 1 : request->at_once ? TL_BOUNCE_FIRST : TL_BOUNCE_MIXED;
+        return minimum;
+    return state >= minimum ? state + 1 : request->at_once ? TL_BOUNCE_FIRST : TL_BOUNCE_MIXED;
 }
 
 /* The light that vertices send on from now on. */

@@ -11,8 +11,8 @@ static vec3s mean_colour(const struct tl_map *map, vec3s colour)
     const tl_image *image = map->image;
     if (!image || image->type != TL_IMAGE_U8 || image->channels < 3)
         return colour;
-    const size_t most = 4096, count = (size_t)image->width * (size_t)image->height;
-    const size_t step = count / most + 1;
+    const size_t maximum = 4096, count = (size_t)image->width * (size_t)image->height;
+    const size_t step = count / maximum + 1;
     double sums[3] = {0};
     size_t taken = 0;
     for (size_t i = 0; i < count; i += step, taken++)
@@ -65,9 +65,9 @@ static struct tl_bounce_material material_of(const tl_material *material)
     for (int side = 0; side < 2; side++)
         read.albedo[side] =
             read.has_lobes ? glms_vec3_minv(read.diffuse[side], read.whole[side]) : read.whole[side];
-    const vec3s most = glms_vec3_maxv(read.whole[0], read.whole[1]);
+    const vec3s maximum = glms_vec3_maxv(read.whole[0], read.whole[1]);
     read.transmission =
-        glms_vec3_minv(material->transmission, glms_vec3_subs(glms_vec3_negate(most), -ALBEDO_MAX));
+        glms_vec3_minv(material->transmission, glms_vec3_subs(glms_vec3_negate(maximum), -ALBEDO_MAX));
     return read;
 }
 

@@ -79,7 +79,7 @@ struct tl_bounced_lobe {
 };
 
 /* Below this share of the hemisphere nothing is divided by it: the lobe points into the surface. */
-#define TL_BOUNCED_LEAST_EVEN 0.3f
+#define TL_BOUNCED_MIN_EVEN 0.3f
 
 /* The share of K_s above the horizon is (1 + cosine) / 2 for s = 1, and for narrow lobes the integral of a
  * Gaussian; in between it is interpolated: within 0.012 of the integral (tests/render/bounce/test_bounced.c).
@@ -104,7 +104,7 @@ TL_INLINE struct tl_bounced_lobe tl_bounced_lobe_of(vec3s normal, vec3s directio
     for (int i = 1; i < TL_BOUNCED_TERMS; i++)
         lobe.basis[i] *= i < 4 ? one : i < 9 ? two : three;
     lobe.even = 0.5f + 0.75f * one * cosine - 0.21875f * three * cosine * (5 * cosine * cosine - 3);
-    lobe.even = tl_maxf(lobe.even, TL_BOUNCED_LEAST_EVEN);
+    lobe.even = tl_maxf(lobe.even, TL_BOUNCED_MIN_EVEN);
     lobe.above = tl_share_above(cosine, s * TL_BOUNCED_BLUR / (s + TL_BOUNCED_BLUR));
     return lobe;
 }

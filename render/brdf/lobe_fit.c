@@ -107,12 +107,13 @@ static void scale_to_albedo(vec3s albedo, const struct tl_brdf_frame *frame, int
             lobes[k].weight.raw[c] *= sum.raw[c] > 1e-20f ? albedo.raw[c] / sum.raw[c] : 0;
 }
 
-static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
-                      int most, struct tl_fitted_lobe *lobes)
+static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int minimum,
+                      int maximum, struct tl_fitted_lobe *lobes)
 {
     struct slopes slopes = slopes_of(brdf);
     vec3s local = local_of(frame, v);
-    struct tl_lobe_set set = tl_lobe_set_of(slopes.weft, slopes.warp, local.x, local.y, local.z, least, most);
+    struct tl_lobe_set set =
+        tl_lobe_set_of(slopes.weft, slopes.warp, local.x, local.y, local.z, minimum, maximum);
     int count = (int)set.count;
     for (int k = 0; k < count; k++) {
         struct tl_slope_lobe lobe = tl_slope_lobe_of(&set, (float)k, local.x, local.y, local.z);
@@ -127,13 +128,13 @@ static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
 }
 
 /* The fit works in the frame of the widths. */
-static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
-                      int most, struct tl_fitted_lobe *lobes)
+static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int minimum,
+                      int maximum, struct tl_fitted_lobe *lobes)
 {
     const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
     struct tl_brdf straight = *brdf;
     straight.turn = 0;
-    return fit_facets(&straight, &own, v, least, most, lobes);
+    return fit_facets(&straight, &own, v, minimum, maximum, lobes);
 }
 
 /* V-grooves mask light otherwise than the table's facets do. */
@@ -144,14 +145,14 @@ static float masked_by_grooves(const struct tl_brdf *brdf, vec3s h, vec3s l, vec
            tl_brdf_smith(brdf, cos_a, v.z);
 }
 
-static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int most,
+static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int maximum,
                    struct tl_fitted_lobe *lobes)
 {
     const vec3s local = local_of(frame, v);
     const float flat = hypotf(local.x, local.y), x = flat > 0 ? local.x / flat : 1,
                 y = flat > 0 ? local.y / flat : 0;
     struct tl_ggx_lobe found[TL_GGX_LOBES_MAX];
-    const int count = tl_ggx_lobes(brdf->gloss.width_weft, local.z, most, found);
+    const int count = tl_ggx_lobes(brdf->gloss.width_weft, local.z, maximum, found);
     for (int k = 0; k < count; k++) {
         const float sine = sinf(found[k].facet);
         const vec3s h = {{x * sine, y * sine, cosf(found[k].facet)}}, l = mirrored(h, local);
@@ -238,8 +239,8 @@ static int fit_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame *f
     return max_count;
 }
 
-int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
-                     int most, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX])
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int minimum,
+                     int maximum, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX])
 {
     if (!(glms_vec3_dot(frame->normal, v) > 0))
         return 0;
@@ -251,10 +252,10 @@ int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
     case TL_REFLECT_COSINE_LOBE:
         return fit_cosine_lobe(brdf, frame, v, lobes);
     case TL_REFLECT_BANKS:
-        return fit_threads(brdf, frame, v, most, lobes);
+        return fit_threads(brdf, frame, v, maximum, lobes);
     default:
-        return is_ggx(brdf) ? fit_ggx(brdf, frame, v, most, lobes)
-                            : fit_turned(brdf, frame, v, least, most, lobes);
+        return is_ggx(brdf) ? fit_ggx(brdf, frame, v, maximum, lobes)
+                            : fit_turned(brdf, frame, v, minimum, maximum, lobes);
     }
 }
 
@@ -352,7 +353,7 @@ void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *min, float *max)
         break;
     default:
         *min = tl_slope_exponent(4 * wide * wide);
-        *max = tl_slope_exponent(4 * thin * thin * TL_SLOPE_LEAST_COSINE * TL_SLOPE_LEAST_COSINE);
+        *max = tl_slope_exponent(4 * thin * thin * TL_SLOPE_MIN_COSINE * TL_SLOPE_MIN_COSINE);
     }
 }
 

@@ -31,8 +31,8 @@ struct tl_fitted_lobe {
 
 /* Fits at most `most` lobes (1 to TL_LOBE_FIT_MAX) and returns their number: as many as it takes, and `least`
  * of facets with Gaussian slopes. 0 when the viewer is below the surface. */
-int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int least,
-                     int most, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
+int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int minimum,
+                     int maximum, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
 
 /* The fits of each gloss of a sum, one after the other, without lobes that reflect nothing: those of
  * tl_lobe_fit_make (test_threads: within 1e-3), in one evaluation where all are Ward's. Returns their number.

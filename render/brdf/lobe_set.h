@@ -11,7 +11,7 @@
 
 /* The cosine to the viewer, at least, for which the spread of light across the plane of incidence is
  * computed. */
-#define TL_SLOPE_LEAST_COSINE 0.2f
+#define TL_SLOPE_MIN_COSINE 0.2f
 
 /* The larger and the smaller eigenvalue of J S J^T, and the slope of one standard deviation along the axis of
  * the larger one. */
@@ -46,7 +46,7 @@ struct tl_lobe_set {
     float slope_x, slope_y;   /* one standard deviation along the axis, towards the viewer */
     float across_x, across_y; /* ... and across it, as light spreads */
     float overlap;            /* standard deviation of a lobe over the distance of two neighbours, at least */
-    float least;              /* variance of a lobe, at least */
+    float minimum;            /* variance of a lobe, at least */
 };
 
 /* The part of the spread that lobes stand for, in standard deviations, and how far they overlap, where there
@@ -70,8 +70,8 @@ TL_INLINE float tl_slope_mean_seen(float cut)
 
 /* `least`, `most`: of lobes. As many as it takes for neighbours to overlap, or else `most`, which are wider.
  */
-TL_INLINE struct tl_lobe_set tl_lobe_set_of(float weft, float warp, float x, float y, float z, int least,
-                                            int most)
+TL_INLINE struct tl_lobe_set tl_lobe_set_of(float weft, float warp, float x, float y, float z, int minimum,
+                                            int maximum)
 {
     float flat = sqrtf(x * x + y * y), scale = 1 / tl_maxf(flat, 1e-4f);
     float seen_x = x * scale * weft, seen_y = y * scale * warp;
@@ -90,15 +90,15 @@ TL_INLINE struct tl_lobe_set tl_lobe_set_of(float weft, float warp, float x, flo
     float lowest = -z / tl_maxf(towards + root, 1e-12f);
     float highest = (towards + root) / tl_maxf(square * z, 1e-9f);
 
-    float thin = 2 * TL_SLOPE_LEAST_COSINE * tl_minf(weft, warp), narrow = tl_maxf(axes.narrow, thin * thin);
+    float thin = 2 * TL_SLOPE_MIN_COSINE * tl_minf(weft, warp), narrow = tl_maxf(axes.narrow, thin * thin);
     float span = tl_minf(highest, TL_LOBE_SET_REACH) - tl_maxf(lowest, -TL_LOBE_SET_REACH);
     float apart = sqrtf(tl_maxf(axes.broad - narrow, 0) / narrow);
-    float wanted = tl_minf(TL_LOBE_SET_OVERLAP * apart * span, (float)most + 1);
+    float wanted = tl_minf(TL_LOBE_SET_OVERLAP * apart * span, (float)maximum + 1);
     wanted = (float)(int)(wanted + 0.9999f);
     float is_broad = axes.broad > 1.5f * narrow ? 1.0f : 0.0f;
     wanted = 1 + is_broad * (tl_maxf(wanted, 3) - 1);
-    float few = wanted > (float)most ? 1.0f : 0.0f;
-    float count = tl_minf(tl_maxf(wanted, (float)least), (float)most);
+    float few = wanted > (float)maximum ? 1.0f : 0.0f;
+    float count = tl_minf(tl_maxf(wanted, (float)minimum), (float)maximum);
     float reach = TL_LOBE_SET_REACH + few * (TL_LOBE_SET_REACH_FEW - TL_LOBE_SET_REACH);
     reach = count <= 4 ? TL_LOBE_SET_REACH_OF_FOUR : reach;
     float from = tl_maxf(lowest, -reach), step = (tl_minf(highest, reach) - from) / count;
@@ -144,7 +144,7 @@ TL_INLINE struct tl_slope_lobe tl_slope_lobe_of(const struct tl_lobe_set *set, f
                                    set->across_x * set->across_x + set->across_y * set->across_y, p, square);
     float between = set->overlap * set->step;
     float alone = sqrtf(tl_maxf(broad * narrow, 0)), variance = tl_maxf(narrow, between * between * broad);
-    variance = tl_maxf(set->count > 1 ? variance : alone, set->least);
+    variance = tl_maxf(set->count > 1 ? variance : alone, set->minimum);
     float shrink = sqrtf(tl_maxf(1 - variance / tl_maxf(broad, 1e-20f), 0));
     return (struct tl_slope_lobe){shrink * slope_x, shrink * slope_y, tl_exp2(-0.72134752f * at * at),
                                   variance};

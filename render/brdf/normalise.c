@@ -15,11 +15,11 @@ struct tl_normal_cube tl_normal_cube_make(int size, int bits)
     assert(bits == 8 || bits == 16);
     size_t count = 6 * (size_t)size * (size_t)size;
     struct tl_normal_cube cube = {size, bits, tl_alloc(3 * count, (size_t)bits / 8)};
-    float most = bits == 8 ? 255 : 65535;
+    float maximum = bits == 8 ? 255 : 65535;
     for (size_t i = 0; i < count; i++) {
         vec3s n = tl_cube_texel_direction(size, (int)i);
         for (size_t c = 0; c < 3; c++) {
-            float level = roundf((n.raw[c] + 1) / 2 * most);
+            float level = roundf((n.raw[c] + 1) / 2 * maximum);
             if (bits == 8)
                 ((uint8_t *)cube.texels)[3 * i + c] = (uint8_t)level;
             else

@@ -49,7 +49,7 @@ TL_INLINE struct tl_ward_slope tl_ward_slope_at(const struct tl_gloss *gloss, bo
 
 /* tl_lobe_set of each lane. */
 struct tl_lobe_set_lanes {
-    float count[TL_LANES], first[TL_LANES], step[TL_LANES], overlap[TL_LANES], least[TL_LANES];
+    float count[TL_LANES], first[TL_LANES], step[TL_LANES], overlap[TL_LANES], minimum[TL_LANES];
     float slope_x[TL_LANES], slope_y[TL_LANES], across_x[TL_LANES], across_y[TL_LANES];
 };
 
@@ -61,7 +61,7 @@ TL_INLINE void tl_ward_lobe_sets(const struct tl_ward_lanes *w, int max_count, s
             tl_lobe_set_of(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
                            w->viewer[0][i], w->viewer[1][i], w->viewer[2][i], 1, max_count);
         sets->count[i] = set.count, sets->first[i] = set.first, sets->step[i] = set.step;
-        sets->overlap[i] = set.overlap, sets->least[i] = set.least;
+        sets->overlap[i] = set.overlap, sets->minimum[i] = set.minimum;
         sets->slope_x[i] = set.slope_x, sets->slope_y[i] = set.slope_y;
         sets->across_x[i] = set.across_x, sets->across_y[i] = set.across_y;
     }
@@ -80,7 +80,7 @@ TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_coun
         for (int i = 0; i < TL_LANES; i++) {
             const struct tl_lobe_set set = {sets.count[i],    sets.first[i],   sets.step[i],
                                             sets.slope_x[i],  sets.slope_y[i], sets.across_x[i],
-                                            sets.across_y[i], sets.overlap[i], sets.least[i]};
+                                            sets.across_y[i], sets.overlap[i], sets.minimum[i]};
             float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
             struct tl_slope_lobe at = tl_slope_lobe_of(&set, (float)k, x, y, z);
             struct tl_ward_slope lobe = tl_ward_slope_at(w->gloss, schlick, x, y, z, at.slope_x, at.slope_y);

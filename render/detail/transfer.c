@@ -38,9 +38,9 @@ static float twice_area(vec2s a, vec2s b, vec2s c)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-static int clamped(float value, int most)
+static int clamped(float value, int maximum)
 {
-    return (int)fminf(fmaxf(value, 0), (float)most);
+    return (int)fminf(fmaxf(value, 0), (float)maximum);
 }
 
 static void cover(const tl_surface *coarse, const struct tl_transfer_params *params, uint32_t triangle,
@@ -235,8 +235,9 @@ bool tl_transfer_make(const tl_surface *coarse, const tl_surface *fine,
     size_t texels = (size_t)params->width * (size_t)params->height;
     *out = (struct tl_transfer){0};
     if (!check_uvs(coarse, error) ||
-        !tl_memory_ask(coarse->name,
-                       texels * (sizeof(struct texel_place) + 4 * sizeof(float) + 2 * sizeof(bool)), error))
+        !tl_memory_request(coarse->name,
+                           texels * (sizeof(struct texel_place) + 4 * sizeof(float) + 2 * sizeof(bool)),
+                           error))
         return false;
     struct texel_place *places = TL_NEW_ARRAY(struct texel_place, texels);
     bool *known = TL_NEW_ARRAY(bool, texels), *next = TL_NEW_ARRAY(bool, texels);

@@ -46,27 +46,27 @@ TL_CLONES static void range_of(const float *values, size_t count, float *low, fl
 /* The smallest and the largest glossiness that a material's maps can make of it. */
 static void glossiness_range(const tl_material *material, float *low, float *high)
 {
-    float least = material->gloss_map.image ? 0 : material->glossiness, most = material->glossiness;
+    float minimum = material->gloss_map.image ? 0 : material->glossiness, maximum = material->glossiness;
     if (material->weave) {
         const tl_image *gloss = &material->weave->gloss;
         float added_low, added_high;
         range_of(tl_image_floats(gloss), (size_t)gloss->width * (size_t)gloss->height, &added_low,
                  &added_high);
-        least += added_low;
-        most += added_high;
+        minimum += added_low;
+        maximum += added_high;
     }
-    *low = fminf(fmaxf(least, 0), 1);
-    *high = fminf(fmaxf(most, 0), 1);
+    *low = fminf(fmaxf(minimum, 0), 1);
+    *high = fminf(fmaxf(maximum, 0), 1);
 }
 
 /* The G-buffer rounds 1 - glossiness to a half. */
 #define ROUNDING 1e-3f
 
 /* Exponents from `least` to `greatest`. */
-static uint32_t exponents_between(float least, float greatest)
+static uint32_t exponents_between(float minimum, float maximum)
 {
-    return tl_exponents_needed(1 - 1 / fmaxf(least * (1 - ROUNDING), 1),
-                               1 - 1 / fmaxf(greatest * (1 + ROUNDING), 1));
+    return tl_exponents_needed(1 - 1 / fmaxf(minimum * (1 - ROUNDING), 1),
+                               1 - 1 / fmaxf(maximum * (1 + ROUNDING), 1));
 }
 
 /* The exponents of the lobes of light from inside threads: from as narrow as they are to as wide as bumps can
@@ -80,10 +80,10 @@ static uint32_t thread_exponents(const tl_material *material, float low, float h
         tl_brdf_sum_of(material, material->specular, material->diffuse, low, 1, widest);
     uint32_t needed = 0;
     for (int i = 1; i < narrow.count; i++) {
-        float least, greatest, unused;
-        tl_lobe_fit_exponents(&wide.items[i], &least, &unused);
-        tl_lobe_fit_exponents(&narrow.items[i], &unused, &greatest);
-        needed |= exponents_between(least, greatest);
+        float minimum, maximum, unused;
+        tl_lobe_fit_exponents(&wide.items[i], &minimum, &unused);
+        tl_lobe_fit_exponents(&narrow.items[i], &unused, &maximum);
+        needed |= exponents_between(minimum, maximum);
     }
     return needed;
 }
@@ -98,12 +98,12 @@ static uint32_t layered_exponents(const tl_material *material, float low, float 
         needed |= TL_FUZZ_EXPONENTS;
     if (!tl_material_is_faceted(material))
         return needed;
-    float least, greatest, unused;
+    float minimum, maximum, unused;
     struct tl_brdf dull = tl_brdf_of(material, material->specular, low);
     struct tl_brdf shiny = tl_brdf_of(material, material->specular, high);
-    tl_lobe_fit_exponents(&dull, &least, &unused);
-    tl_lobe_fit_exponents(&shiny, &unused, &greatest);
-    return needed | exponents_between(least, greatest) | thread_exponents(material, low, high);
+    tl_lobe_fit_exponents(&dull, &minimum, &unused);
+    tl_lobe_fit_exponents(&shiny, &unused, &maximum);
+    return needed | exponents_between(minimum, maximum) | thread_exponents(material, low, high);
 }
 
 uint32_t tl_exponents_of(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail)
@@ -147,16 +147,16 @@ uint32_t tl_map_exponents_of(const tl_surface *surfaces, size_t count, const str
     return tl_exponents_of(surfaces, count, detail) | 1u << TL_EXPONENT_COUNT;
 }
 
-static float greatest_glossiness(const tl_surface *surfaces, size_t count)
+static float max_glossiness(const tl_surface *surfaces, size_t count)
 {
-    float greatest = 0;
+    float maximum = 0;
     for (size_t s = 0; s < count; s++)
         for (size_t p = 0; p < surfaces[s].part_count; p++) {
             float low, high;
             glossiness_range(&surfaces[s].materials[surfaces[s].parts[p].material], &low, &high);
-            greatest = fmaxf(greatest, high);
+            maximum = fmaxf(maximum, high);
         }
-    return greatest;
+    return maximum;
 }
 
 static bool wants_detail(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail)
@@ -191,8 +191,7 @@ static tl_bits lamp_facts(const tl_frame *frame, const struct tl_light_params *l
 static bool has_mirrors(const tl_frame *frame, const struct tl_light_params *light)
 {
     return light->reflect_scene &&
-           tl_mirror_ray_count(tl_lobe_exponent(greatest_glossiness(frame->surfaces, frame->surface_count))) >
-               0;
+           tl_mirror_ray_count(tl_lobe_exponent(max_glossiness(frame->surfaces, frame->surface_count))) > 0;
 }
 
 /* True when ratios at vertices can light the pixels: nothing in the scene needs samples. */

@@ -75,7 +75,7 @@ bool tl_run_points(const struct tl_points_job *job, tl_error *error)
 bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
 {
     (void)error;
-    enum { ROUNDS_MOST = 64 };
+    enum { ROUNDS_MAX = 64 };
     bool at_vertices = *job->facts & TL_BIT(TL_SCENE_RATIOS);
     struct tl_bounce_request request = {.trace = job->trace,
                                         .ranges = &job->shapes->ranges,
@@ -97,7 +97,7 @@ bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
                                         .shares = job->light_options->bounce_shares};
     tl_bounce_update(job->bounce, &request);
     request.moved = false;
-    for (int i = 0; i < ROUNDS_MOST && request.at_once && !job->bounce->is_done && !tl_interrupted(); i++)
+    for (int i = 0; i < ROUNDS_MAX && request.at_once && !job->bounce->is_done && !tl_interrupted(); i++)
         tl_bounce_update(job->bounce, &request);
     return true;
 }

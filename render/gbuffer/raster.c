@@ -123,13 +123,13 @@ TL_INLINE void set_depths(const struct raster_vertex *a, const struct raster_ver
     out->depth = a->z - (out->depth_x * (a->x - 0.5f) + out->depth_y * (a->y - 0.5f));
 }
 
-TL_INLINE int32_t least(const int32_t v[3])
+TL_INLINE int32_t minimum(const int32_t v[3])
 {
     int32_t ab = v[0] < v[1] ? v[0] : v[1];
     return ab < v[2] ? ab : v[2];
 }
 
-TL_INLINE int32_t greatest(const int32_t v[3])
+TL_INLINE int32_t maximum(const int32_t v[3])
 {
     int32_t ab = v[0] > v[1] ? v[0] : v[1];
     return ab > v[2] ? ab : v[2];
@@ -164,9 +164,9 @@ TL_INLINE void add_triangle(const struct raster_frame *frame, struct raster_chun
     *out = (struct raster_triangle){.columns = {a->column, b->column, c->column},
                                     .rows = {a->row, b->row, c->row},
                                     .id = (number + 1) | (is_front ? 0 : TL_SAMPLE_BACK)};
-    if (!pixels_between(least(out->columns), greatest(out->columns), frame->request->width, &out->left,
+    if (!pixels_between(minimum(out->columns), maximum(out->columns), frame->request->width, &out->left,
                         &out->right) ||
-        !pixels_between(least(out->rows), greatest(out->rows), frame->request->height, &out->bottom,
+        !pixels_between(minimum(out->rows), maximum(out->rows), frame->request->height, &out->bottom,
                         &out->top))
         return;
     set_depths(a, b, c, out);

@@ -65,9 +65,9 @@ vec3s tl_number_colour(uint32_t number)
  * people who see no red or no green, and are equally dark at equal distances from 0. */
 static vec3s diverging(float t)
 {
-    const float light = 0.94f, dark = 0.38f, most_chroma = 0.125f, blue_deg = 257, orange_deg = 55;
+    const float light = 0.94f, dark = 0.38f, max_chroma = 0.125f, blue_deg = 257, orange_deg = 55;
     float away = fabsf(t);
-    float chroma = most_chroma * sinf(0.64f * GLM_PIf * away);
+    float chroma = max_chroma * sinf(0.64f * GLM_PIf * away);
     return colour_of_oklch(light + (dark - light) * away, chroma, t < 0 ? blue_deg : orange_deg);
 }
 

@@ -78,9 +78,9 @@ static vec3s unknown(const struct tl_paint_request *request, const tl_sample *sa
 /* The side of the area of surface that a texel covers, metres; foreshortened in one direction. */
 static float footprint(const struct tl_paint_request *request, const tl_sample *sample)
 {
-    const float least_cosine = 0.1f;
+    const float min_cosine = 0.1f;
     float distance = glms_vec3_distance(request->eye, sample->point);
-    return distance * request->texel / fmaxf(facing(request, sample), least_cosine);
+    return distance * request->texel / fmaxf(facing(request, sample), min_cosine);
 }
 
 float tl_paint_square_wave(float place, float width)

@@ -161,7 +161,7 @@ static bool request_memory(const struct tl_flip_frame *frame, tl_error *error)
     uint64_t pixels = (uint64_t)frame->width * (uint64_t)frame->height;
     char what[64];
     snprintf(what, sizeof what, "compare: images of %d x %d", frame->width, frame->height);
-    return tl_memory_ask(what, pixels * (2 * plain_bytes + map_bytes) + tl_flip_bytes(frame), error);
+    return tl_memory_request(what, pixels * (2 * plain_bytes + map_bytes) + tl_flip_bytes(frame), error);
 }
 
 bool tl_image_compare(const tl_image *a, const tl_image *b, int hdr, double pixels_per_degree,

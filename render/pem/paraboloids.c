@@ -236,11 +236,11 @@ void tl_paraboloids_pack(struct tl_paraboloid *maps, int count, int *width, int 
     qsort(crops, crop_count, sizeof(struct tl_paraboloid_crop *), compare_heights);
     /* The width of the smallest texture, among those that are at most twice as wide as a square one. */
     int limit = widest + (int)(2 * sqrt((double)texels)), best = widest;
-    size_t least = SIZE_MAX;
+    size_t minimum = SIZE_MAX;
     for (int tried = widest; tried <= limit; tried++) {
         size_t area = (size_t)tried * (size_t)pack_rows(crops, crop_count, tried);
-        if (area < least) {
-            least = area;
+        if (area < minimum) {
+            minimum = area;
             best = tried;
         }
     }

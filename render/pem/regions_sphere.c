@@ -176,7 +176,7 @@ static int find_cut(const struct sphere_points *points, uint32_t first, uint32_t
         for (int c = 0; c < 4; c++)
             total[c] += bins[i][c];
     int best = 1;
-    double most = -1;
+    double maximum = -1;
     for (int i = 1; i < BINS; i++) {
         double after[4];
         for (int c = 0; c < 4; c++) {
@@ -184,8 +184,8 @@ static int find_cut(const struct sphere_points *points, uint32_t first, uint32_t
             after[c] = total[c] - before[c];
         }
         double gain = squared_length(before) / before[3] + squared_length(after) / after[3];
-        if (gain > most)
-            best = i, most = gain;
+        if (gain > maximum)
+            best = i, maximum = gain;
     }
     return best;
 }

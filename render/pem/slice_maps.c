@@ -49,7 +49,7 @@ static int pack(const struct tl_slices *slices, int width, struct slice_place pl
 /* The width of the strip with the smallest area. */
 static int choose_width(const struct tl_slices *slices)
 {
-    int widest = 1, sum = 0, best = 0, least = 0;
+    int widest = 1, sum = 0, best = 0, minimum = 0;
     for (int k = 0; k < EXPONENTS; k++) {
         int side = slices->made & 1u << k ? slices->side[k] : 0;
         widest = side > widest ? side : widest;
@@ -58,9 +58,9 @@ static int choose_width(const struct tl_slices *slices)
     for (int width = widest; width <= sum; width++) {
         struct slice_place places[EXPONENTS];
         int area = width * pack(slices, width, places);
-        if (best == 0 || area < least) {
+        if (best == 0 || area < minimum) {
             best = width;
-            least = area;
+            minimum = area;
         }
     }
     return best;

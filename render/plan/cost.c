@@ -82,8 +82,8 @@ double tl_cost_expect(const struct tl_cost_job *job, const struct tl_work *work,
 static void drift(struct tl_cost_job *job)
 {
     for (int i = 0; i < TL_WORK_PARTS; i++) {
-        double most = PART_DEVIATION * job->factor[i], part = PART_DRIFT * job->factor[i];
-        if (job->covariance[i][i] < most * most)
+        double maximum = PART_DEVIATION * job->factor[i], part = PART_DRIFT * job->factor[i];
+        if (job->covariance[i][i] < maximum * maximum)
             job->covariance[i][i] += part * part;
         for (int k = 0; k < TL_WORK_PARTS; k++)
             job->covariance[i][k] += DRIFT * DRIFT * job->factor[i] * job->factor[k];

@@ -49,8 +49,8 @@ static void light_hits(struct paths *paths)
     if (hits->points.count == 0)
         return;
     struct tl_sky_sample sky[HIT_STRATA];
-    const int most = paths->samples > 1 ? HIT_STRATA : FURTHER_STRATA;
-    const int strata = paths->request->direct.strata < most ? paths->request->direct.strata : most;
+    const int maximum = paths->samples > 1 ? HIT_STRATA : FURTHER_STRATA;
+    const int strata = paths->request->direct.strata < maximum ? paths->request->direct.strata : maximum;
     struct tl_random own = {tl_random_bits(&paths->random)};
     tl_gather_sample_sky(&paths->scene->sky, strata, 0, 1, tl_random_begin(own.state, 1), own, sky);
     const struct tl_radiance_request inner = {
@@ -110,12 +110,12 @@ static void follow(struct paths *paths, int owner, vec3s origin, vec3s direction
 /* Russian roulette [Arvo and Kirk 1990]. False: the path ends. */
 static bool goes_on(struct paths *paths, vec3s *weight)
 {
-    float most = glms_vec3_max(*weight);
-    if (paths->samples > 1 || !(most < FOLLOWED_WEIGHT))
+    float maximum = glms_vec3_max(*weight);
+    if (paths->samples > 1 || !(maximum < FOLLOWED_WEIGHT))
         return true;
-    if (FOLLOWED_WEIGHT * (float)tl_random_unit(&paths->random) >= most)
+    if (FOLLOWED_WEIGHT * (float)tl_random_unit(&paths->random) >= maximum)
         return false;
-    *weight = glms_vec3_scale(*weight, FOLLOWED_WEIGHT / most);
+    *weight = glms_vec3_scale(*weight, FOLLOWED_WEIGHT / maximum);
     return true;
 }
 

@@ -16,8 +16,9 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define TL_LOBE_SET_AZIMUTHS 49 /* over half a turn: the fit is the same seen from the other side, mirrored  \
-                                 */
+#define TL_LOBE_SET_AZIMUTHS                                                                                 \
+    49 /* over half a turn: the fit is the same seen from the other side, mirrored                           \
+        */
 #define TL_LOBE_SET_COSINES 49
 #define TL_LOBE_SET_GLOSSES 9
 
@@ -70,8 +71,8 @@ TL_INLINE struct tl_lobe_set_between tl_lobe_set_between(float at, int count)
 /* atan2 over [0, pi], y >= 0, within 2e-5 rad: a minimax polynomial of atan over [0, 1]. */
 TL_INLINE float tl_lobe_set_azimuth(float x, float y)
 {
-    float along = fabsf(x), most = tl_maxf(tl_maxf(along, y), 1e-30f);
-    float q = tl_minf(along, y) / most, square = q * q;
+    float along = fabsf(x), maximum = tl_maxf(tl_maxf(along, y), 1e-30f);
+    float q = tl_minf(along, y) / maximum, square = q * q;
     float series = -0.11643287f + square * (0.05265332f - 0.01172120f * square);
     float angle = q * (0.99997726f + square * (-0.33262347f + square * (0.19354346f + square * series)));
     angle = y > along ? 1.57079633f - angle : angle;

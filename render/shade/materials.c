@@ -111,9 +111,9 @@ static void glossiness_range(const struct tl_shade_part *part, float *low, float
     if (part->maps[TL_MAP_GLOSS].texels)
         *low = 0;
     if (part->weave_tint) {
-        float least, most;
-        range_of(part->weave_tint, &least, &most);
-        *low += least, *high += most;
+        float minimum, maximum;
+        range_of(part->weave_tint, &minimum, &maximum);
+        *low += minimum, *high += maximum;
     }
     *low = part->own_moments || part->weave_moments || part->borders ? 0 : fminf(fmaxf(*low, 0), 1);
     *high = fminf(fmaxf(*high, 0), 1);

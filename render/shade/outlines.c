@@ -122,8 +122,8 @@ static struct shown show_triangle(const struct outlines *outlines, const struct 
 TL_INLINE bool fits(uint32_t part, float nearness, float change, uint32_t sample_part, float sample_nearness,
                     float margin)
 {
-    const float allowed = margin * nearness, most = SLOPE_MAX / SLOPE_MARGIN * allowed;
-    const float trusted = tl_maxf(tl_minf(change, most), -most);
+    const float allowed = margin * nearness, maximum = SLOPE_MAX / SLOPE_MARGIN * allowed;
+    const float trusted = tl_maxf(tl_minf(change, maximum), -maximum);
     const float difference = sample_nearness - nearness;
     const float min = tl_minf(trusted, 0) - allowed, max = tl_maxf(trusted, 0) + allowed;
     return (part == sample_part) & (difference >= min) & (difference <= max);

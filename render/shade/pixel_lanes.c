@@ -142,8 +142,8 @@ TL_INLINE float schlick_share(float cosine)
 
 TL_INLINE tl_quad schlick(tl_quad f0, float share)
 {
-    const tl_quad most = {tl_minf(50 * f0[0], 1), tl_minf(50 * f0[1], 1), tl_minf(50 * f0[2], 1), 0};
-    return f0 + (most - f0) * share;
+    const tl_quad maximum = {tl_minf(50 * f0[0], 1), tl_minf(50 * f0[1], 1), tl_minf(50 * f0[2], 1), 0};
+    return f0 + (maximum - f0) * share;
 }
 
 /* The frame of tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
@@ -263,7 +263,7 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
     static const struct tl_gloss bounded = {.model = TL_REFLECT_WARD, .ward = TL_WARD_BOUNDED};
     const struct tl_look_lanes *look = &lanes->look;
     struct tl_ward_lanes ward;
-    const float least = 1e-6f; /* of a cosine: the light of pixels below the surface is not used */
+    const float minimum = 1e-6f; /* of a cosine: the light of pixels below the surface is not used */
     ward.gloss = thread < 0 ? &look->part->material->gloss : &bounded;
     const float(*square)[TL_LANES] = thread < 0 ? gloss->square : gloss->thread_square[thread];
     float cosine[TL_LANES], sine[TL_LANES]; /* into the axes of the widths, and back */
@@ -274,7 +274,7 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         ward.square[0][i] = axes.square[0], ward.square[1][i] = axes.square[1];
         ward.viewer[0][i] = cosine[i] * x + sine[i] * y;
         ward.viewer[1][i] = cosine[i] * y - sine[i] * x;
-        ward.viewer[2][i] = tl_maxf(gloss->viewer[2][i], least);
+        ward.viewer[2][i] = tl_maxf(gloss->viewer[2][i], minimum);
     }
     tl_ward_fit(&ward, look->part->lobe_set_count, look->count);
     lobes->count = ward.count;

@@ -99,11 +99,11 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
     float cosine = tl_maxf(glms_vec3_dot(normal, viewer), 0);
     vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * cosine), viewer);
     /* Facets need a viewer above the surface: one at the horizon stands for those below it. */
-    const float least = 0.02f;
+    const float minimum = 0.02f;
     vec3s seen_from = viewer;
-    if (cosine < least)
+    if (cosine < minimum)
         seen_from = tl_unit_or(
-            glms_vec3_add(viewer, glms_vec3_scale(normal, least - glms_vec3_dot(normal, viewer))), normal);
+            glms_vec3_add(viewer, glms_vec3_scale(normal, minimum - glms_vec3_dot(normal, viewer))), normal);
     const tl_quad diffuse = look->diffuse[lane], f0 = look->f0[lane];
     size_t i = ratios->count++;
     ratios->samples.items[i] =

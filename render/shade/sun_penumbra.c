@@ -27,8 +27,8 @@ static uint8_t greater(uint8_t a, uint8_t b)
 }
 
 /* The least and the most that is seen in the rows about row y by what faces the sun. */
-TL_CLONES static void join_rows(const uint8_t *states, int width, int height, int y, uint8_t *restrict least,
-                                uint8_t *restrict most)
+TL_CLONES static void join_rows(const uint8_t *states, int width, int height, int y,
+                                uint8_t *restrict minimum, uint8_t *restrict maximum)
 {
     const uint8_t *row = states + (size_t)y * (size_t)width;
     const uint8_t *below = y > 0 ? row - width : row, *above = y + 1 < height ? row + width : row;
@@ -36,20 +36,21 @@ TL_CLONES static void join_rows(const uint8_t *states, int width, int height, in
         /* Others count as the greatest number among the least: they wrap. */
         uint8_t a = (uint8_t)(below[x] - TL_SUN_FACED), b = (uint8_t)(row[x] - TL_SUN_FACED),
                 c = (uint8_t)(above[x] - TL_SUN_FACED);
-        least[x] = lesser(lesser(a, b), c);
-        most[x] = greater(greater(below[x], row[x]), above[x]);
+        minimum[x] = lesser(lesser(a, b), c);
+        maximum[x] = greater(greater(below[x], row[x]), above[x]);
     }
 }
 
 /* Marks the pixels of a row that face the sun where the 3 x 3 about them see shares of it that differ by more
  * than `contrast`. `least` and `most` go on for a pixel before and after the row. */
-TL_CLONES static void mark_edges(const uint8_t *states, const uint8_t *least, const uint8_t *most, int width,
-                                 float contrast, uint8_t *restrict marks)
+TL_CLONES static void mark_edges(const uint8_t *states, const uint8_t *minimum, const uint8_t *maximum,
+                                 int width, float contrast, uint8_t *restrict marks)
 {
     const int limit = (int)(contrast * (TL_SUN_STEPS * TL_SUN_STEPS));
     for (int x = 0; x < width; x++) {
-        const uint8_t low = lesser(lesser(least[x - 1], least[x]), least[x + 1]);
-        const uint8_t high = (uint8_t)(greater(greater(most[x - 1], most[x]), most[x + 1]) - TL_SUN_FACED);
+        const uint8_t low = lesser(lesser(minimum[x - 1], minimum[x]), minimum[x + 1]);
+        const uint8_t high =
+            (uint8_t)(greater(greater(maximum[x - 1], maximum[x]), maximum[x + 1]) - TL_SUN_FACED);
         marks[x] = (uint8_t)(states[x] >= TL_SUN_FACED) & (uint8_t)(high * high - low * low > limit);
     }
 }
@@ -67,13 +68,13 @@ static size_t list_edges(const struct tl_sun_pixels *pixels, int width, int heig
     size_t count = 0;
     for (int y = first_row; y < end_row; y++) {
         const size_t row = (size_t)y * (size_t)width;
-        uint8_t *least = pixels->least + row + 2 * (size_t)y + 1,
-                *most = pixels->most + row + 2 * (size_t)y + 1, *marks = pixels->marks + row;
+        uint8_t *minimum = pixels->minimum + row + 2 * (size_t)y + 1,
+                *maximum = pixels->maximum + row + 2 * (size_t)y + 1, *marks = pixels->marks + row;
         show_row(pixels->states + row, width, visible + row);
-        join_rows(pixels->states, width, height, y, least, most);
-        least[-1] = least[width] = UINT8_MAX;
-        most[-1] = most[width] = 0;
-        mark_edges(pixels->states + row, least, most, width, pixels->contrast, marks);
+        join_rows(pixels->states, width, height, y, minimum, maximum);
+        minimum[-1] = minimum[width] = UINT8_MAX;
+        maximum[-1] = maximum[width] = 0;
+        mark_edges(pixels->states + row, minimum, maximum, width, pixels->contrast, marks);
         for (const uint8_t *at = marks; (at = memchr(at, 1, (size_t)(marks + width - at))) != NULL; at++)
             list[count++] = (uint32_t)(row + (size_t)(at - marks));
     }

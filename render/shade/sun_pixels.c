@@ -35,11 +35,11 @@ static void reserve(struct tl_sun_pixels *pixels, int width, int height, int lay
     }
     if (height > pixels->row_capacity) {
         free(pixels->block_counts);
-        free(pixels->least);
-        free(pixels->most);
+        free(pixels->minimum);
+        free(pixels->maximum);
         pixels->row_capacity = height;
-        pixels->least = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
-        pixels->most = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
+        pixels->minimum = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
+        pixels->maximum = TL_NEW_ARRAY(uint8_t, pixels->capacity + 2 * (size_t)height);
         pixels->block_counts = TL_NEW_ARRAY(size_t, (size_t)height);
     }
     for (int layer = 0; layer < layers; layer++)
@@ -376,8 +376,8 @@ void tl_sun_pixels_release(struct tl_sun_pixels *pixels)
         for (int i = 0; i < TL_SUNS_MAX; i++)
             free(pixels->visible[layer][i]);
     free(pixels->states);
-    free(pixels->least);
-    free(pixels->most);
+    free(pixels->minimum);
+    free(pixels->maximum);
     free(pixels->marks);
     free(pixels->pixels);
     free(pixels->is_partial);

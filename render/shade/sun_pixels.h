@@ -20,11 +20,11 @@ struct tl_sun_pixels {
     /* Shares by layer of the ID buffer, [height][width], in [0, 1]; of pixels that face the sun, with either
      * side where light comes through. */
     float *visible[1 + TL_TRANSPARENCY_LAYERS][TL_SUNS_MAX];
-    uint8_t *states;       /* of a layer: what was seen */
-    uint8_t *least, *most; /* ... there and in the rows above and below */
-    uint8_t *marks;        /* ... whether it lies beside an edge */
-    uint32_t *pixels;      /* those that may lie in a penumbra */
-    uint8_t *is_partial;   /* ... and whether they do */
+    uint8_t *states;            /* of a layer: what was seen */
+    uint8_t *minimum, *maximum; /* ... there and in the rows above and below */
+    uint8_t *marks;             /* ... whether it lies beside an edge */
+    uint32_t *pixels;           /* those that may lie in a penumbra */
+    uint8_t *is_partial;        /* ... and whether they do */
     size_t cell_capacity;
     uint8_t *cells; /* how the pixels of a cell got their answers */
     uint32_t *late; /* cells that are traced as their neighbours turned out otherwise */

@@ -10,14 +10,14 @@
 
 void tl_uv_texels_box(const tl_surface *surface, vec2s *low, vec2s *extent)
 {
-    vec2s least = {{INFINITY, INFINITY}}, most = {{-INFINITY, -INFINITY}};
+    vec2s minimum = {{INFINITY, INFINITY}}, maximum = {{-INFINITY, -INFINITY}};
     for (size_t i = 0; i < surface->index_count; i++) {
-        least = glms_vec2_minv(least, surface->uvs[surface->indices[i]]);
-        most = glms_vec2_maxv(most, surface->uvs[surface->indices[i]]);
+        minimum = glms_vec2_minv(minimum, surface->uvs[surface->indices[i]]);
+        maximum = glms_vec2_maxv(maximum, surface->uvs[surface->indices[i]]);
     }
-    *low = least;
+    *low = minimum;
     for (int c = 0; c < 2; c++)
-        extent->raw[c] = most.raw[c] > least.raw[c] ? most.raw[c] - least.raw[c] : 1;
+        extent->raw[c] = maximum.raw[c] > minimum.raw[c] ? maximum.raw[c] - minimum.raw[c] : 1;
 }
 
 /* The middles of the outermost texels lie on the edges of the UVs' box, so that look-ups at the edges of a
@@ -70,18 +70,18 @@ uint32_t *tl_uv_texels_triangles(const tl_surface *surface, int side)
     vec2s low, extent;
     tl_uv_texels_box(surface, &low, &extent);
     for (uint32_t t = 0; t < surface->index_count / 3; t++) {
-        vec2s least = {{1, 1}}, most = {{0, 0}};
+        vec2s minimum = {{1, 1}}, maximum = {{0, 0}};
         if (is_flat_in_uv(surface, t, low, extent)) {
             free(covering);
             return NULL;
         }
         for (int i = 0; i < 3; i++) {
             vec2s at = corner(surface, t, i, low, extent);
-            least = glms_vec2_minv(least, at);
-            most = glms_vec2_maxv(most, at);
+            minimum = glms_vec2_minv(minimum, at);
+            maximum = glms_vec2_maxv(maximum, at);
         }
-        int left = (int)(least.x * (float)(side - 1)), right = (int)(most.x * (float)(side - 1)) + 1;
-        int top = (int)(least.y * (float)(side - 1)), bottom = (int)(most.y * (float)(side - 1)) + 1;
+        int left = (int)(minimum.x * (float)(side - 1)), right = (int)(maximum.x * (float)(side - 1)) + 1;
+        int top = (int)(minimum.y * (float)(side - 1)), bottom = (int)(maximum.y * (float)(side - 1)) + 1;
         for (int y = top; y <= bottom && y < side; y++)
             for (int x = left; x <= right && x < side; x++) {
                 vec3s weights = tl_uv_texels_weights(surface, t, low, extent, side, y * side + x);

@@ -141,9 +141,9 @@ static void allocate(tl_shadow_maps *maps, const struct tl_shadow_request *reque
 
 int tl_sun_map_size(const tl_gpu *gpu, int map_size)
 {
-    int size = 2 * map_size, most = tl_gpu_texture_side_max(gpu);
+    int size = 2 * map_size, maximum = tl_gpu_texture_side_max(gpu);
     size = size < TL_SUN_MAP_SIZE_MIN ? TL_SUN_MAP_SIZE_MIN : size;
-    return size > most ? most : size;
+    return size > maximum ? maximum : size;
 }
 
 static void allocate_suns(tl_shadow_maps *maps, const struct tl_shadow_request *request)

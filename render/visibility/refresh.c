@@ -26,8 +26,8 @@
 
 /* Weights of directions are kept in sixteen bits: a thousand rounds fill them, and from then on the mean is a
  * running one. */
-#define WEIGHT_ONE   64.0f
-#define LEAST_WEIGHT 0.03125f
+#define WEIGHT_ONE 64.0f
+#define MIN_WEIGHT 0.03125f
 
 /* The members of a cluster, one a lane. */
 struct cluster_lanes {
@@ -116,15 +116,15 @@ static void place_members(const struct tl_refresh *refresh, const struct tl_clus
 }
 
 /* The largest cosine between a direction and the members' normals. */
-TL_INLINE float greatest_cosine(const struct cluster_lanes *lanes, vec3s direction)
+TL_INLINE float max_cosine(const struct cluster_lanes *lanes, vec3s direction)
 {
     float cosines[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) /* lanes of no member hold zeros */
         cosines[i] = lanes->nx[i] * direction.x + lanes->ny[i] * direction.y + lanes->nz[i] * direction.z;
-    float greatest = -1;
+    float maximum = -1;
     for (int i = 0; i < TL_CLUSTER; i++)
-        greatest = tl_maxf(greatest, lanes->members >> i & 1 ? cosines[i] : -1);
-    return greatest;
+        maximum = tl_maxf(maximum, lanes->members >> i & 1 ? cosines[i] : -1);
+    return maximum;
 }
 
 /* The need of each region: its light on the cluster times the age of its value. Late regions also have their
@@ -136,7 +136,7 @@ static void measure_needs(const struct tl_refresh *refresh, const struct tl_clus
     int count = refresh->request->regions->count, refreshed = refresh->request->params->refresh;
     uint32_t longest = (uint32_t)(LATE_ROUNDS * (count + refreshed - 1) / refreshed);
     for (int i = 0; i < count; i++) {
-        float cosine = greatest_cosine(lanes, refresh->centres[i]);
+        float cosine = max_cosine(lanes, refresh->centres[i]);
         uint32_t age = refresh->frame - cluster->stamps[i];
         needs[i] = refresh->importances[i] * fmaxf(cosine + SINE_BELOW, 0) * (float)age;
         late[i] = cosine > -SINE_BELOW && age > longest ? (float)age : 0;
@@ -147,28 +147,28 @@ static void measure_needs(const struct tl_refresh *refresh, const struct tl_clus
 static int select_regions(const float needs[TL_REGIONS_MAX], int count, int wanted,
                           bool selected[TL_REGIONS_MAX])
 {
-    float greatest[TL_REGIONS_MAX]; /* so far, falling */
+    float maximum[TL_REGIONS_MAX]; /* so far, falling */
     int kept = 0;
     if (wanted <= 0)
         return 0;
     for (int i = 0; i < count; i++) {
-        if (selected[i] || !(needs[i] > 0) || (kept == wanted && needs[i] <= greatest[kept - 1]))
+        if (selected[i] || !(needs[i] > 0) || (kept == wanted && needs[i] <= maximum[kept - 1]))
             continue;
         int at = kept < wanted ? kept++ : kept - 1;
-        for (; at > 0 && greatest[at - 1] < needs[i]; at--)
-            greatest[at] = greatest[at - 1];
-        greatest[at] = needs[i];
+        for (; at > 0 && maximum[at - 1] < needs[i]; at--)
+            maximum[at] = maximum[at - 1];
+        maximum[at] = needs[i];
     }
     if (kept == 0)
         return 0;
-    float least = greatest[kept - 1];
+    float minimum = maximum[kept - 1];
     int equals = 1;
-    while (equals < kept && greatest[kept - 1 - equals] <= least)
+    while (equals < kept && maximum[kept - 1 - equals] <= minimum)
         equals++;
     for (int i = 0; i < count; i++) {
-        bool equal = !selected[i] && needs[i] == least && equals > 0;
+        bool equal = !selected[i] && needs[i] == minimum && equals > 0;
         equals -= equal;
-        selected[i] |= equal || needs[i] > least;
+        selected[i] |= equal || needs[i] > minimum;
     }
     return kept;
 }
@@ -227,7 +227,7 @@ struct glance {
  * is 0, because glossy lobes may lie near the horizon. */
 static float weight_of(float cosine)
 {
-    return floorf(WEIGHT_ONE * fmaxf(fabsf(cosine), LEAST_WEIGHT) + 0.5f);
+    return floorf(WEIGHT_ONE * fmaxf(fabsf(cosine), MIN_WEIGHT) + 0.5f);
 }
 
 /* Adds the visibility of a direction from each of `lanes_wanted`; returns the number of rays. Members whose
@@ -306,10 +306,10 @@ static size_t trace_region(const struct tl_refresh *refresh, const struct tl_clu
 
 int tl_cluster_rounds(const struct tl_refresh *refresh, const struct tl_cluster *cluster)
 {
-    int least = cluster->rounds[0];
+    int minimum = cluster->rounds[0];
     for (int i = 1; i < refresh->request->regions->count; i++)
-        least = cluster->rounds[i] < least ? cluster->rounds[i] : least;
-    return least;
+        minimum = cluster->rounds[i] < minimum ? cluster->rounds[i] : minimum;
+    return minimum;
 }
 
 size_t tl_cluster_refresh(const struct tl_refresh *refresh, const struct tl_cluster *cluster)

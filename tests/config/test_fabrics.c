@@ -10,10 +10,10 @@
 
 static struct tl_settings settings;
 
-static void check_between(const char *fabric, const char *what, double value, double least, double most)
+static void check_between(const char *fabric, const char *what, double value, double minimum, double maximum)
 {
-    if (!(value >= least && value <= most)) {
-        print_error("%s: %s is %g, not within %g and %g\n", fabric, what, value, least, most);
+    if (!(value >= minimum && value <= maximum)) {
+        print_error("%s: %s is %g, not within %g and %g\n", fabric, what, value, minimum, maximum);
         fail();
     }
 }

@@ -12,7 +12,7 @@
 enum { POINTS = 1024, RAYS = 32, BUNDLE = 16 };
 
 /* A region is measured if at least so many points face it, with a cosine of FACES or more. */
-enum { LEAST_POINTS = POINTS / 4 };
+enum { MIN_POINTS = POINTS / 4 };
 #define FACES 0.2f
 
 /* Allowed sampling error, in standard deviations: a bounded random value is nearly always within three. */
@@ -237,7 +237,7 @@ static void add_tallies(const struct witness *witness, struct tl_finding *findin
     for (int i = 0; i < regions->count; i++) {
         const struct tally *tally = &witness->tallies[i];
         double mean, deviation;
-        if (tally->points < LEAST_POINTS)
+        if (tally->points < MIN_POINTS)
             continue;
         spread_of(tally, &mean, &deviation);
         double claimed = tally->claimed / tally->points, off = fabs(claimed - mean) - DEVIATIONS * deviation;

@@ -16,10 +16,10 @@ struct directions {
 
 /* A lobe of exponent s has a standard deviation of about 1/sqrt(s). Blocks are at most a sixth of that: to
  * gather light in the middle of its block adds at most 1/432 to the lobe's variance. */
-static int columns_for(float exponent, int most)
+static int columns_for(float exponent, int maximum)
 {
     double width = 1 / sqrt((double)fmaxf(exponent, 1));
-    int columns = most;
+    int columns = maximum;
     while (columns % 2 == 0 && columns / 2 >= 2 * M_PI * 6 / width)
         columns /= 2;
     return columns;

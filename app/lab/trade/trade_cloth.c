@@ -139,10 +139,10 @@ static double distance(const struct shape *tested, const struct shape *truth, in
 
 static double nearest_mirror(const struct shape *tested, const struct shape *truth)
 {
-    double least = INFINITY;
+    double minimum = INFINITY;
     for (int mirror = 0; mirror < 4; mirror++)
-        least = fmin(least, distance(tested, truth, mirror));
-    return least;
+        minimum = fmin(minimum, distance(tested, truth, mirror));
+    return minimum;
 }
 
 /* ---- Running ---- */

@@ -360,12 +360,12 @@ static int by_error(const void *a, const void *b)
 }
 
 /* The least error of a block of 2 x 2 tiles; a NaN counts as more than any number. */
-static double least_of(const double errors[4])
+static double min_of(const double errors[4])
 {
-    double least = NAN;
+    double minimum = NAN;
     for (int i = 0; i < 4; i++)
-        least = fmin(least, errors[i]); /* of a NaN and a number: the number */
-    return least;
+        minimum = fmin(minimum, errors[i]); /* of a NaN and a number: the number */
+    return minimum;
 }
 
 static int tile_of_block(const struct comparison *comparison, int block, int i)
@@ -411,7 +411,7 @@ static void find_worst_block(const struct comparison *comparison, const tl_image
     for (int i = 0; i < 4 * again; i++)
         errors[i] = thorough_error(comparison, image, tiles[i], whole);
     for (int i = 0; i < again; i++)
-        suspects[i].error = least_of(&errors[4 * i]);
+        suspects[i].error = min_of(&errors[4 * i]);
     qsort(suspects, (size_t)again, sizeof *suspects, by_error);
     out->patch_error = again > 0 ? suspects[0].error : 0;
     out->patch_x = again > 0 ? (suspects[0].tile % comparison->tiles_x + 1) * TILE : 0;
@@ -432,7 +432,7 @@ static void find_worst(const struct comparison *comparison, const tl_image *imag
             double errors[4];
             for (int i = 0; i < 4; i++)
                 errors[i] = tile_error(&tiles[tile_of_block(comparison, block, i)], whole, 1);
-            suspects[blocks++] = (struct suspect){least_of(errors), block};
+            suspects[blocks++] = (struct suspect){min_of(errors), block};
         }
     find_worst_block(comparison, image, suspects, blocks, whole, out);
     free(suspects);

@@ -168,7 +168,7 @@ void tl_journal_close(tl_journal **handle, bool keep)
     *handle = NULL;
 }
 
-void tl_journal_set_aside(tl_journal **handle)
+void tl_journal_park(tl_journal **handle)
 {
     if (!*handle)
         return;
@@ -324,7 +324,7 @@ tl_journal *tl_journal_recover(const char *folder, uint64_t command, struct tl_r
         return journal;
     }
     tl_warn("view: %s" TRIED ": the last review cannot be recovered: %s", journal->path, error.message);
-    tl_journal_set_aside(&journal);
+    tl_journal_park(&journal);
     return NULL;
 }
 

@@ -33,7 +33,7 @@ tl_journal *tl_journal_recover(const char *folder, uint64_t command, struct tl_r
 void tl_journal_resume(tl_journal *journal);
 
 /* The recovered review cannot be shown: its file gets the end .tried and stays. Frees as tl_journal_close. */
-void tl_journal_set_aside(tl_journal **handle);
+void tl_journal_park(tl_journal **handle);
 
 /* Records what differs from the last record: as an edit (tl_history_note), or as a change of the view. */
 void tl_journal_note(tl_journal *journal, const struct tl_settings *settings, bool is_edit);

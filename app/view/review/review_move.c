@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #define GLIDE_S        0.6
-#define KEY_APART_S    2.0 /* between keys that are added by hand */
+#define KEY_INTERVAL_S 2.0 /* between keys that are added by hand */
 #define RECORD_EVERY_S 0.2
 
 void tl_review_fix_camera(struct tl_review *review)
@@ -136,7 +136,7 @@ void tl_review_path_add(struct tl_review *review)
     }
     if (!recorded->file)
         begin_path(review);
-    double time_s = recorded->path.count > 0 ? tl_path_length_s(&recorded->path) + KEY_APART_S : 0;
+    double time_s = recorded->path.count > 0 ? tl_path_length_s(&recorded->path) + KEY_INTERVAL_S : 0;
     add_key(review, time_s);
     if (save_path(review))
         tl_review_report(review, "key %zu, at %g s, of %s", recorded->path.count, time_s, recorded->file);

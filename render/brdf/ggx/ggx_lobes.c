@@ -69,14 +69,14 @@ int tl_ggx_lobes(float width, float sine, int max_count, struct tl_ggx_lobe lobe
 void tl_ggx_exponents(float width, float *min, float *max)
 {
     const int first = rows_of_width(width).first;
-    float least = tl_ggx_row(first, 0)[1], greatest = least;
+    float minimum = tl_ggx_row(first, 0)[1], maximum = minimum;
     for (int i = first; i < first + 2; i++)
         for (int j = 0; j < TL_GGX_ELEVATIONS; j++)
             for (int k = 0; k < TL_GGX_LOBES_ALL; k++) {
                 const float logarithm = tl_ggx_row(i, j)[k * TL_GGX_FIGURES + 1];
-                least = fminf(least, logarithm);
-                greatest = fmaxf(greatest, logarithm);
+                minimum = fminf(minimum, logarithm);
+                maximum = fmaxf(maximum, logarithm);
             }
-    *min = exponent_of(FINEST * greatest, width);
-    *max = exponent_of(FINEST * least, width);
+    *min = exponent_of(FINEST * maximum, width);
+    *max = exponent_of(FINEST * minimum, width);
 }

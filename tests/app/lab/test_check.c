@@ -1,12 +1,12 @@
 /* Each fault, put into a frame on purpose, is named by the invariant that it breaks; a clean frame passes. */
 #include "tests/app/lab/verdicts.h"
 
-#include "tests/app/stability/extremes_light.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
 #include "render/inside.h"
+#include "tests/app/stability/extremes_light.h"
 
 #include <epoxy/gl.h>
 
@@ -460,13 +460,13 @@ static struct tl_resources *inside(const tl_renderer *renderer)
 
 /* The region of which least is seen on average over the samples, among those that have their share of light.
  */
-static int most_hidden_region(const struct tl_resources *made)
+static int max_hidden_region(const struct tl_resources *made)
 {
     size_t stride;
     const uint16_t *values = tl_points_values(made->points, &stride);
     const struct tl_taps *taps = tl_points_taps(made->points);
     int hidden = 0;
-    double least = INFINITY, light = 0;
+    double minimum = INFINITY, light = 0;
     for (int i = 0; i < made->regions.count; i++)
         light += (double)made->regions.items[i].importance / made->regions.count;
     for (int i = 0; i < made->regions.count; i++) {
@@ -481,9 +481,9 @@ static int most_hidden_region(const struct tl_resources *made)
             facing++;
             sum += values[taps[s].point[0] * stride + (size_t)i];
         }
-        if (facing < made->samples.primary_count / 3 || !(sum / (double)facing < least))
+        if (facing < made->samples.primary_count / 3 || !(sum / (double)facing < minimum))
             continue;
-        least = sum / (double)facing;
+        minimum = sum / (double)facing;
         hidden = i;
     }
     return hidden;
@@ -503,7 +503,7 @@ static void a_leaking_shadow_is_named(void **state)
 {
     (void)state;
     struct stand *stand = by_rays();
-    int region = most_hidden_region(inside(stand->renderer));
+    int region = max_hidden_region(inside(stand->renderer));
     char place[32];
     snprintf(place, sizeof place, "region %d:", region);
     leak(inside(stand->renderer), region);

@@ -2,9 +2,9 @@
  * a known outcome, and the baseline's sag. */
 #include "tests/testing.h"
 
-#include "tests/app/stability/envelope.h"
 #include "app/lab/trade/baseline.h"
 #include "config/base/memory.h"
+#include "tests/app/stability/envelope.h"
 
 #include <string.h>
 
@@ -113,13 +113,13 @@ static void baseline_hangs(void **state)
 {
     (void)state;
     tl_baseline *baseline = tl_baseline_create(17);
-    double most = 0;
+    double maximum = 0;
     for (int i = 0; i < 2000; i++) {
         tl_baseline_step(baseline);
-        most = fmax(most, tl_baseline_stretch(baseline) - 1);
+        maximum = fmax(maximum, tl_baseline_stretch(baseline) - 1);
     }
     const double still = 0.2 * 9.81 / 1000; /* springs across and along diagonals carry a part of it */
-    assert_true(most > 0.3 * still && most < 3 * still);
+    assert_true(maximum > 0.3 * still && maximum < 3 * still);
     tl_baseline_destroy(&baseline);
 }
 

@@ -24,10 +24,10 @@ static bool has_colour(const tl_image *picture, vec3s colour)
 {
     for (int y = 0; y < picture->height; y++)
         for (int x = 0; x < picture->width; x++) {
-            double most = 0;
+            double maximum = 0;
             for (int c = 0; c < 3; c++)
-                most = fmax(most, fabs(pixel(picture, x, y)[c] / 255.0 - (double)colour.raw[c]));
-            if (most <= 3.0 / 255) /* half a column of the bar away */
+                maximum = fmax(maximum, fabs(pixel(picture, x, y)[c] / 255.0 - (double)colour.raw[c]));
+            if (maximum <= 3.0 / 255) /* half a column of the bar away */
                 return true;
         }
     return false;

@@ -95,11 +95,11 @@ static void check_garment(const char *garment, const char *avatar)
     assert_as_in_file(session, &in_file.model.mesh);
     size_t count;
     double *ways = move_one_frame(session, &count);
-    double half = ways[count / 2], most = ways[count - count / 100 - 1];
+    double half = ways[count / 2], maximum = ways[count - count / 100 - 1];
     printf("%s on %s: %.1f mm in the first frame, 99 %% by at most %.1f, the last one %.1f\n", garment,
-           avatar, 1e3 * half, 1e3 * most, 1e3 * ways[count - 1]);
+           avatar, 1e3 * half, 1e3 * maximum, 1e3 * ways[count - 1]);
     assert_true(half < FALL_M);
-    assert_true(most < FALL_M + PUSH_M);
+    assert_true(maximum < FALL_M + PUSH_M);
     free(ways);
     assert_ok(tl_session_reset(session, &error), error);
     assert_as_in_file(session, &in_file.model.mesh);

@@ -72,10 +72,10 @@ static double first_move(tl_session *session)
     for (size_t i = 0; i < count; i++)
         ways[i] = 1e3 * (double)glms_vec3_distance(before[i], garment_of(&frame)->positions[i]);
     qsort(ways, count, sizeof *ways, compare_lengths);
-    double most = ways[count - 1 - count / 100];
+    double maximum = ways[count - 1 - count / 100];
     free(before);
     free(ways);
-    return most;
+    return maximum;
 }
 
 /* Free fall in a frame of 1/30 s is 5.5 mm, less where a body holds the cloth. A drape that is opened again

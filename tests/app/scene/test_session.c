@@ -284,12 +284,12 @@ static void strains_are_told_when_they_are_looked_at(void **state)
     /* Against the drape's own measure, of edges: across an equilateral triangle strain is up to 5/3 of the
      * largest of its edges' (of squared lengths), across a panel's less regular ones somewhat more. */
     size_t count = tl_session_frame(session).surfaces[1].vertex_count;
-    double largest = 0, most = tl_session_report(session).max_strain;
+    double largest = 0, maximum = tl_session_report(session).max_strain;
     vec3s *first = TL_NEW_ARRAY(vec3s, count);
     memcpy(first, strains_shown(session), count * sizeof *first);
     for (size_t i = 0; i < count; i++)
         largest = fmax(largest, (double)first[i].x);
-    assert_true(largest > 1e-4 && largest < 3 * most);
+    assert_true(largest > 1e-4 && largest < 3 * maximum);
 
     assert_ok(tl_session_advance(session, &error), error); /* they follow the cloth */
     assert_true(memcmp(first, strains_shown(session), count * sizeof *first) != 0);
@@ -342,8 +342,8 @@ static void the_garment_fills_three_quarters(void **state)
                           garments[g], yaw, (double)(0.5f * (highest - lowest)), (double)lowest,
                           (double)highest, (double)head);
             bool is_shirt = strcmp(garments[g], "shirt") == 0, has_head = is_shirt || g == 0 || g == 2;
-            float least = is_shirt ? 0.72f : TL_CAMERA_GARMENT - 0.015f;
-            assert_true(0.5f * (highest - lowest) > least);
+            float minimum = is_shirt ? 0.72f : TL_CAMERA_GARMENT - 0.015f;
+            assert_true(0.5f * (highest - lowest) > minimum);
             assert_true(0.5f * (highest - lowest) < TL_CAMERA_GARMENT + 0.015f);
             assert_true(lowest > -0.96f && highest < 0.9f);
             assert_true(has_head == (head < 0.955f));

@@ -236,12 +236,12 @@ static void heaviest(struct trial *trial)
     trial->fabric.stretch_weft = trial->fabric.stretch_warp = 1e5;
 }
 
-static void most_damping(struct trial *trial)
+static void max_damping(struct trial *trial)
 {
     trial->fabric.damping = 1e3;
 }
 
-static void most_gravity(struct trial *trial)
+static void max_gravity(struct trial *trial)
 {
     trial->params.gravity = 100;
 }
@@ -512,8 +512,8 @@ static const struct extreme extremes[] = {
     {"bending 1e3 N m", ENERGY, stiff_bending, NULL, NULL},
     {"0.1 g/m^2", ENERGY, lightest, NULL, NULL},
     {"100 kg/m^2", ENERGY, heaviest, NULL, NULL},
-    {"damping 1000 1/s", ENERGY, most_damping, NULL, NULL},
-    {"gravity 100 m/s^2", ENERGY, most_gravity, NULL, NULL},
+    {"damping 1000 1/s", ENERGY, max_damping, NULL, NULL},
+    {"gravity 100 m/s^2", ENERGY, max_gravity, NULL, NULL},
     {"gravity upwards", ENERGY, upward_gravity, NULL, NULL},
     {"pulled to NaN", ENERGY, NULL, grab_nothing, NULL},
     {"pulled to 1e30 m", FINITE, NULL, grab_far, NULL},
@@ -582,7 +582,7 @@ static double motion_energy(const struct trial *trial)
     return report.kinetic_energy + report.potential_energy;
 }
 
-static enum tl_outcome judge(const struct trial *trial, enum promise promise, double first, double most,
+static enum tl_outcome judge(const struct trial *trial, enum promise promise, double first, double maximum,
                              struct tl_cell_error *error, tl_error *found)
 {
     struct tl_cloth_report report = tl_cloth_measure(trial->cloth, trial->collider);
@@ -593,9 +593,9 @@ static enum tl_outcome judge(const struct trial *trial, enum promise promise, do
         tl_fail(found, TL_UNSTABLE, "taken, and should have been refused");
         return TL_OUTCOME_SILENT;
     case ENERGY:
-        say(found, "energy grew by %.2g J, may by %.2g J", most - first, HEADROOM * weight);
-        kept = most - first <= HEADROOM * weight;
-        *error = error_in_mm((most - first) / weight, 1);
+        say(found, "energy grew by %.2g J, may by %.2g J", maximum - first, HEADROOM * weight);
+        kept = maximum - first <= HEADROOM * weight;
+        *error = error_in_mm((maximum - first) / weight, 1);
         break;
     case OUTSIDE:
         say(found, "%.2g mm deep, largest strain %.2g", 1e3 * report.deepest_m, report.max_strain);
@@ -631,18 +631,19 @@ static enum tl_outcome run_frames(struct trial *trial, const struct extreme *ext
     enum tl_outcome outcome = TL_OUTCOME_BOUNDED;
     size_t count = trial->garment.model.mesh.vertex_count;
     vec3s *before = TL_NEW_ARRAY(vec3s, count), *after = TL_NEW_ARRAY(vec3s, count);
-    double first = motion_energy(trial) + tl_cloth_measure(trial->cloth, NULL).elastic_energy, most = first;
+    double first = motion_energy(trial) + tl_cloth_measure(trial->cloth, NULL).elastic_energy,
+           maximum = first;
     for (int frame = 0; frame < trial->frames && outcome == TL_OUTCOME_BOUNDED; frame++) {
         if (extreme->act)
             extreme->act(trial, frame);
         tl_cloth_positions(trial->cloth, before);
         outcome = tl_cloth_try_step(trial->cloth, trial->collider, count, found);
         keep_pace(trial, before, after);
-        most = fmax(most, motion_energy(trial));
+        maximum = fmax(maximum, motion_energy(trial));
     }
     free(before);
     free(after);
-    return outcome == TL_OUTCOME_BOUNDED ? judge(trial, extreme->promise, first, most, error, found)
+    return outcome == TL_OUTCOME_BOUNDED ? judge(trial, extreme->promise, first, maximum, error, found)
                                          : outcome;
 }
 

@@ -66,7 +66,7 @@ static double distance_m(vec2s from, vec2s to)
 
 /* `most`: the share up to which the cell may be coarse. Limited parallax may move by the height alone. */
 static struct detail_cell judge(const struct detail_view *view, vec2s to, float lit, double bound_m,
-                                double most)
+                                double maximum)
 {
     struct detail_cell cell = {.moved_m = distance_m(view->uv, to), .bound_m = bound_m};
     double off_m = distance_m(view->right, to);
@@ -76,7 +76,7 @@ static struct detail_cell judge(const struct detail_view *view, vec2s to, float 
         .own = 1e3 * off_m,
         .unit = "mm"};
     cell.outcome =
-        isfinite(lit) && isfinite(off_m) ? tl_outcome_of(cell.error.share, EXACT, most) : TL_OUTCOME_NAN;
+        isfinite(lit) && isfinite(off_m) ? tl_outcome_of(cell.error.share, EXACT, maximum) : TL_OUTCOME_NAN;
     if (!(cell.moved_m <= bound_m * 1.001 + ROUNDING_M && lit >= 0 && lit <= 1) &&
         cell.outcome != TL_OUTCOME_NAN)
         cell.outcome = TL_OUTCOME_SILENT;
@@ -101,7 +101,7 @@ static void run_view(const struct detail_extreme *extreme, const struct tl_heigh
                      float tilt_deg, struct tl_stability *out)
 {
     static const char *const relief_names[] = {"relief, 1 step", "relief, 256 steps", "relief, 1024 steps"};
-    static const double relief_most[] = {1, 0.5, TL_STATED_SHARE};
+    static const double relief_max[] = {1, 0.5, TL_STATED_SHARE};
     const vec3s towards = {
         {0.6f * sinf(glm_rad(tilt_deg)), 0.8f * sinf(glm_rad(tilt_deg)), cosf(glm_rad(tilt_deg))}};
     struct detail_view view = {.extreme = extreme, .tilt_deg = tilt_deg, .uv = {{0.37f, 0.61f}}};
@@ -116,7 +116,7 @@ static void run_view(const struct detail_extreme *extreme, const struct tl_heigh
     for (size_t s = 0; s < TL_COUNT(steps); s++) {
         struct tl_relief relief = tl_field_relief(field, view.uv, towards, steps[s], 5);
         float lit = tl_field_lit(field, relief.uv, towards, steps[s]);
-        struct detail_cell cell = judge(&view, relief.uv, lit, SHIFT_SLANT * height, relief_most[s]);
+        struct detail_cell cell = judge(&view, relief.uv, lit, SHIFT_SLANT * height, relief_max[s]);
         add(&view, relief_names[s], &cell, out);
     }
 }

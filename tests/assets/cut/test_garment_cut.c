@@ -589,10 +589,10 @@ static void test_lengths_refused(void **state)
         assert_non_null(strstr(error.message, rows[i].option));
         const char *limit = strstr(error.message, "than ");
         assert_non_null(limit);
-        struct tl_cut_params least = rows[i].sizes;
-        float *size = least.sleeve_m != 0 ? &least.sleeve_m : &least.longer_m;
+        struct tl_cut_params minimum = rows[i].sizes;
+        float *size = minimum.sleeve_m != 0 ? &minimum.sleeve_m : &minimum.longer_m;
         *size = strtof(limit + 5, NULL);
-        garment = cut_sized(rows[i].name, least);
+        garment = cut_sized(rows[i].name, minimum);
         drop(&garment);
     }
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST 40000 /* vertices and triangles of the oracle */
+#define MAXIMUM 40000 /* vertices and triangles of the oracle */
 
 /* A mesh that is refined by search: slow and short. creases[a][b] as a list of pairs. */
 struct plain {
@@ -25,9 +25,9 @@ static struct plain plain_make(const vec3s *places, size_t vertex_count, const u
     struct plain mesh = {vertex_count,
                          triangle_count,
                          crease_count,
-                         tl_alloc(MOST, sizeof(vec3s)),
-                         tl_alloc(MOST, sizeof *mesh.triangles),
-                         tl_alloc(MOST, sizeof *mesh.creases)};
+                         tl_alloc(MAXIMUM, sizeof(vec3s)),
+                         tl_alloc(MAXIMUM, sizeof *mesh.triangles),
+                         tl_alloc(MAXIMUM, sizeof *mesh.creases)};
     memcpy(mesh.places, places, vertex_count * sizeof *places);
     memcpy(mesh.triangles, triangles, triangle_count * sizeof *triangles);
     if (crease_count > 0)
@@ -55,8 +55,8 @@ static bool is_crease(const struct plain *mesh, uint32_t a, uint32_t b)
 static void plain_refine(struct plain *mesh)
 {
     size_t edges = 0, old = mesh->vertex_count;
-    uint32_t(*ends)[2] = tl_alloc(MOST, sizeof *ends), (*corners)[3] = tl_alloc(MOST, sizeof *corners);
-    vec3s *places = tl_alloc(MOST, sizeof *places);
+    uint32_t(*ends)[2] = tl_alloc(MAXIMUM, sizeof *ends), (*corners)[3] = tl_alloc(MAXIMUM, sizeof *corners);
+    vec3s *places = tl_alloc(MAXIMUM, sizeof *places);
     for (size_t t = 0; t < mesh->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             uint32_t a = mesh->triangles[t][k], b = mesh->triangles[t][(k + 1) % 3];
@@ -185,7 +185,7 @@ static void new_vertices_lie_on_the_same_surface(void **state)
     for (int creased = 0; creased < 2; creased++) {
         struct plain mesh = plain_make(cube_places, 8, cube, 12, lid, creased ? 4 : 0);
         struct tl_smooth coarse = smooth_of(&mesh);
-        vec3s limit[26], *finer = tl_alloc(MOST, sizeof *finer);
+        vec3s limit[26], *finer = tl_alloc(MAXIMUM, sizeof *finer);
         tl_smooth_apply(&coarse, mesh.places, limit);
         plain_refine(&mesh);
         struct tl_smooth fine = smooth_of(&mesh);

@@ -240,19 +240,19 @@ static void test_no_pattern_of_tiles(void **state)
     for (int pattern = TL_WEAVE_PLAIN; pattern <= TL_WEAVE_PILE; pattern++) {
         const tl_weave *weave = furry_weave(pattern);
         const int width = weave->tint.width, height = weave->tint.height;
-        double means[4][4] = {{0}}, least = 2, most = 0;
+        double means[4][4] = {{0}}, minimum = 2, maximum = 0;
         for (int row = 0; row < height; row++)
             for (int column = 0; column < width; column++)
                 means[row * 4 / height][column * 4 / width] +=
                     (double)tl_image_floats(&weave->tint)[3 * (row * width + column) + 1] * 16 /
                     (width * height);
         for (int i = 0; i < 16; i++) {
-            least = fmin(least, means[i / 4][i % 4]);
-            most = fmax(most, means[i / 4][i % 4]);
+            minimum = fmin(minimum, means[i / 4][i % 4]);
+            maximum = fmax(maximum, means[i / 4][i % 4]);
         }
-        print_message("pattern %d: means of quarters %.4f to %.4f\n", pattern, least, most);
+        print_message("pattern %d: means of quarters %.4f to %.4f\n", pattern, minimum, maximum);
         /* a quarter does not hold a whole number of ribs */
-        assert_true(most - least < (pattern == TL_WEAVE_RIB ? 0.05 : 0.025));
+        assert_true(maximum - minimum < (pattern == TL_WEAVE_RIB ? 0.05 : 0.025));
     }
 }
 

@@ -290,17 +290,17 @@ static void test_streaks(void **state)
     const double shares[2] = {0.8, 0.2};
     for (int k = 0; k < 2; k++) {
         const float *sums = weave.yarns->sums + firsts[k];
-        double square = 0, most = 0;
+        double square = 0, maximum = 0;
         assert_near(sums[0], 0, 0);
         assert_near(sums[counts[k]], 0, 0);
         for (int i = 0; i < counts[k]; i++) {
             const double deviation = (double)(sums[i + 1] - sums[i]);
             square += deviation * deviation / counts[k];
-            most = fmax(most, fabs(deviation));
+            maximum = fmax(maximum, fabs(deviation));
         }
         const double amount = shares[k] * 0.2;
-        print_message("system %d: root mean square %.4f, at most %.4f\n", k, sqrt(square), most);
-        assert_true(most < 1.4 * amount);
+        print_message("system %d: root mean square %.4f, at most %.4f\n", k, sqrt(square), maximum);
+        assert_true(maximum < 1.4 * amount);
         /* of what is even between -1 and 1 a third of the square; neighbours add less than half as much */
         assert_true(sqrt(square) > 0.5 * amount && sqrt(square) < 0.7 * amount);
     }

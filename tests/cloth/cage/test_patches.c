@@ -63,14 +63,14 @@ static void place(struct sheet *sheet, vec3d (*at)(double u, double v))
         sheet->x[i] = vec3d_as_drawn(at((double)(i % COLUMNS) / CELLS, (double)(i / COLUMNS) / CELLS));
 }
 
-static void check(struct sheet *sheet, const char *name, const bool *changed, size_t at_least)
+static void check(struct sheet *sheet, const char *name, const bool *changed, size_t at_min)
 {
     struct tl_near_pairs pairs = {0};
     const size_t expected = oracle_crossings(&sheet->topology, sheet->x);
     tl_patches_crossings(&sheet->patches, &sheet->topology, sheet->x, &(struct tl_patch_marks){changed, NULL},
                          &pairs);
     print_message("%s: %zu crossing pairs\n", name, expected);
-    assert_true(expected >= at_least);
+    assert_true(expected >= at_min);
     assert_int_equal(pairs.count, expected);
     tl_near_pairs_release(&pairs);
 }
@@ -124,13 +124,13 @@ static void crossings_equal_brute_force(void **state)
     static const struct {
         const char *name;
         vec3d (*at)(double u, double v);
-        size_t at_least;
+        size_t at_min;
     } cases[] = {{"crumpled", crumpled, 100}, {"smooth", smooth, 0}, {"eight", eight, 40},
                  {"ring", ring, 40},          {"loop", loop, 40},    {"folded", folded, 10}};
     struct sheet sheet = make_sheet();
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         place(&sheet, cases[i].at);
-        check(&sheet, cases[i].name, NULL, cases[i].at_least);
+        check(&sheet, cases[i].name, NULL, cases[i].at_min);
     }
     release(&sheet);
 }

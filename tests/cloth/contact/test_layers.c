@@ -109,7 +109,7 @@ static tl_garment two_cloths(const struct sheet_shape *shape, double first, doub
     return garment;
 }
 
-static double least_gap(const tl_cloth *cloth, size_t inner, size_t outer, size_t count)
+static double min_gap(const tl_cloth *cloth, size_t inner, size_t outer, size_t count)
 {
     double min_gap = HUGE_VAL;
     for (size_t i = 0; i < count; i++) { /* the same vertex of both lies on the same ray from the centre */
@@ -153,7 +153,7 @@ static void test_two_cloths(void **state)
         assert_int_equal(cloth->layers.layer_of[outer], 1);
         assert_near(report.deepest_m, 0, 0);
         assert_int_equal(tl_crossings_count(NULL, &cloth->topology, cloth->particles.x), 0);
-        double gap = least_gap(cloth, inner, outer, count);
+        double gap = min_gap(cloth, inner, outer, count);
         printf("two cloths: smallest gap %.2f mm\n", 1e3 * gap);
         assert_true(gap > 0.5e-3); /* 1 mm as made; they slide, so their vertices leave the common ray */
         tl_cloth_destroy(&cloth);

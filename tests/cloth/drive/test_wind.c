@@ -116,7 +116,7 @@ static void test_gusts_on_cloth(void **state)
     const struct tl_particles *particles = &cloth->particles;
     vec3d *forces = TL_NEW_ARRAY(vec3d, particles->count), *expected = TL_NEW_ARRAY(vec3d, particles->count);
     for (int k = 0; k < 60; k++) {
-        double speed = speeds[k % 3], most = 0;
+        double speed = speeds[k % 3], maximum = 0;
         const struct tl_wind wind = {
             .velocity = {0.6 * speed, 0, -0.8 * speed}, .gust = 1, .time_s = 0.37 * k, .areal_density = 10};
         memset(expected, 0, particles->count * sizeof *expected);
@@ -132,9 +132,9 @@ static void test_gusts_on_cloth(void **state)
         }
         tl_wind_forces(&wind, &cloth->topology, h, particles, forces);
         for (size_t i = 0; i < particles->count; i++)
-            most = fmax(most, vec3d_distance(forces[i], expected[i]));
+            maximum = fmax(maximum, vec3d_distance(forces[i], expected[i]));
         /* 1/2 rho A (2 v)^2 is the most that a vertex's six thirds of triangles can bear */
-        assert_true(most < off * TL_AIR_DENSITY * 2 * (0.05 * 0.05) * 4 * speed * speed);
+        assert_true(maximum < off * TL_AIR_DENSITY * 2 * (0.05 * 0.05) * 4 * speed * speed);
     }
     free(forces);
     free(expected);

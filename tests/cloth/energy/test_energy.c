@@ -306,7 +306,7 @@ static void plain_forces(const tl_cloth *cloth, vec3d *forces)
             add_bend(&energy->bends[i / TL_BATCH], i % TL_BATCH, stiffness, x, forces);
 }
 
-#define MOST_THREADS 8
+#define MAX_THREADS 8
 
 static tl_cloth *make_large(tl_garment *garment, const struct tl_cloth_params *params)
 {
@@ -317,7 +317,7 @@ static tl_cloth *make_large(tl_garment *garment, const struct tl_cloth_params *p
     struct tl_cloth_fabric fabric = fabric_of(ALL);
     tl_cloth *cloth = tl_cloth_create(garment, &fabric, params, &error);
     assert_non_null(cloth);
-    assert_true(cloth->particles.count > MOST_THREADS * TL_VERTICES_PER_THREAD);
+    assert_true(cloth->particles.count > MAX_THREADS * TL_VERTICES_PER_THREAD);
     deform(cloth, 0.001);
     return cloth;
 }
@@ -387,7 +387,7 @@ static vec3d *places_after_frame(int threads, const struct thread_run *run, size
 static void test_threads_agree(void **state)
 {
     (void)state;
-    const int threads[] = {2, 3, MOST_THREADS};
+    const int threads[] = {2, 3, MAX_THREADS};
     const struct thread_run runs[] = {{TL_CLOTH_PREVIEW, 1e-5, true},
                                       {TL_CLOTH_PREVIEW, 1e-5, false},
                                       {TL_CLOTH_PREVIEW, 10, false},

@@ -10,12 +10,12 @@
 #include <time.h>
 #include <unistd.h>
 
-#define MOST_THREADS 8
-#define VERTICES     (MOST_THREADS * TL_VERTICES_PER_THREAD)
-#define COUNT        1003 /* elements: no multiple of anything */
-#define UNIT         8
-#define ROUNDS       500
-#define MOST_S       60 /* for which a team is waited for: beside other processes the caller works alone */
+#define MAX_THREADS 8
+#define VERTICES    (MAX_THREADS * TL_VERTICES_PER_THREAD)
+#define COUNT       1003 /* elements: no multiple of anything */
+#define UNIT        8
+#define ROUNDS      500
+#define MAX_S       60 /* for which a team is waited for: beside other processes the caller works alone */
 
 struct counted {
     atomic_int visits[COUNT];
@@ -52,7 +52,7 @@ static double now_s(void)
 static void run_with_all(int threads, size_t vertex_count, struct counted *counted)
 {
     int works = 0, before = 0;
-    const double end_s = now_s() + MOST_S;
+    const double end_s = now_s() + MAX_S;
     for (; now_s() < end_s && counted->members - before != threads; works++) {
         before = counted->members;
         tl_team_run(vertex_count, visit, counted);
@@ -65,7 +65,7 @@ static void run_with_all(int threads, size_t vertex_count, struct counted *count
 static void test_ranges(void **state)
 {
     (void)state;
-    const int threads[] = {1, 2, 3, MOST_THREADS, 2};
+    const int threads[] = {1, 2, 3, MAX_THREADS, 2};
     int before = omp_get_max_threads();
     for (size_t t = 0; t < TL_COUNT(threads); t++) {
         struct counted counted = {0};
@@ -82,7 +82,7 @@ static void test_small_cloth(void **state)
 {
     (void)state;
     int before = omp_get_max_threads();
-    omp_set_num_threads(MOST_THREADS);
+    omp_set_num_threads(MAX_THREADS);
     assert_int_equal(tl_team_size(0), 1);
     assert_int_equal(tl_team_size(2 * TL_VERTICES_PER_THREAD - 1), 1);
     assert_int_equal(tl_team_size(3 * TL_VERTICES_PER_THREAD), 3);
@@ -94,7 +94,7 @@ static void test_small_cloth(void **state)
 /* Each round reads what another thread wrote in the round before: without a barrier between, some thread
  * would read an old number, or one too new. */
 struct rounds {
-    int numbers[2][MOST_THREADS]; /* [round % 2] */
+    int numbers[2][MAX_THREADS]; /* [round % 2] */
     atomic_int members, wrong;
 };
 
@@ -118,7 +118,7 @@ static void test_barriers(void **state)
     int before = omp_get_max_threads();
     for (int threads = 1; threads <= 4; threads++) {
         struct rounds rounds = {0};
-        const double end_s = now_s() + MOST_S;
+        const double end_s = now_s() + MAX_S;
         omp_set_num_threads(threads);
         for (int together = 0; now_s() < end_s && together < 5;) {
             rounds.members = 0;
@@ -165,7 +165,7 @@ static void test_stall(void **state)
     int before = omp_get_max_threads();
     atomic_int members = 0;
     omp_set_num_threads(2);
-    for (double end_s = now_s() + MOST_S; now_s() < end_s && members != 2;) {
+    for (double end_s = now_s() + MAX_S; now_s() < end_s && members != 2;) {
         members = 0;
         tl_team_run(VERTICES, be_late, &members);
     }
@@ -193,7 +193,7 @@ static void test_within(void **state)
     struct counted counted = {0};
     int before = omp_get_max_threads();
     omp_set_num_threads(2);
-    for (double end_s = now_s() + MOST_S; now_s() < end_s && counted.members < 2;) {
+    for (double end_s = now_s() + MAX_S; now_s() < end_s && counted.members < 2;) {
         memset(&counted, 0, sizeof counted);
         tl_team_run(VERTICES, visit_within, &counted);
     }

@@ -29,11 +29,11 @@ static struct tl_topology join(const uint32_t *indices, size_t index_count, size
     return topology;
 }
 
-static void check_count(const char *name, const struct tl_topology *topology, const vec3d *x, size_t at_least)
+static void check_count(const char *name, const struct tl_topology *topology, const vec3d *x, size_t at_min)
 {
     size_t expected = oracle_crossings(topology, x), found = tl_crossings_count(NULL, topology, x);
     printf("%s: %zu crossing pairs of %zu triangles\n", name, expected, topology->triangle_count);
-    assert_true(expected >= at_least);
+    assert_true(expected >= at_min);
     assert_int_equal(found, expected);
     /* with a tree of a time at which the triangles lay in a row, where none crossed */
     vec3d *before = TL_NEW_ARRAY(vec3d, topology->vertex_count);

@@ -204,15 +204,15 @@ static void check_pair(const struct tl_near *near, const struct tl_near_pair *pa
                        struct listing *seen)
 {
     int second = tl_near_second(pair);
-    double weights[4], most[2] = {0}, reach = near->margin;
+    double weights[4], maximum[2] = {0}, reach = near->margin;
     double distance = vec3d_norm(tl_near_closest(pair, x, weights));
     for (int i = 0; i < 4; i++) {
-        most[i >= second] = fmax(most[i >= second], near->reach[pair->v[i]]);
+        maximum[i >= second] = fmax(maximum[i >= second], near->reach[pair->v[i]]);
         reach += weights[i] * near->reach[pair->v[i]];
     }
     size_t listed = times_listed(near, pair);
     assert_true(listed <= 1);
-    assert_true(listed == 0 || distance < most[0] + most[1] + near->margin + bound_loss(pair, x));
+    assert_true(listed == 0 || distance < maximum[0] + maximum[1] + near->margin + bound_loss(pair, x));
     seen->within += distance < reach - 1e-9;
     seen->listed += listed;
     if (distance < reach - 1e-9 && listed == 0) {
@@ -272,7 +272,7 @@ static void test_umbrella(void **state)
     const struct tl_topology *topology = &scene.topology;
     struct tl_near near = tl_near_create(topology, scene.classes, scene.x);
     vec3d *rolled = TL_NEW_ARRAY(vec3d, topology->vertex_count);
-    size_t most_open = 0, least_open = SIZE_MAX;
+    size_t max_open = 0, min_open = SIZE_MAX;
     near.margin = 0.001;
     for (int step = 0; step < 12; step++) {
         double radius = 0.3 / (1 << step / 2) / (1 + 0.4 * (step % 2));
@@ -293,12 +293,12 @@ static void test_umbrella(void **state)
                 if (!oracle_touches(&v, b, 1, 3))
                     check_pair(&near, &pair, rolled, &seen);
             }
-        most_open = open > most_open ? open : most_open;
-        least_open = open < least_open ? open : least_open;
+        max_open = open > max_open ? open : max_open;
+        min_open = open < min_open ? open : min_open;
     }
-    printf("open hubs: %zu flat, %zu rolled up\n", most_open, least_open);
-    assert_true(most_open > 150);
-    assert_true(least_open < most_open / 2);
+    printf("open hubs: %zu flat, %zu rolled up\n", max_open, min_open);
+    assert_true(max_open > 150);
+    assert_true(min_open < max_open / 2);
     free(rolled);
     tl_near_release(&near);
     release_scene(&scene);

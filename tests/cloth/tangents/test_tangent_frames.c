@@ -131,15 +131,15 @@ struct errors {
 /* The corner of a vertex in the group of most of its corners, the first if several are equal. */
 static size_t showing_corner(const struct oracle *o, uint32_t vertex)
 {
-    size_t best = ORACLE_NONE, most = 0;
+    size_t best = ORACLE_NONE, maximum = 0;
     for (size_t c = o->first_at[o->weld[vertex]]; c != ORACLE_NONE; c = o->next_at[c]) {
         size_t votes = 0;
         if (oracle_vertex(o, c) != vertex || !oracle_grouped(o, c))
             continue;
         for (size_t d = c; d != ORACLE_NONE; d = o->next_at[d])
             votes += oracle_vertex(o, d) == vertex && o->group[d] == o->group[c];
-        best = votes > most ? c : best;
-        most = votes > most ? votes : most;
+        best = votes > maximum ? c : best;
+        maximum = votes > maximum ? votes : maximum;
     }
     return best;
 }

@@ -36,9 +36,10 @@ static void test_means(void **state)
         tl_cube cube = cube_of(size);
         tl_bounce_sky_follow(&sky, &cube, 1);
         const vec3s given = sum_of(&cube), kept = sum_of(&sky.cube);
-        const double most = size < sky.cube.size ? 0.02 : 1e-4; /* texels that are repeated keep no angle */
+        const double maximum =
+            size < sky.cube.size ? 0.02 : 1e-4; /* texels that are repeated keep no angle */
         for (int c = 0; c < 3; c++)
-            assert_near((double)(kept.raw[c] / given.raw[c]), 1, most);
+            assert_near((double)(kept.raw[c] / given.raw[c]), 1, maximum);
         tl_bounce_sky_release(&sky);
         tl_cube_release(&cube);
     }

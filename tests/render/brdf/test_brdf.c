@@ -255,7 +255,7 @@ static void bounded_ward_creates_no_energy(void **state)
     (void)state;
     const float widths[][2] = {{0.1f, 0.1f}, {0.3f, 0.1f}, {0.1f, 0.3f}, {0.6f, 0.2f}, {1, 1}};
     const double views[] = {0, 30, 60, 75, 85, 88, 89.5, 89.9};
-    double most[2] = {0}, front = 0;
+    double maximum[2] = {0}, front = 0;
     for (size_t i = 0; i < TL_COUNT(widths) * TL_COUNT(views); i++) {
         const float *width = widths[i / TL_COUNT(views)];
         double view = views[i % TL_COUNT(views)], sent[2];
@@ -264,15 +264,15 @@ static void bounded_ward_creates_no_energy(void **state)
             brdf.gloss.ward = ward;
             brdf.exponent = 100; /* the quadrature's steps */
             sent[ward] = energy(&brdf, view);
-            most[ward] = fmax(most[ward], sent[ward]);
+            maximum[ward] = fmax(maximum[ward], sent[ward]);
         }
         if (view <= 0 && i / TL_COUNT(views) == 0)
             front = fabs(sent[1] / sent[0] - 1);
     }
     printf("ward: sends back up to %.4f as published, %.4f bounded; from the front they differ by %.4f\n",
-           most[0], most[1], front);
-    assert_true(most[0] > 1.1);
-    assert_true(most[1] < 1.0005);
+           maximum[0], maximum[1], front);
+    assert_true(maximum[0] > 1.1);
+    assert_true(maximum[1] < 1.0005);
     assert_true(front < 0.02);
 }
 

@@ -161,7 +161,7 @@ static void nothing_rises_where_nothing_was_measured(void **state)
 {
     (void)state;
     struct tl_reflectance_samples samples = {TL_NEW_ARRAY(struct tl_reflectance_sample, 2000), 2000};
-    float most = 0;
+    float maximum = 0;
     for (size_t i = 0; i < samples.count; i++) {
         float a = glm_rad(20 * sqrtf((float)(i % 50) / 50)),
               b = glm_rad(20 * sqrtf((float)(i * 7 % 41) / 41));
@@ -170,7 +170,7 @@ static void nothing_rises_where_nothing_was_measured(void **state)
             (struct tl_reflectance_sample){{{sinf(a) * cosf(turn), sinf(a) * sinf(turn), cosf(a)}},
                                            {{sinf(b) * cosf(other), sinf(b) * sinf(other), cosf(b)}},
                                            {{value, value, value}}};
-        most = fmaxf(most, value);
+        maximum = fmaxf(maximum, value);
     }
     struct tl_brdf_tables tables = tl_brdf_tables_factor(&samples, 16, NULL);
     float highest = 0;
@@ -180,8 +180,8 @@ static void nothing_rises_where_nothing_was_measured(void **state)
               v = {{plane * cosf(3 * turn), plane * sinf(3 * turn), height}};
         highest = fmaxf(highest, from_tables(&tables, l, v).x);
     }
-    print_message("outside of the samples: %.3g, largest sample %.3g\n", (double)highest, (double)most);
-    assert_true(highest < 1e4f * most);
+    print_message("outside of the samples: %.3g, largest sample %.3g\n", (double)highest, (double)maximum);
+    assert_true(highest < 1e4f * maximum);
     tl_brdf_tables_release(&tables);
     tl_reflectance_samples_release(&samples);
 }

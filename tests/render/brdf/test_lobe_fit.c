@@ -163,7 +163,7 @@ static void test_lobes_match_the_gloss(void **state)
            "L1, percent, of lobes:", "1      3      5      7     11");
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         struct tl_brdf brdf = brdf_of(&cases[i]);
-        double least = 2, greatest = 0, errors[RUNS];
+        double minimum = 2, maximum = 0, errors[RUNS];
         for (int n = 0; n < RUNS; n++) {
             double sum = 0;
             for (size_t p = 0; p < TL_COUNT(polars); p++)
@@ -173,8 +173,8 @@ static void test_lobes_match_the_gloss(void **state)
                     int count = tl_lobe_fit_make(&brdf, &frame, v, 1, counts[n], lobes);
                     struct sums sums = integrate(&brdf, v, lobes, count);
                     sum += sums.difference / sums.gloss;
-                    least = fmin(least, sums.lobes_sum / sums.gloss);
-                    greatest = fmax(greatest, sums.lobes_sum / sums.gloss);
+                    minimum = fmin(minimum, sums.lobes_sum / sums.gloss);
+                    maximum = fmax(maximum, sums.lobes_sum / sums.gloss);
                 }
             const size_t directions = 1 + (TL_COUNT(polars) - 1) * TL_COUNT(azimuths);
             errors[n] = sum / (double)directions;
@@ -185,9 +185,9 @@ static void test_lobes_match_the_gloss(void **state)
                      : cases[i].model == TL_REFLECT_BANKS ? ENERGY_OFF_THREADS
                      : cases[i].facets                    ? ENERGY_OFF_TAILS
                                                           : ENERGY_OFF;
-        assert_true(least > 1 - off && greatest < 1 + off);
+        assert_true(minimum > 1 - off && maximum < 1 + off);
         printf("%-22s %6.1f %6.1f %6.1f %6.1f %6.1f   %.3f %.3f\n", cases[i].name, 100 * errors[0],
-               100 * errors[1], 100 * errors[2], 100 * errors[3], 100 * errors[4], least, greatest);
+               100 * errors[1], 100 * errors[2], 100 * errors[3], 100 * errors[4], minimum, maximum);
     }
 }
 

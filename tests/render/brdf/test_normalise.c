@@ -97,13 +97,13 @@ static void slerp_differs_by_the_third_power(void **state)
 {
     (void)state;
     for (int degrees = 20; degrees <= 60; degrees += 20) {
-        double a = degrees * DEG, most = 0;
+        double a = degrees * DEG, maximum = 0;
         for (int i = 0; i <= 1000; i++) {
             double p = 2 * i / 1000.0 - 1;
-            most = fmax(most, fabs(atan(p * tan(a / 2)) - p * a / 2));
+            maximum = fmax(maximum, fabs(atan(p * tan(a / 2)) - p * a / 2));
         }
         double slerp = tl_normalise_error(TL_NORMALISE_EXACT, a).slerp;
-        assert_true(slerp < most && slerp > most / 2);
+        assert_true(slerp < maximum && slerp > maximum / 2);
     }
 }
 

@@ -212,7 +212,7 @@ static void judge_all(struct bench *bench, struct test_device *device, int degre
 static void check(struct bench *bench, struct test_device *device, const char *name, truth_of *truth)
 {
     static const char *const names[] = {"none", "horizon", "relief"};
-    const double least[] = {0, 0.95, 0.99};
+    const double minimum[] = {0, 0.95, 0.99};
     for (int degrees = 5; degrees <= 15; degrees += 10) {
         struct verdict worst[3] = {{1, 0}, {1, 0}, {1, 0}};
         judge_all(bench, device, degrees, truth, worst);
@@ -222,7 +222,7 @@ static void check(struct bench *bench, struct test_device *device, const char *n
                    100 * worst[shadow].agree, 100 * worst[shadow].off);
         printf("\n");
         for (int shadow = 1; shadow < 3; shadow++)
-            assert_true(worst[shadow].agree >= least[shadow]);
+            assert_true(worst[shadow].agree >= minimum[shadow]);
         assert_true(worst[1].off < 0.6 * worst[0].off); /* nearer to the truth than no shadow */
         assert_true(worst[2].off < worst[1].off);
     }

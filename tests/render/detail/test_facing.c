@@ -32,15 +32,15 @@ static void open_ball(struct test_scene *scene)
 /* The least light of a whole pixel over the greatest. */
 static double darkest(const tl_image *image)
 {
-    float least = FLT_MAX, most = 0;
+    float minimum = FLT_MAX, maximum = 0;
     for (int i = 0; i < image->width * image->height; i++) {
         const float *texel = tl_image_floats(image) + 4 * i;
         if (!(texel[3] > 0.999f))
             continue;
-        least = fminf(least, texel[1]);
-        most = fmaxf(most, texel[1]);
+        minimum = fminf(minimum, texel[1]);
+        maximum = fmaxf(maximum, texel[1]);
     }
-    return (double)(least / most);
+    return (double)(minimum / maximum);
 }
 
 static void check(const char *name, tl_image image)

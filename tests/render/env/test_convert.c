@@ -119,7 +119,7 @@ static void every_sun_keeps_its_power(void **state)
 /* How far a texel's corners on the sphere lie from its middle: the farthest of each, on average over the
  * sphere and at most. */
 struct reach {
-    double mean, most;
+    double mean, maximum;
 };
 
 static struct reach find_reach(const struct tl_sphere_map *map)
@@ -135,7 +135,7 @@ static struct reach find_reach(const struct tl_sphere_map *map)
             farthest = fmax(farthest, (double)glms_vec3_distance(middle, corner));
         }
         reach.mean += farthest * solid_angle / (4 * M_PI);
-        reach.most = fmax(reach.most, farthest);
+        reach.maximum = fmax(reach.maximum, farthest);
     }
     return reach;
 }
@@ -171,9 +171,9 @@ static void directions_stay(void **state)
         struct reach first = find_reach(&from), second = find_reach(&to);
         print_message("%s to %s: mean %.3f of %.3f, worst %.3f of %.3f\n", tl_layout_names[from.layout],
                       tl_layout_names[to.layout], mean, first.mean + second.mean, worst,
-                      first.most + second.most);
+                      first.maximum + second.maximum);
         assert_true(mean < 0.5 * (first.mean + second.mean));
-        assert_true(worst < first.most + second.most);
+        assert_true(worst < first.maximum + second.maximum);
         tl_image_release(&converted);
         tl_image_release(&image);
     }

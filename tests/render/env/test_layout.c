@@ -165,7 +165,7 @@ static void solid_angle_of_a_texel(void **state)
 static double spread(enum tl_layout layout)
 {
     struct tl_sphere_map map = map_of(layout, 256);
-    double least = INFINITY, most = 0;
+    double minimum = INFINITY, maximum = 0;
     for (int y = 0; y < map.height; y++)
         for (int x = 0; x < map.width; x++) {
             bool whole = true;
@@ -173,10 +173,10 @@ static double spread(enum tl_layout layout)
                 whole = whole &&
                         tl_layout_contains(&map, x + (i & 1 ? 0.999 : 0.001), y + (i & 2 ? 0.999 : 0.001));
             double solid_angle = tl_layout_solid_angle(&map, x, y);
-            least = whole ? fmin(least, solid_angle) : least;
-            most = whole ? fmax(most, solid_angle) : most;
+            minimum = whole ? fmin(minimum, solid_angle) : minimum;
+            maximum = whole ? fmax(maximum, solid_angle) : maximum;
         }
-    return most / least;
+    return maximum / minimum;
 }
 
 /* Spreads of [Heidrich and Seidel 1999, 4.1]: 3 sqrt(3) for the cube, 4 for the paraboloid. The ball's texels

@@ -39,14 +39,14 @@ static struct tl_exponent_blend node(int i)
 /* For the filters of the paper, also the error at the best level for each direction. */
 static void print_min_error(const struct tl_lobe_curves *curves, int method)
 {
-    double mean[EXPONENTS], worst[EXPONENTS], sum = 0, most = 0;
+    double mean[EXPONENTS], worst[EXPONENTS], sum = 0, maximum = 0;
     tl_lobe_min_error(curves, method, mean, worst);
     for (int i = 0; i < EXPONENTS; i++) {
         sum += mean[i] / EXPONENTS;
-        most = fmax(most, worst[i]);
+        maximum = fmax(maximum, worst[i]);
     }
     printf("%-12s at the best level for each direction: mean %.1f %%, worst %.1f %%\n", "", 100 * sum,
-           100 * most);
+           100 * maximum);
     assert_true(sum > 0.15); /* ten times the limit of the slices, which it cannot reach */
 }
 

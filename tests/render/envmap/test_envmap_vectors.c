@@ -54,7 +54,7 @@ static bool find_point(const tl_mesh *mesh, const struct tl_view *view, int pixe
             place[i] = mesh->positions[mesh->indices[3 * t + i]];
             normal[i] = mesh->normals[mesh->indices[3 * t + i]];
         }
-        double area = 0, least = 1;
+        double area = 0, minimum = 1;
         for (int i = 0; i < 3; i++) {
             vec3s a = place[(i + 1) % 3], b = place[(i + 2) % 3];
             weights[i] = (double)((b.x - a.x) * (hit.y - a.y) - (b.y - a.y) * (hit.x - a.x));
@@ -62,9 +62,9 @@ static bool find_point(const tl_mesh *mesh, const struct tl_view *view, int pixe
         }
         for (int i = 0; i < 3; i++) {
             weights[i] /= area;
-            least = fmin(least, weights[i]);
+            minimum = fmin(minimum, weights[i]);
         }
-        if (least > 1e-3)
+        if (minimum > 1e-3)
             return true;
     }
     return false;

@@ -46,13 +46,13 @@ static struct corner project(const struct tl_view *view, vec3s p, int width, int
 static double inset(const struct corner c[3], double x, double y)
 {
     double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
-    double least = INFINITY;
+    double minimum = INFINITY;
     for (int i = 0; i < 3; i++) {
         const struct corner *a = &c[i], *b = &c[(i + 1) % 3];
         double cross = (b->x - a->x) * (y - a->y) - (b->y - a->y) * (x - a->x);
-        least = fmin(least, (area < 0 ? -cross : cross) / hypot(b->x - a->x, b->y - a->y));
+        minimum = fmin(minimum, (area < 0 ? -cross : cross) / hypot(b->x - a->x, b->y - a->y));
     }
-    return least;
+    return minimum;
 }
 
 static double depth_at(const struct corner c[3], double x, double y)
@@ -262,15 +262,15 @@ static void test_what_covers_a_sample_is_kept(void **state)
     size_t covering = 0, missing = 0;
     for (uint32_t t = 0; t < triangles_of(&scene); t++) {
         struct corner corners[3];
-        double most = -INFINITY;
+        double maximum = -INFINITY;
         assert_true(see(&scene, t, corners));
         for (int y = 0; y < HEIGHT; y++)
             for (int x = 0; x < WIDTH; x++)
-                most = fmax(most, inset(corners, x + 0.5, y + 0.5));
-        assert_true(kept[t] || most < CLEAR);
-        assert_true(!kept[t] || most > -2 * CLEAR); /* the margin is measured along both axes */
-        covering += most > CLEAR;
-        missing += most < -2 * CLEAR;
+                maximum = fmax(maximum, inset(corners, x + 0.5, y + 0.5));
+        assert_true(kept[t] || maximum < CLEAR);
+        assert_true(!kept[t] || maximum > -2 * CLEAR); /* the margin is measured along both axes */
+        covering += maximum > CLEAR;
+        missing += maximum < -2 * CLEAR;
     }
     assert_true(covering > 300 && missing > 300);
     free(kept);

@@ -471,10 +471,11 @@ static double flicker(struct test_scene *scene, tl_renderer *renderer)
         float angle = 1.2f + 0.004f * (float)i;
         scene->lamps[0] = test_lamp_towards((vec3s){{sinf(angle), 0.2f, cosf(angle)}}, 3);
         tl_image image = test_scene_draw(scene, renderer);
-        double most = 0;
+        double maximum = 0;
         for (size_t k = 0; i > 0 && k < (size_t)image.width * (size_t)image.height * 4; k++)
-            most = fmax(most, fabs((double)tl_image_floats(&image)[k] - (double)tl_image_floats(&before)[k]));
-        sum += most;
+            maximum =
+                fmax(maximum, fabs((double)tl_image_floats(&image)[k] - (double)tl_image_floats(&before)[k]));
+        sum += maximum;
         if (i > 0)
             tl_image_release(&before);
         before = image;

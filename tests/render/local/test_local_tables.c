@@ -100,18 +100,18 @@ static void passes_give_one_image(void **state)
         tl_image one = test_scene_draw(&scene, device->renderer);
         double level = rounding(&scene) / test_brightest(&one);
         size_t bytes = tl_renderer_memory(device->renderer).other;
-        for (int most = 1; most <= 2; most++)
+        for (int maximum = 1; maximum <= 2; maximum++)
             for (int target = 0; target < 2; target++) {
-                shading->max_textures_per_pass = most;
+                shading->max_textures_per_pass = maximum;
                 shading->pass_target = target;
                 struct test_difference off = test_scene_error(&scene, device->renderer, &one);
                 print_message("%-17s %d a pass, %s: rel. RMSE %.1e, largest %.1e of the peak (bound %.1e), "
                               "%td bytes more\n",
-                              models[model], most, target ? "float" : "8 bits", off.rel_rmse, off.largest,
+                              models[model], maximum, target ? "float" : "8 bits", off.rel_rmse, off.largest,
                               level,
                               (ptrdiff_t)tl_renderer_memory(device->renderer).other - (ptrdiff_t)bytes);
                 assert_true(off.largest < (target == TL_PASS_TARGET_FLOAT ? 1e-5 : level + 1e-5));
-                if (target == TL_PASS_TARGET_FIXED8 && most == 1 && model >= TL_REFLECT_TORRANCE_SPARROW)
+                if (target == TL_PASS_TARGET_FIXED8 && maximum == 1 && model >= TL_REFLECT_TORRANCE_SPARROW)
                     assert_true(off.rel_rmse > 1e-4); /* it was drawn in several passes */
             }
         tl_image_release(&one);

@@ -103,7 +103,7 @@ static double blend_error(double a, double b, double s, double weight)
     return sum;
 }
 
-static double least_error(double a, double b, double s)
+static double min_error(double a, double b, double s)
 {
     double low = 0, high = 1;
     for (int i = 0; i < 30; i++) {
@@ -126,7 +126,7 @@ static void blends_are_the_best_in_l1(void **state)
         double a = (double)tl_exponent(blend.index), b = (double)tl_exponent(blend.index + 1);
         assert_true(a <= (double)s * 1.00001 && (double)s <= b * 1.00001);
         double error = blend_error(a, b, (double)s, (double)blend.weight);
-        assert_near(error, least_error(a, b, (double)s), 3e-4);
+        assert_near(error, min_error(a, b, (double)s), 3e-4);
         worst = fmax(worst, error);
     }
     printf("ratio %.2f: blends err by up to %.2f %%\n", (double)TL_EXPONENT_RATIO, 100 * worst);

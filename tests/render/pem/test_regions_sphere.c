@@ -234,17 +234,17 @@ static void merging_is_the_smaller_cut(void **state)
     (void)state;
     tl_cube cubes[] = {noise_cube(32), cube_of(32, constant), cube_of(64, blob)};
     for (size_t c = 0; c < TL_COUNT(cubes); c++) {
-        struct tl_regions most = {0}, merged = {0}, again = {0}, direct = {0};
-        tl_regions_cut_sphere(&cubes[c], 384, &most);
+        struct tl_regions maximum = {0}, merged = {0}, again = {0}, direct = {0};
+        tl_regions_cut_sphere(&cubes[c], 384, &maximum);
         for (int count = 1; count < 384; count += 1 + count / 3) {
-            tl_regions_merge(&most, count, &merged);
+            tl_regions_merge(&maximum, count, &merged);
             tl_regions_cut_sphere(&cubes[c], count, &direct);
             expect_same(&merged, &direct);
             tl_regions_merge(&merged, (count + 1) / 2, &again); /* and of what was merged */
             tl_regions_cut_sphere(&cubes[c], (count + 1) / 2, &direct);
             expect_same(&again, &direct);
         }
-        tl_regions_release(&most);
+        tl_regions_release(&maximum);
         tl_regions_release(&merged);
         tl_regions_release(&again);
         tl_regions_release(&direct);

@@ -63,11 +63,11 @@ static tl_cube bright_cube(float lamp)
 /* Shared exponent and three mantissas of nine bits [GL 4.5, section 8.5.2]. */
 static void quantise(float colour[3], float scale)
 {
-    float greatest = fmaxf(fmaxf(colour[0], colour[1]), colour[2]) / scale;
-    if (greatest <= 0)
+    float maximum = fmaxf(fmaxf(colour[0], colour[1]), colour[2]) / scale;
+    if (maximum <= 0)
         return;
-    int exponent = (int)fmaxf(-16, floorf(log2f(greatest))) + 1;
-    if (roundf(ldexpf(greatest, 9 - exponent)) >= 512)
+    int exponent = (int)fmaxf(-16, floorf(log2f(maximum))) + 1;
+    if (roundf(ldexpf(maximum, 9 - exponent)) >= 512)
         exponent++;
     for (int c = 0; c < 3; c++)
         colour[c] = scale * ldexpf(floorf(ldexpf(colour[c] / scale, 9 - exponent) + 0.5f), exponent - 9);

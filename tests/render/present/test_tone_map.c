@@ -19,8 +19,8 @@ static double encoded(double linear)
 static void pbr_neutral(double colour[3])
 {
     const double start = 0.8 - 0.04, desaturation = 0.15;
-    double least = fmin(colour[0], fmin(colour[1], colour[2]));
-    double offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
+    double minimum = fmin(colour[0], fmin(colour[1], colour[2]));
+    double offset = minimum < 0.08 ? minimum - 6.25 * minimum * minimum : 0.04;
     for (int c = 0; c < 3; c++)
         colour[c] -= offset;
     double peak = fmax(colour[0], fmax(colour[1], colour[2]));

@@ -27,7 +27,7 @@ static void everybody_gets_a_turn(void **state)
 {
     (void)state;
     struct tl_map_wait waits[MAPS];
-    int drawn[MAPS] = {0}, frames = 600, most = 12, cap = tl_map_age_cap(MAPS, most);
+    int drawn[MAPS] = {0}, frames = 600, maximum = 12, cap = tl_map_age_cap(MAPS, maximum);
     long sum = 0;
     for (int i = 0; i < MAPS; i++)
         waits[i] =
@@ -35,8 +35,8 @@ static void everybody_gets_a_turn(void **state)
     assert_int_equal(cap, 16);
     for (int frame = 0; frame < frames; frame++) {
         bool due[MAPS];
-        tl_map_order(waits, MAPS, most, due);
-        assert_true(count_of(due, MAPS) >= most);
+        tl_map_order(waits, MAPS, maximum, due);
+        assert_true(count_of(due, MAPS) >= maximum);
         sum += count_of(due, MAPS);
         age(waits, MAPS, due, drawn);
         for (int i = 0; i < MAPS; i++)
@@ -45,7 +45,7 @@ static void everybody_gets_a_turn(void **state)
     assert_true(drawn[0] > 3 * drawn[MAPS - 1]);
     assert_in_range(drawn[MAPS - 1], frames / cap - 1, frames / cap + 1);
     /* The cap's turns are half of all at most, so that this is what they add. */
-    assert_true((double)sum / frames <= 1.5 * most);
+    assert_true((double)sum / frames <= 1.5 * maximum);
 }
 
 static void equal_maps_take_turns(void **state)

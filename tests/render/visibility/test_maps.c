@@ -471,7 +471,7 @@ static float leak_under(struct test_device *device, const tl_environment *enviro
     tl_frame frame =
         test_frame((vec3s){{0, 0.006f, 1.9f}}, (vec3s){{0, 0, 0}}, 0.09f, surfaces, 2, environment);
     tl_image visibility = visibility_image(device, &frame, settings);
-    float most = 0;
+    float maximum = 0;
     int seen = 0;
     for (int y = 0; y < settings.image.height; y++)
         for (int x = 0; x < settings.image.width; x++) {
@@ -479,14 +479,14 @@ static float leak_under(struct test_device *device, const tl_environment *enviro
             if (point.y > 1e-4f || fabsf(point.z) > 0.4f || fabsf(point.x) > 0.4f)
                 continue;
             seen++;
-            most = fmaxf(most, test_pixel(&visibility, x, y)[0]);
+            maximum = fmaxf(maximum, test_pixel(&visibility, x, y)[0]);
         }
     assert_true(seen > 20);
     tl_image_release(&visibility);
     *bytes = tl_renderer_memory(device->renderer).maps;
     for (int i = 0; i < 2; i++)
         test_shape_release(&shapes[i]);
-    return most;
+    return maximum;
 }
 
 /* Moments in half precision take half the memory. Rounded to 2^-12 of themselves, depths m of half a unit and

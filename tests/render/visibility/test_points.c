@@ -575,7 +575,7 @@ static void repair_finds_and_mends_the_worst(void **state)
     size_t count = plain.samples.count, repaired = 0, wanted = (size_t)(0.1f * (float)count);
     assert_int_equal(tl_points_report(corrected.points).repaired_samples, wanted);
     const struct tl_taps *before = tl_points_taps(plain.points), *after = tl_points_taps(corrected.points);
-    double least = INFINITY, most = 0, error = 0;
+    double minimum = INFINITY, maximum = 0, error = 0;
     for (size_t s = 0; s < count; s++) {
         const tl_sample *sample = &plain.samples.items[s];
         bool own = before[s].point[0] != after[s].point[0];
@@ -584,10 +584,10 @@ static void repair_finds_and_mends_the_worst(void **state)
         if (!reads_all_corners(&before[s], sample))
             continue;
         if (!own) {
-            most = fmax(most, doubt);
+            maximum = fmax(maximum, doubt);
             continue;
         }
-        least = fmin(least, doubt);
+        minimum = fmin(minimum, doubt);
         if (repaired % 5)
             continue;
         uint32_t numbers[3];
@@ -609,7 +609,7 @@ static void repair_finds_and_mends_the_worst(void **state)
         }
     }
     assert_int_equal(repaired, wanted);
-    assert_true(most <= least * (1 + 1.0 / 256));
+    assert_true(maximum <= minimum * (1 + 1.0 / 256));
     assert_true(error <
                 0.2); /* 64 even rays of a shadow's edge: 1 / sqrt(64) at worst, and as much for 256 */
     stage_close(&plain);

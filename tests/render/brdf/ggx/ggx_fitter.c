@@ -248,7 +248,7 @@ double fitter_fit(struct fitter *fitter, int count, const struct fitted *target,
     double damping = 1e-2;
     limit(fitter, count, lobes);
     evaluate(fitter, count, lobes);
-    double least = loss_of(fitter, count, lobes, target, pull);
+    double minimum = loss_of(fitter, count, lobes, target, pull);
     for (int round = 0; round < rounds; round++) {
         struct normal_equations equations;
         linearise(fitter, count, lobes, target, pull, &equations);
@@ -265,18 +265,18 @@ double fitter_fit(struct fitter *fitter, int count, const struct fitted *target,
                         fmin(fmax(damped.right[q], -STEP), STEP);
                 limit(fitter, count, lobes);
                 evaluate(fitter, count, lobes);
-                gain = least - loss_of(fitter, count, lobes, target, pull);
+                gain = minimum - loss_of(fitter, count, lobes, target, pull);
             }
             damping = gain > 0 ? fmax(damping / 3, 1e-6) : 4 * damping;
         }
         if (!(gain > 0))
             *lobes = before;
-        least -= fmax(gain, 0);
+        minimum -= fmax(gain, 0);
         if (!(gain > 1e-7))
             break;
     }
     evaluate(fitter, count, lobes);
-    return least;
+    return minimum;
 }
 
 /* Schlick's term with F0 = 0. */

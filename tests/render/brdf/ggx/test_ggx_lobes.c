@@ -83,12 +83,12 @@ static void fit_best(int row, int column, int count, const struct fitted *target
                      const struct fitted *starts, int start_count)
 {
     struct fitter *fitter = fitter_at(row, column);
-    double least = INFINITY;
+    double minimum = INFINITY;
     for (int i = 0; i < start_count; i++) {
         struct fitted tried = starts[i];
         const double loss = fitter_fit(fitter, count, target, pull, 50, &tried);
-        if (loss < least) {
-            least = loss;
+        if (loss < minimum) {
+            minimum = loss;
             fits[row][column] = tried;
         }
     }

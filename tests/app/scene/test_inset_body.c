@@ -3,7 +3,7 @@
  */
 #include "tests/testing.h"
 
-#include "app/scene/tuck.h"
+#include "app/scene/inset_body.h"
 #include "assets/avatar.h"
 #include "assets/garment.h"
 #include "cloth/contact/collider.h"
@@ -58,28 +58,28 @@ static size_t outside_of(const tl_mesh *garment, const tl_mesh *body, const floa
     return outside;
 }
 
-static void a_ball_is_tucked_into_a_bowl(void **state)
+static void a_ball_is_inset_in_a_bowl(void **state)
 {
     (void)state;
     const float radius = 0.2f;
     tl_mesh ball = bowl(radius, 90, 180, 0.9999f * radius), cloth = bowl(radius, 9, 14, 0);
     tl_error error = {0};
-    float *depths = tl_tuck_find(&cloth, &ball, &error);
+    float *depths = tl_inset_body_find(&cloth, &ball, &error);
     assert_ok(depths != NULL, error);
-    size_t tucked = 0;
+    size_t inset = 0;
     float deepest_m = 0;
     for (size_t i = 0; i < ball.vertex_count; i++) {
-        tucked += depths[i] > 0;
+        inset += depths[i] > 0;
         deepest_m = fmaxf(deepest_m, depths[i]);
         if (ball.positions[i].y > 0.01f)
             assert_near(depths[i], 0, 0); /* past the rim: no cloth covers it */
         if (ball.positions[i].y < -0.02f)
-            assert_true(depths[i] >= 0.9f * TL_TUCK_CLEARANCE_M);
+            assert_true(depths[i] >= 0.9f * TL_INSET_BODY_CLEARANCE_M);
     }
-    assert_true(tucked > ball.vertex_count / 3);
-    assert_true(deepest_m > 2 * TL_TUCK_CLEARANCE_M); /* the bowl's triangles are flat */
+    assert_true(inset > ball.vertex_count / 3);
+    assert_true(deepest_m > 2 * TL_INSET_BODY_CLEARANCE_M); /* the bowl's triangles are flat */
     assert_true(outside_of(&cloth, &ball, depths, ball.positions) > 1000);
-    tl_tuck_apply(depths, ball.normals, ball.positions, ball.vertex_count);
+    tl_inset_body_apply(depths, ball.normals, ball.positions, ball.vertex_count);
     assert_int_equal(outside_of(&cloth, &ball, depths, ball.positions), 0);
     free(depths);
     /* Cloth that faces the other way does not cover: a sleeve beside a hip. */
@@ -88,7 +88,7 @@ static void a_ball_is_tucked_into_a_bowl(void **state)
         cloth.indices[3 * t] = cloth.indices[3 * t + 1];
         cloth.indices[3 * t + 1] = first;
     }
-    depths = tl_tuck_find(&cloth, &ball, &error);
+    depths = tl_inset_body_find(&cloth, &ball, &error);
     assert_ok(depths != NULL, error);
     for (size_t i = 0; i < ball.vertex_count; i++)
         assert_near(depths[i], 0, 0);
@@ -102,12 +102,12 @@ static float *find(const char *garment_file, const char *avatar_file, tl_garment
     tl_error error = {0};
     assert_ok(tl_garment_load(test_data(garment_file), garment, &error), error);
     assert_ok(tl_avatar_load(test_data(avatar_file), avatar, &error), error);
-    float *depths = tl_tuck_find(&garment->model.mesh, &avatar->model.mesh, &error);
+    float *depths = tl_inset_body_find(&garment->model.mesh, &avatar->model.mesh, &error);
     assert_ok(depths != NULL, error);
     return depths;
 }
 
-static void a_body_is_tucked_into_its_own_suit_only(void **state)
+static void a_body_is_inset_into_its_own_suit_only(void **state)
 {
     (void)state;
     tl_garment garment;
@@ -116,10 +116,10 @@ static void a_body_is_tucked_into_its_own_suit_only(void **state)
         find("garments/mh_female_sportsuit01.glb", "avatars/mh_female_body.glb", &garment, &avatar);
     tl_mesh *body = &avatar.model.mesh;
     size_t before = outside_of(&garment.model.mesh, body, depths, body->positions);
-    tl_tuck_apply(depths, body->normals, body->positions, body->vertex_count);
+    tl_inset_body_apply(depths, body->normals, body->positions, body->vertex_count);
     size_t after = outside_of(&garment.model.mesh, body, depths, body->positions);
-    print_message("sports suit: %zu vertices of its body reach through it, %zu when it is tucked in\n",
-                  before, after);
+    print_message("sports suit: %zu vertices of its body reach through it, %zu when it is inset\n", before,
+                  after);
     assert_true(before > 100);
     assert_true(after <= before / 50); /* between the legs two sides of the cloth are near */
     free(depths);
@@ -152,7 +152,7 @@ static void skin_is_not_torn(void **state)
     size_t moved = 0, turned = 0;
     for (size_t t = 0; t < body->index_count / 3; t++)
         before[t] = area_of(body, t);
-    tl_tuck_apply(depths, body->normals, body->positions, body->vertex_count);
+    tl_inset_body_apply(depths, body->normals, body->positions, body->vertex_count);
     for (size_t i = 0; i < body->vertex_count; i++)
         moved += depths[i] > 0;
     for (size_t t = 0; t < body->index_count / 3; t++)
@@ -170,8 +170,8 @@ static void skin_is_not_torn(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_is_tucked_into_a_bowl),
-        cmocka_unit_test(a_body_is_tucked_into_its_own_suit_only),
+        cmocka_unit_test(a_ball_is_inset_in_a_bowl),
+        cmocka_unit_test(a_body_is_inset_into_its_own_suit_only),
         cmocka_unit_test(skin_is_not_torn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-#include "app/scene/tuck.h"
+#include "app/scene/inset_body.h"
 
 #include "cloth/contact/collider.h"
 #include "cloth/mesh/topology.h"
@@ -22,17 +22,17 @@ static vec3s face_normal(const tl_mesh *mesh, uint32_t triangle, vec3s otherwise
  * hip. */
 static float depth_of(const tl_collider *cloth, const tl_mesh *garment, vec3s at, vec3s normal)
 {
-    const float least_facing = 0.3f, least_above = 0.8f;
+    const float min_facing = 0.3f, min_above = 0.8f;
     const double touching_m = 5e-4; /* nearer, the direction to the nearest point means nothing */
     const double point[3] = {(double)at.x, (double)at.y, (double)at.z};
     struct tl_contact contact;
-    if (!tl_collider_query(cloth, point, (double)TL_TUCK_REACH_M, &contact))
+    if (!tl_collider_query(cloth, point, (double)TL_INSET_BODY_REACH_M, &contact))
         return 0;
     vec3s towards = {{(float)contact.normal[0], (float)contact.normal[1], (float)contact.normal[2]}};
     vec3s face = face_normal(garment, contact.triangle, towards);
     float facing = glms_vec3_dot(face, normal), height_m = (float)contact.distance_m;
-    bool is_above = fabs(contact.distance_m) < touching_m || glms_vec3_dot(face, towards) > least_above;
-    return is_above && facing > least_facing ? fmaxf((height_m + TL_TUCK_CLEARANCE_M) / facing, 0) : 0;
+    bool is_above = fabs(contact.distance_m) < touching_m || glms_vec3_dot(face, towards) > min_above;
+    return is_above && facing > min_facing ? fmaxf((height_m + TL_INSET_BODY_CLEARANCE_M) / facing, 0) : 0;
 }
 
 /* A body that reaches this far through this share of the cloth that lies close to it is not the one that the
@@ -46,7 +46,7 @@ static bool is_made_for(const float *depths, size_t count)
     size_t close = 0, through = 0;
     for (size_t i = 0; i < count; i++) {
         close += depths[i] > 0;
-        through += depths[i] > THROUGH_M + TL_TUCK_CLEARANCE_M;
+        through += depths[i] > THROUGH_M + TL_INSET_BODY_CLEARANCE_M;
     }
     return (double)through <= THROUGH_SHARE * (double)close;
 }
@@ -57,10 +57,10 @@ static bool is_made_for(const float *depths, size_t count)
  * without a limit. */
 #define STEEPEST 2.0f
 
-static bool lower(float *depth, float most)
+static bool lower(float *depth, float maximum)
 {
-    bool lowers = *depth > most;
-    *depth = lowers ? most : *depth;
+    bool lowers = *depth > maximum;
+    *depth = lowers ? maximum : *depth;
     return lowers;
 }
 
@@ -75,7 +75,7 @@ static void limit_steepness(const tl_mesh *body, float *depths)
 {
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, body->vertex_count);
     size_t places = tl_weld_positions(body->positions, body->vertex_count, weld);
-    float *least = TL_NEW_ARRAY(float, places);
+    float *minimum = TL_NEW_ARRAY(float, places);
     bool any = true;
     while (any) {
         any = false;
@@ -83,17 +83,17 @@ static void limit_steepness(const tl_mesh *body, float *depths)
             for (size_t k = 0; k < 3; k++)
                 any = lower_edge(body, depths, body->indices[i + k], body->indices[i + (k + 1) % 3]) || any;
         for (size_t i = 0; i < places; i++)
-            least[i] = INFINITY;
+            minimum[i] = INFINITY;
         for (size_t i = 0; i < body->vertex_count; i++)
-            lower(&least[weld[i]], depths[i]);
+            lower(&minimum[weld[i]], depths[i]);
         for (size_t i = 0; i < body->vertex_count; i++)
-            any = lower(&depths[i], least[weld[i]]) || any;
+            any = lower(&depths[i], minimum[weld[i]]) || any;
     }
     free(weld);
-    free(least);
+    free(minimum);
 }
 
-float *tl_tuck_find(const tl_mesh *garment, const tl_mesh *body, tl_error *error)
+float *tl_inset_body_find(const tl_mesh *garment, const tl_mesh *body, tl_error *error)
 {
     tl_collider *cloth = tl_collider_create(garment, false, error);
     if (!cloth)
@@ -109,7 +109,7 @@ float *tl_tuck_find(const tl_mesh *garment, const tl_mesh *body, tl_error *error
     return depths;
 }
 
-void tl_tuck_apply(const float *depths, const vec3s *normals, vec3s *positions, size_t count)
+void tl_inset_body_apply(const float *depths, const vec3s *normals, vec3s *positions, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         positions[i] = glms_vec3_sub(positions[i], glms_vec3_scale(normals[i], depths[i]));
