@@ -1,6 +1,6 @@
 #include "app/library/toile.h"
 
-#include "app/batch/save_frame.h"
+#include "app/batch/frame/save_frame.h"
 #include "app/scene/headless.h"
 #include "config/base/file.h"
 #include "config/base/log.h"

@@ -329,7 +329,7 @@ static void the_rules_tell_good_from_bad(void **state)
         {"app/lab/trade/trade.c", {"app/lab/experiments/experiment.h", true, 1}, true},
         {"tests/app/settings/test_affects.c", {"app/lab/flight/fly_account.h", true, 1}, true},
         {"app/main.c", {"app/lab/check/commands.h", true, 1}, false},
-        {"app/batch/cmd_plan.c", {"app/lab/trade/trade.h", true, 1}, false},
+        {"app/measure/cmd_plan.c", {"app/lab/trade/trade.h", true, 1}, false},
     };
     for (size_t i = 0; i < TL_COUNT(cases); i++)
         if ((check_include(cases[i].path, &cases[i].include) == NULL) != cases[i].good)

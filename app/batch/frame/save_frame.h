@@ -1,6 +1,6 @@
 /* A frame as a file. Threads: the renderer's. */
-#ifndef TOILE_APP_BATCH_SAVE_FRAME_H
-#define TOILE_APP_BATCH_SAVE_FRAME_H
+#ifndef TOILE_APP_BATCH_FRAME_SAVE_FRAME_H
+#define TOILE_APP_BATCH_FRAME_SAVE_FRAME_H
 
 #include "app/scene/headless.h"
 

@@ -1,4 +1,4 @@
-#include "app/batch/save_frame.h"
+#include "app/batch/frame/save_frame.h"
 
 #include "app/report/legend.h"
 #include "assets/image/exr.h"

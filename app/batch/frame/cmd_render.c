@@ -1,6 +1,6 @@
 /* toile render: renders frames to EXR or PNG files, without a window. */
 #include "app/batch/commands.h"
-#include "app/batch/save_frame.h"
+#include "app/batch/frame/save_frame.h"
 #include "app/scene/headless.h"
 #include "config/base/file.h"
 #include "config/base/interrupt.h"

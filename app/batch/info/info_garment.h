@@ -1,6 +1,6 @@
 /* Prints a garment for `toile info`: its rest shape, its openings, its pattern. Threads: pure. */
-#ifndef TOILE_APP_BATCH_INFO_GARMENT_H
-#define TOILE_APP_BATCH_INFO_GARMENT_H
+#ifndef TOILE_APP_BATCH_INFO_INFO_GARMENT_H
+#define TOILE_APP_BATCH_INFO_INFO_GARMENT_H
 
 #include "app/audit/audit.h"
 #include "assets/base/model.h"

@@ -1,7 +1,7 @@
 /* toile info: prints what a file holds and how it is read, or what is built in. */
 #include "app/audit/audit_json.h"
 #include "app/batch/commands.h"
-#include "app/batch/info_garment.h"
+#include "app/batch/info/info_garment.h"
 #include "app/cli/json.h"
 #include "app/settings/settings.h"
 #include "assets/environment/environment.h"

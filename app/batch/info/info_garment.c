@@ -1,4 +1,4 @@
-#include "app/batch/info_garment.h"
+#include "app/batch/info/info_garment.h"
 
 #include "app/fit/measures.h"
 #include "app/fit/sewn.h"
