@@ -321,16 +321,16 @@ static void resolve_taps(tl_points *points)
         }
 }
 
-/* In motion all points share the directions of a frame: one a region differs visibly from another. */
-static vec3s *jitter_directions(const tl_points *points, const struct tl_points_request *request)
+/* In motion all points share the directions: one a region differs visibly from another. They are the same in
+ * all frames: other ones in each err no less, and flicker where nothing moves. */
+static vec3s *shared_directions(const struct tl_points_request *request)
 {
     int count = request->regions->count, rays = request->params->rays;
     vec3s *directions = TL_NEW_ARRAY(vec3s, (size_t)count * (size_t)rays);
 #pragma omp parallel for
     for (int i = 0; i < count; i++)
         for (int k = 0; k < rays; k++) {
-            const uint32_t number = points->frame * (uint32_t)rays + (uint32_t)k;
-            vec3s direction = tl_region_sample(request->regions, i, number);
+            vec3s direction = tl_region_sample(request->regions, i, (uint32_t)k);
             directions[i * rays + k] = tl_turn_direction(direction, request->environment_yaw);
         }
     return directions;
@@ -570,7 +570,7 @@ static bool takes_whole_rounds(const struct tl_points_request *request)
 static void trace_all(tl_points *points, const struct tl_points_request *request)
 {
     const bool is_shared = request->moved && !request->whole_rounds;
-    vec3s centres[TL_REGIONS_MAX], *directions = is_shared ? jitter_directions(points, request) : NULL;
+    vec3s centres[TL_REGIONS_MAX], *directions = is_shared ? shared_directions(request) : NULL;
     float importances[TL_REGIONS_MAX];
     for (int i = 0; i < request->regions->count; i++) {
         const struct tl_region *region = &request->regions->items[i];

@@ -332,6 +332,14 @@ static void motion_replaces(void **state)
                expected);
         assert_true(before > 2 * after);
         assert_near(after, expected, 0.02 * expected); /* not equal: regions behind a point wait longest */
+        size_t stride, bytes;
+        const uint16_t *values = tl_points_values(moved.points, &stride);
+        bytes = tl_points_report(moved.points).points * stride * sizeof *values;
+        uint16_t *held = memcpy(tl_alloc(1, bytes), values, bytes);
+        for (int frame = 0; frame < 3; frame++)
+            step(&moved, true);
+        assert_memory_equal(tl_points_values(moved.points, &stride), held, bytes); /* nothing flickers */
+        free(held);
         stage_close(&moved);
         stage_close(&stood);
     }
