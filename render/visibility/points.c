@@ -322,7 +322,8 @@ static void resolve_taps(tl_points *points)
 }
 
 /* In motion all points share the directions: one a region differs visibly from another. They are the same in
- * all frames: other ones in each err no less, and flicker where nothing moves. */
+ * all frames: other ones in each err no less, and flicker where nothing moves. One ray a region takes the
+ * region's own direction. */
 static vec3s *shared_directions(const struct tl_points_request *request)
 {
     int count = request->regions->count, rays = request->params->rays;
@@ -330,7 +331,9 @@ static vec3s *shared_directions(const struct tl_points_request *request)
 #pragma omp parallel for
     for (int i = 0; i < count; i++)
         for (int k = 0; k < rays; k++) {
-            vec3s direction = tl_region_sample(request->regions, i, (uint32_t)k);
+            const struct tl_region *region = &request->regions->items[i];
+            vec3s direction =
+                rays == 1 ? region->direction : tl_region_sample(request->regions, i, (uint32_t)k);
             directions[i * rays + k] = tl_turn_direction(direction, request->environment_yaw);
         }
     return directions;
