@@ -1,6 +1,9 @@
 #include "app/scene/moving_light.h"
 
+#include "assets/environment/studio.h"
 #include "config/base/log.h"
+#include "config/base/memory.h"
+#include "render/env/convert.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,14 +37,69 @@ static void show_like(const tl_environment *first, tl_environment *frame)
     frame->ground = first->ground;
 }
 
+enum tl_layout tl_environment_layout(const tl_environment *environment)
+{
+    static const enum tl_layout layouts[] = {[TL_ENV_LATLONG] = TL_LAYOUT_LATLONG,
+                                             [TL_ENV_CUBE] = TL_LAYOUT_CUBE,
+                                             [TL_ENV_SPHERE] = TL_LAYOUT_SPHERE,
+                                             [TL_ENV_PARABOLOID] = TL_LAYOUT_PARABOLOID,
+                                             [TL_ENV_OCTAHEDRAL] = TL_LAYOUT_OCTAHEDRAL};
+    return layouts[environment->layout];
+}
+
+/* Converts a map of a layout that is only drawn as lat-long. Zeroes it on failure. */
+static bool lay_out(const char *name, tl_environment *environment, tl_error *error)
+{
+    const tl_image *image = &environment->image;
+    if (environment->layout == TL_ENV_CUBE)
+        return true;
+    if (environment->layout == TL_ENV_LATLONG) {
+        if (image->width == image->height && image->width > 1)
+            tl_warn("%s: %d x %d texels are taken for lat-long, which is twice as wide as high: a mirror "
+                    "ball or an "
+                    "octahedral map is converted by toile env --from sphere (or octahedral) --layout latlong",
+                    name, image->width, image->height);
+        return true;
+    }
+    const struct tl_sphere_map from = {tl_environment_layout(environment), image->width, image->height};
+    struct tl_sphere_map to = {.layout = TL_LAYOUT_LATLONG};
+    int64_t width, height;
+    tl_layout_extent(to.layout, tl_convert_size(&from, to.layout), &width, &height);
+    to.width = (int)width;
+    to.height = (int)height;
+    tl_image latlong = {0};
+    if (tl_image_size_check(name, width, height, error) &&
+        tl_memory_request(name, tl_convert_bytes(&from, &to), error)) {
+        latlong = tl_image_convert(image, &from, &to, NULL);
+        if (!latlong.texels)
+            tl_fail(error, TL_INTERRUPTED, "%s: stopped", name);
+    }
+    if (!latlong.texels) {
+        tl_environment_release(environment);
+        return false;
+    }
+    tl_image_release(&environment->image);
+    environment->image = latlong;
+    environment->layout = TL_ENV_LATLONG;
+    tl_environment_adapt(environment);
+    return true;
+}
+
+static bool load_numbered(const tl_environment_sequence *sequence, int index, tl_environment *out,
+                          tl_error *error)
+{
+    return tl_environment_sequence_load(sequence, index, out, error) &&
+           lay_out(sequence->pattern, out, error);
+}
+
 static bool load_frame(struct tl_moving_light *light, tl_error *error)
 {
     tl_environment first;
-    if (!tl_environment_sequence_load(&light->sequence, light->shown, &light->environment, error))
+    if (!load_numbered(&light->sequence, light->shown, &light->environment, error))
         return false;
     if (light->shown == 0)
         return true;
-    if (!tl_environment_sequence_load(&light->sequence, 0, &first, error))
+    if (!load_numbered(&light->sequence, 0, &first, error))
         return false;
     show_like(&first, &light->environment);
     tl_environment_release(&first);
@@ -50,17 +108,11 @@ static bool load_frame(struct tl_moving_light *light, tl_error *error)
 
 static bool load(struct tl_moving_light *light, const char *name, double position, tl_error *error)
 {
-    if (strcmp(name, "studio") == 0) {
-        light->environment = tl_environment_studio();
+    if (tl_environment_find(name, &light->environment))
         return true;
-    }
-    if (strcmp(name, "none") == 0 || strcmp(name, "white") == 0) {
-        float radiance = strcmp(name, "white") == 0 ? 1 : 0;
-        light->environment = tl_environment_constant(radiance, radiance, radiance);
-        return true;
-    }
     if (!tl_environment_is_sequence(name))
-        return tl_environment_load(name, &light->environment, error);
+        return tl_environment_load(name, &light->environment, error) &&
+               lay_out(name, &light->environment, error);
     if (!tl_environment_sequence_open(name, &light->sequence, error))
         return false;
     light->shown = frame_at(&light->sequence, position);
@@ -86,7 +138,7 @@ bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_e
     int due = frame_at(&light->sequence, position);
     if (due == light->shown)
         return true;
-    if (!tl_environment_sequence_load(&light->sequence, due, &fresh, error))
+    if (!load_numbered(&light->sequence, due, &fresh, error))
         return false;
     show_like(&light->environment, &fresh);
     tl_environment_release(&light->environment);

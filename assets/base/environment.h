@@ -4,7 +4,10 @@
  * of it. Cube: six square faces stacked from the top in GL order and GL orientation (+X -X +Y -Y +Z -Z; on
  * each face, texel row 0 is t = 0 of the GL cube map specification, table 8.19 of OpenGL 4.5). Real files
  * hold negative values, NaN, Inf: these are cleaned (negative and NaN -> 0, +Inf -> the largest finite value
- * of the file) and counted. Values beyond the half range are kept. Immutable once made. */
+ * of the file) and counted. Values beyond the half range are kept. Immutable once made.
+ *
+ * The other layouts are those of files that `toile env` wrote (render/env/layout.h): app/scene/moving_light.h
+ * converts them to lat-long before anything is drawn with them. */
 #ifndef TOILE_ASSETS_BASE_ENVIRONMENT_H
 #define TOILE_ASSETS_BASE_ENVIRONMENT_H
 
@@ -12,7 +15,7 @@
 
 #include <cglm/struct.h>
 
-enum tl_env_layout { TL_ENV_LATLONG, TL_ENV_CUBE };
+enum tl_env_layout { TL_ENV_LATLONG, TL_ENV_CUBE, TL_ENV_SPHERE, TL_ENV_PARABOLOID, TL_ENV_OCTAHEDRAL };
 
 typedef struct tl_environment {
     char *name; /* file name or "studio" */

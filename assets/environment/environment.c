@@ -85,9 +85,26 @@ static void turn_openexr_cube(tl_image *image)
     *image = turned;
 }
 
+/* The layout that a file of `toile env` states; lat-long for others. */
+static enum tl_env_layout stated_layout(enum tl_exr_envmap kind)
+{
+    return kind == TL_EXR_SPHERE       ? TL_ENV_SPHERE
+           : kind == TL_EXR_PARABOLOID ? TL_ENV_PARABOLOID
+           : kind == TL_EXR_OCTAHEDRAL ? TL_ENV_OCTAHEDRAL
+                                       : TL_ENV_LATLONG;
+}
+
 static bool arrange(const char *path, enum tl_exr_envmap kind, tl_environment *environment, tl_error *error)
 {
     tl_image *image = &environment->image;
+    environment->layout = stated_layout(kind);
+    if (environment->layout != TL_ENV_LATLONG) {
+        const int wide = environment->layout == TL_ENV_PARABOLOID ? 2 : 1;
+        return (int64_t)image->width == wide * (int64_t)image->height ||
+               tl_fail(error, TL_INPUT,
+                       "%s: its comments state a map of %d:1, but it is %d x %d texels: write it again", path,
+                       wide, image->width, image->height);
+    }
     bool upright = (int64_t)image->height == 6 * (int64_t)image->width;
     bool lying = (int64_t)image->width == 6 * (int64_t)image->height;
     if (kind == TL_EXR_CUBE && !upright)
@@ -111,6 +128,14 @@ static bool load_radiance(const char *path, tl_image *out, tl_error *error)
     bool loaded = tl_radiance_decode(path, data, size, out, error);
     free(data);
     return loaded;
+}
+
+void tl_environment_adapt(tl_environment *environment)
+{
+    if (environment->layout != TL_ENV_LATLONG && environment->layout != TL_ENV_CUBE)
+        return;
+    environment->shown = tl_adaptation_to(environment);
+    environment->ground = tl_adaptation_ground(environment);
 }
 
 /* The content decides, not the extension. */
@@ -142,8 +167,7 @@ bool tl_environment_load(const char *path, tl_environment *out, tl_error *error)
     }
     const char *slash = strrchr(path, '/');
     environment.name = tl_copy_string(slash ? slash + 1 : path);
-    environment.shown = tl_adaptation_to(&environment);
-    environment.ground = tl_adaptation_ground(&environment);
+    tl_environment_adapt(&environment);
     *out = environment;
     return true;
 }

@@ -191,3 +191,15 @@ tl_environment tl_environment_constant(float red, float green, float blue)
     environment.peak = peak_of(&environment.image);
     return environment;
 }
+
+bool tl_environment_find(const char *name, tl_environment *out)
+{
+    const float radiance = strcmp(name, "white") == 0 ? 1 : 0;
+    if (strcmp(name, "studio") == 0)
+        *out = tl_environment_studio();
+    else if (radiance > 0 || strcmp(name, "none") == 0)
+        *out = tl_environment_constant(radiance, radiance, radiance);
+    else
+        return false;
+    return true;
+}

@@ -44,4 +44,8 @@ tl_environment tl_environment_studio(void);
 /* The same radiance from every direction, for furnace tests. */
 tl_environment tl_environment_constant(float red, float green, float blue);
 
+/* Makes the environment of this name: "studio", "white" (1 from everywhere), "none" (black). False for
+ * another name, *out untouched. */
+bool tl_environment_find(const char *name, tl_environment *out);
+
 #endif

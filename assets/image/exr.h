@@ -14,7 +14,17 @@
 
 #include "assets/base/image.h"
 
-enum tl_exr_envmap { TL_EXR_NOT_ENVMAP, TL_EXR_LATLONG, TL_EXR_CUBE }; /* the file's envmap attribute */
+/* The file's envmap attribute. The last three are not of OpenEXR: the file's comments begin with
+ * TL_EXR_ENVMAP_COMMENT and "sphere", "dual paraboloid" or "octahedral", as `toile env` writes them. */
+enum tl_exr_envmap {
+    TL_EXR_NOT_ENVMAP,
+    TL_EXR_LATLONG,
+    TL_EXR_CUBE,
+    TL_EXR_SPHERE,
+    TL_EXR_PARABOLOID,
+    TL_EXR_OCTAHEDRAL
+};
+#define TL_EXR_ENVMAP_COMMENT "environment map, "
 
 /* Reads a file into *out: F32, 3 channels (RGB), or 4 when the file has alpha. The data window becomes the
  * image; the display window is ignored. *out is zeroed on failure. */

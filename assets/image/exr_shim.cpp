@@ -140,9 +140,16 @@ bool has_colours(const Imf::Header &header)
 
 enum tl_exr_envmap envmap_of(const Imf::Header &header)
 {
-    if (!Imf::hasEnvmap(header))
-        return TL_EXR_NOT_ENVMAP;
-    return Imf::envmap(header) == Imf::ENVMAP_CUBE ? TL_EXR_CUBE : TL_EXR_LATLONG;
+    if (Imf::hasEnvmap(header))
+        return Imf::envmap(header) == Imf::ENVMAP_CUBE ? TL_EXR_CUBE : TL_EXR_LATLONG;
+    const std::string comments = Imf::hasComments(header) ? Imf::comments(header) : "";
+    const auto begins = [&comments](const char *layout) {
+        return comments.rfind(std::string(TL_EXR_ENVMAP_COMMENT) + layout, 0) == 0;
+    };
+    return begins("sphere")            ? TL_EXR_SPHERE
+           : begins("dual paraboloid") ? TL_EXR_PARABOLOID
+           : begins("octahedral")      ? TL_EXR_OCTAHEDRAL
+                                       : TL_EXR_NOT_ENVMAP;
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "app/batch/commands.h"
 #include "app/scene/headless.h"
 #include "app/scene/moving_light.h"
+#include "assets/environment/studio.h"
 #include "assets/image/exr.h"
 #include "config/base/file.h"
 #include "config/base/interrupt.h"
@@ -14,17 +15,18 @@
 
 /* Comments in the written files, for users of other programs. */
 static const char *const descriptions[TL_LAYOUT_COUNT] = {
-    [TL_LAYOUT_CUBE] = "environment map, cube: faces +X -X +Y -Y +Z -Z from the top, each oriented as OpenGL "
-                       "has it; +Y is up",
+    [TL_LAYOUT_CUBE] =
+        TL_EXR_ENVMAP_COMMENT "cube: faces +X -X +Y -Y +Z -Z from the top, each oriented as OpenGL "
+                              "has it; +Y is up",
     [TL_LAYOUT_SPHERE] =
-        "environment map, sphere: a mirror ball seen along -Z, +Y is up; the centre shows +Z",
-    [TL_LAYOUT_PARABOLOID] = "environment map, dual paraboloid: left disc d.xy / (1 + d.z), "
-                             "right disc (-d.x, d.y) / (1 - d.z); +Y is up",
+        TL_EXR_ENVMAP_COMMENT "sphere: a mirror ball seen along -Z, +Y is up; the centre shows +Z",
+    [TL_LAYOUT_PARABOLOID] = TL_EXR_ENVMAP_COMMENT "dual paraboloid: left disc d.xy / (1 + d.z), "
+                                                   "right disc (-d.x, d.y) / (1 - d.z); +Y is up",
     [TL_LAYOUT_LATLONG] =
-        "environment map, latlong: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi; +Y is up",
+        TL_EXR_ENVMAP_COMMENT "latlong: u = 0.5 + atan2(x, -z) / 2pi, v = acos(y) / pi; +Y is up",
     [TL_LAYOUT_OCTAHEDRAL] =
-        "environment map, octahedral: |x| + |y| + |z| = 1 unfolded about +Y, +X right, +Z "
-        "down; -Y in the corners",
+        TL_EXR_ENVMAP_COMMENT "octahedral: |x| + |y| + |z| = 1 unfolded about +Y, +X right, +Z "
+                              "down; -Y in the corners",
 };
 
 static bool find_layout(const char *flag, const char *name, enum tl_layout *layout, tl_error *error)
@@ -59,12 +61,12 @@ static bool check_arguments(const struct tl_arguments *arguments, tl_error *erro
     return true;
 }
 
-/* Guesses the layout from the shape. Paraboloids have the shape of lat-long maps and octahedral maps that of
- * spheres: for both the user has to name the layout. */
+/* Guesses the layout of a file that states none from its shape. Paraboloids have the shape of lat-long maps
+ * and octahedral maps that of spheres: for both the user has to name the layout. */
 static enum tl_layout guess_layout(const tl_environment *environment)
 {
-    if (environment->layout == TL_ENV_CUBE)
-        return TL_LAYOUT_CUBE;
+    if (environment->layout != TL_ENV_LATLONG)
+        return tl_environment_layout(environment);
     return environment->image.width == environment->image.height ? TL_LAYOUT_SPHERE : TL_LAYOUT_LATLONG;
 }
 
@@ -135,7 +137,8 @@ static bool convert_file(const struct tl_arguments *arguments, enum tl_layout la
 {
     tl_environment environment;
     struct tl_sphere_map from;
-    if (!tl_environment_load(arguments->positionals[0], &environment, error))
+    if (!tl_environment_find(arguments->positionals[0], &environment) &&
+        !tl_environment_load(arguments->positionals[0], &environment, error))
         return false;
     tl_environment_warn_of_cleaning(&environment);
     bool done = find_source(arguments, &environment, &from, error) &&

@@ -249,10 +249,11 @@ static cJSON *describe_motion(const char *path, const struct tl_point_cache_fact
 
 static cJSON *describe_environment(const tl_environment *environment)
 {
+    static const char *const layouts[] = {"lat-long", "cube", "sphere", "paraboloid", "octahedral"};
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "kind", "environment");
     cJSON_AddStringToObject(object, "name", environment->name);
-    cJSON_AddStringToObject(object, "layout", environment->layout == TL_ENV_CUBE ? "cube" : "lat-long");
+    cJSON_AddStringToObject(object, "layout", layouts[environment->layout]);
     cJSON_AddNumberToObject(object, "width", environment->image.width);
     cJSON_AddNumberToObject(object, "height", environment->image.height);
     cJSON_AddNumberToObject(object, "peak", (double)environment->peak);

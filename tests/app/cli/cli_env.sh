@@ -31,19 +31,33 @@ refuse "output in no folder" 'nowhere/a\.exr' env light.hdr -o nowhere/a.exr --l
 expect() { [ "$(shape "$1")" = "$2" ] || fail "$1: $(shape "$1"), expected $2"; }
 for layout in cube sphere paraboloid latlong octahedral; do
     "$TOILE" env light.hdr -o $layout.exr --layout $layout --size 16 --quiet || fail "$layout"
-    "$TOILE" env $layout.exr -o back.exr --layout latlong --size 1 --from $layout --quiet || fail "$layout and back"
+    "$TOILE" env $layout.exr -o back.exr --layout latlong --size 1 --quiet || fail "$layout and back"
     "$TOILE" env light.hdr -o same.exr --layout latlong --quiet
     # Halves of the sphere, which meet at borders of texels in every layout of an even size: what is left is the
     # stated error, twice.
     rmse=$("$TOILE" compare back.exr same.exr --json | sed -n 's/.*"rel_rmse":[[:space:]]*\([0-9.e-]*\).*/\1/p')
     awk -v e="$rmse" 'BEGIN { exit !(e != "" && e < 0.002) }' || fail "$layout and back: relative RMSE $rmse"
 done
+# A scene reads what this command wrote: the same light in any layout. Octahedral maps have the shape of spheres, and
+# paraboloids that of lat-long maps: the file states which it is.
+ball="--garment none --avatar ball --preset draft --size 32x32 $cheap_light --quiet"
+for layout in latlong cube sphere paraboloid octahedral; do
+    "$TOILE" env studio -o studio.exr --layout $layout --size 64 --quiet || fail "env studio --layout $layout"
+    "$TOILE" info studio.exr | grep -q "layout  *${layout/latlong/lat-long}$" || fail "$layout: info names another layout"
+    "$TOILE" render $ball --env studio.exr -o lit.$layout.exr || fail "--env of a map, $layout"
+    rmse=$("$TOILE" compare lit.$layout.exr lit.latlong.exr --json | sed -n 's/.*"rel_rmse":[[:space:]]*\([0-9.e-]*\).*/\1/p')
+    awk -v e="$rmse" 'BEGIN { exit !(e != "" && e < 0.02) }' || fail "lit by a map, $layout: relative RMSE $rmse"
+done
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n\200\200\200\201\200\100\040\205\200\200\200\201\200\100\040\205' >square.hdr
+"$TOILE" render ${ball/--quiet/} --env square.hdr -o lit.exr 2>&1 | grep -q 'square\.hdr: 2 x 2 texels are taken for lat-long' ||
+    fail "a square picture is taken for lat-long without a word"
+
 expect cube.exr "16 96"
 expect sphere.exr "16 16"
 expect paraboloid.exr "32 16"
 expect latlong.exr "32 16"
 grep -q 'faces +X -X' cube.exr || fail "cube.exr does not say how it is laid out"
-"$TOILE" env sphere.exr -o guess.exr --layout cube 2>&1 | grep -q 'taken for sphere' || fail "a guess is not said aloud"
+"$TOILE" env square.hdr -o guess.exr --layout cube 2>&1 | grep -q 'taken for sphere' || fail "a guess is not said aloud"
 "$TOILE" env cube.exr -o guess.exr --layout latlong 2>&1 | grep -q 'taken for cube' || fail "a cube is not guessed"
 
 # A figure without a garment, in a file of the studio: the capture shows both.
