@@ -17,8 +17,21 @@ void tl_light_cache_release(struct tl_light_cache *cache)
     *cache = (struct tl_light_cache){0};
 }
 
+#define BLACK_REGIONS 6 /* one a face: the fewest of either cut */
+
+static bool is_black(const tl_cube *cube)
+{
+    const size_t count = (size_t)18 * (size_t)cube->size * (size_t)cube->size;
+    for (size_t i = 0; i < count; i++)
+        if (cube->texels[i] > 0)
+            return false;
+    return true;
+}
+
 void tl_light_cut_regions(const tl_cube *cube, int regions, int cut, struct tl_regions *out)
 {
+    if (is_black(cube))
+        regions = BLACK_REGIONS;
     if (cut == TL_CUT_SPHERE)
         tl_regions_cut_sphere(cube, regions, out);
     else

@@ -54,7 +54,8 @@ void tl_light_cache_prepare(struct tl_light_cache *cache, const tl_cube *cube,
 void tl_light_cache_keep(struct tl_light_cache *cache, const struct tl_light_params *light,
                          struct tl_regions *regions, struct tl_region_lights *lights);
 
-/* The cut that the options ask for; and what a region's light is to the method. */
+/* The cut that the options ask for, but of an environment without light the fewest regions; and what a
+ * region's light is to the method. */
 void tl_light_cut_regions(const tl_cube *cube, int regions, int cut, struct tl_regions *out);
 enum tl_region_weight tl_light_region_weight(const struct tl_light_params *light);
 

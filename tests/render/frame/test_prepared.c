@@ -1,5 +1,6 @@
 /* Light made ready beside a renderer, and light that grows as materials ask for more of it: both give the
  * images that a new renderer gives, bit for bit. */
+#include "render/frame/light_cache.h"
 #include "render/renderer.h"
 
 #include "tests/render/scenes.h"
@@ -253,9 +254,27 @@ static void light_grows_with_the_materials(void **state)
     scene_close(&scene);
 }
 
+/* Where nothing shines there is nothing to divide, to trace or to filter; one faint texel is light. */
+static void black_environments_are_hardly_cut(void **state)
+{
+    (void)state;
+    for (int cut = TL_CUT_FACES; cut <= TL_CUT_SPHERE; cut++) {
+        tl_cube cube = tl_cube_create(8);
+        struct tl_regions regions = {0};
+        tl_light_cut_regions(&cube, 192, cut, &regions);
+        assert_int_equal(regions.count, 6);
+        cube.texels[3 * 8 * 8 + 1] = 1e-6f;
+        tl_light_cut_regions(&cube, 192, cut, &regions);
+        assert_int_equal(regions.count, 192);
+        tl_regions_release(&regions);
+        tl_cube_release(&cube);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(black_environments_are_hardly_cut),
         cmocka_unit_test(prepared_light_is_that_of_the_renderer),
         cmocka_unit_test(a_copy_serves_another_renderer),
         cmocka_unit_test(unfit_light_is_not_used),
