@@ -39,10 +39,26 @@ static void set_energy(tl_cloth *cloth)
         !symmetric; /* that bound was taken with the whole step, not the halved stiffness */
 }
 
+/* The step is infinite where nothing resists. */
+static void set_wave_step(tl_cloth *cloth)
+{
+    const size_t vertex_count = cloth->particles.count;
+    double *sums = TL_NEW_ARRAY(double, vertex_count + 1), total = 0, count = 0;
+    tl_energy_row_sums(&cloth->energy, &cloth->fabric, vertex_count, NULL, sums);
+    for (size_t i = 0; i < vertex_count; i++)
+        if (cloth->particles.w[i] > 0 && sums[i] > 0) {
+            total += 2 / sqrt(cloth->particles.w[i] * sums[i]);
+            count++;
+        }
+    cloth->wave_step_s = count > 0 ? total / count : HUGE_VAL;
+    free(sums);
+}
+
 void tl_cloth_set_constants(tl_cloth *cloth)
 {
     set_inverse_masses(cloth);
     tl_energy_set_fabric(&cloth->energy, &cloth->fabric);
+    set_wave_step(cloth);
     cloth->critical_step = tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count,
                                                    cloth->particles.w, NULL);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);

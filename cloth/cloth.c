@@ -1,6 +1,8 @@
 #include "cloth/cloth.h"
 
 #include "cloth/build.h"
+#include "cloth/solvers/xpbd.h"
+#include "cloth/timestep.h"
 #include "config/base/memory.h"
 
 #include <stdlib.h>
@@ -105,11 +107,16 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
         return false;
     bool pins_change =
         params->pin_above_m != cloth->params.pin_above_m || params->pin_colour != cloth->params.pin_colour;
+    bool weight_changes =
+        memcmp(fabric, &cloth->fabric, sizeof *fabric) != 0 || params->gravity != cloth->params.gravity;
+    double substep = tl_cloth_substep(cloth);
     cloth->fabric = *fabric;
     cloth->params = *params;
     if (pins_change)
         tl_cloth_make_pins(cloth);
     tl_cloth_set_constants(cloth);
+    if (weight_changes || tl_cloth_substep(cloth) != substep)
+        tl_xpbd_reset_rest(&cloth->energy); /* calibrated for what was */
     return true;
 }
 

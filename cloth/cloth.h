@@ -34,6 +34,13 @@ enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 enum tl_pin_colour { TL_PIN_NO_COLOUR, TL_PIN_RED, TL_PIN_GREEN, TL_PIN_BLUE };
 extern const char *const tl_pin_colour_names[]; /* NULL-terminated */
+/* Settling: the way to rest before the first frame. Motion: by `preview` under drag, until nothing moves.
+ * Balance: by dynamic relaxation of the exact energy (cloth/step/relax.h), until forces balance; then
+ * `preview` is calibrated to rest there (cloth/step/calibrate.h), and takes as many substeps as the fabric's
+ * stiffness needs. */
+enum tl_settling { TL_SETTLING_MOTION, TL_SETTLING_BALANCE };
+extern const char *const tl_settling_names[]; /* in the order of the enum, then NULL */
+
 struct tl_cloth_params {
     int solver;             /* enum tl_cloth_solver */
     double dt;              /* s, longest step; a frame is made of equal steps: see frame_rate */
@@ -51,6 +58,7 @@ struct tl_cloth_params {
     double gravity;           /* m/s^2, along -Y */
     float wind[3];            /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
     double gust;              /* 0 to 1: amplitude of the wind's speed, relative to it */
+    int settling;             /* enum tl_settling */
     double settle_s;          /* longest simulated time of settling before the first frame */
     double settle_speed;      /* m/s: the cloth is settled when no vertex moves faster over a frame */
     bool cages;               /* settling begins on coarser versions of a fine cloth: cloth/cage/coarser.h */

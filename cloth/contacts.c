@@ -35,7 +35,8 @@ static double ply_distance(const tl_cloth *cloth)
  * coarse cloth stand higher than the points between them, which touch. */
 #define CARRIER_DISTANCES 3
 
-static struct tl_apart_params apart_params(const tl_cloth *cloth, double friction, double h, double phase)
+static struct tl_apart_params params_of_self_contact(const tl_cloth *cloth, double friction, double h,
+                                                     double phase)
 {
     return (struct tl_apart_params){.topology = &cloth->topology,
                                     .rest = (const vec2s(*)[3])cloth->rest,
@@ -53,9 +54,20 @@ bool tl_cloth_is_tangled(const tl_cloth *cloth)
     return cloth->params.self_contact && !cloth->apart.was_clean;
 }
 
+bool tl_cloth_order_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    if (!tl_cloth_is_tangled(cloth))
+        tl_layers_release(&cloth->layers);
+    if (!tl_cloth_is_tangled(cloth) || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
+        return true;
+    return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
+                            cloth->particles.x, error);
+}
+
 void tl_cloth_keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
 {
-    const struct tl_apart_params apart = apart_params(cloth, contact->friction, contact->h, contact->phase);
+    const struct tl_apart_params apart =
+        params_of_self_contact(cloth, contact->friction, contact->h, contact->phase);
     if (cloth->params.self_contact) {
         tl_apart_solve(&cloth->apart, &apart, &cloth->particles);
         if (tl_cloth_is_tangled(cloth))
@@ -100,7 +112,7 @@ void tl_cloth_prepare_contact(tl_cloth *cloth)
     if (cloth->apart.made || !cloth->params.self_contact)
         return;
     uint32_t *classes = make_classes(cloth);
-    const struct tl_apart_params params = apart_params(cloth, 0, 1, 0);
+    const struct tl_apart_params params = params_of_self_contact(cloth, 0, 1, 0);
     tl_apart_prepare(&cloth->apart, &params, classes, cloth->particles.x);
     free(classes);
 }
@@ -109,7 +121,7 @@ void tl_cloth_renew_contact(tl_cloth *cloth, double h, double phase_before, bool
 {
     if (!cloth->params.self_contact || !tl_apart_is_due(&cloth->apart, h))
         return;
-    const struct tl_apart_params params = apart_params(cloth, 0, h, phase_before);
+    const struct tl_apart_params params = params_of_self_contact(cloth, 0, h, phase_before);
     tl_apart_renew(&cloth->apart, &params, &cloth->particles, velocity_from_positions);
 }
 
@@ -141,7 +153,8 @@ static bool make_way(tl_cloth *cloth, const tl_collider *collider, const struct 
                      vec3d *from)
 {
     struct tl_particles *particles = &cloth->particles;
-    const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
+    const struct tl_apart_params apart =
+        params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), contact->phase);
     bool any = true;
     for (int round = 0; round < MAKE_WAY_ROUNDS && (any || is_torn(cloth)); round++) {
         release_caught(cloth, collider);
@@ -170,7 +183,8 @@ void tl_cloth_keep_outside(tl_cloth *cloth, const tl_collider *collider,
     tl_contacts_enforce(&cloth->contacts, contact, particles);
     if (tl_collider_travel(collider) > 0 && cloth->contacts.caught_count > 0)
         pressed = make_way(cloth, collider, contact, from);
-    const struct tl_apart_params apart = apart_params(cloth, 0, tl_cloth_substep(cloth), contact->phase);
+    const struct tl_apart_params apart =
+        params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), contact->phase);
     tl_apart_truncate(&cloth->apart, &apart, from, particles);
     if (pressed)
         tl_contacts_let_go(&cloth->contacts, contact, particles);
@@ -187,7 +201,7 @@ void tl_cloth_find_contacts(const tl_cloth *cloth, const tl_collider *collider, 
     if (!cloth->params.self_contact)
         return;
     uint32_t *classes = make_classes(cloth);
-    struct tl_apart_params params = apart_params(cloth, 0, tl_cloth_substep(cloth), 1);
+    struct tl_apart_params params = params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), 1);
     params.body = body;
     tl_apart_prepare(self, &params, classes, cloth->particles.x);
     tl_apart_renew(self, &params, &cloth->particles, false);

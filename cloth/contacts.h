@@ -2,8 +2,8 @@
  *
  * Before a substep the caller looks for what the cloth might touch (tl_cloth_renew_contact); after the other
  * constraints of the substep it keeps the cloth apart (tl_cloth_keep_apart); after a step of several substeps
- * it moves outside what these have left inside (tl_cloth_keep_outside). SI. Errors: none. Threads: one call
- * at a time for one cloth. */
+ * it moves outside what these have left inside (tl_cloth_keep_outside). SI. Errors: none but where stated.
+ * Threads: one call at a time for one cloth. */
 #ifndef TOILE_CLOTH_CONTACTS_H
 #define TOILE_CLOTH_CONTACTS_H
 
@@ -16,6 +16,10 @@ struct tl_contact_params tl_cloth_contact_params(const tl_cloth *cloth, double h
 /* Whether the garment came crossed and has not come apart yet: its layers, which know what is inside and what
  * outside, then help. */
 bool tl_cloth_is_tangled(const tl_cloth *cloth);
+
+/* Orders the layers of a tangled garment once the panels have met: until then each panel is a piece of its
+ * own. Errors: those of tl_layers_decide. */
+bool tl_cloth_order_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
 
 /* Prepares self-contact for the mesh, where that is not done yet. */
 void tl_cloth_prepare_contact(tl_cloth *cloth);

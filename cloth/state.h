@@ -21,6 +21,7 @@ struct tl_cloth {
     double shortest_edge; /* m; shorter edges are not measured for strain */
     struct tl_energy energy;
     double critical_step; /* s, at rest */
+    double wave_step_s;   /* mean of a free vertex's own step at rest, 2 / sqrt(w sum_j |K_ij|) */
     double
         refused_step; /* s, reference: the step that a crushed state needed and the budget refused; 0: none */
     struct tl_particles particles;
@@ -51,17 +52,18 @@ struct tl_cloth {
     vec3d cage_grab;             /* m, from the grabbed vertex to the cage's */
     uint64_t cage_revision;
     bool settled;
-    double unsettled_speed;     /* m/s, when the time for settling ended before rest; else 0 */
-    double needle_share;        /* share of the triangles that are needles */
-    uint64_t collider_revision; /* in the last frame in which something drove the cloth */
-    bool undriven;              /* nothing has driven the cloth since min_energy was first taken */
-    double min_energy;          /* J, smallest total energy since then: dissipated energy cannot return */
-    double start_energy;        /* J, kinetic and elastic energy at that time */
-    vec3d *start_x, *start_v;   /* [render vertex] the marked start; NULL: none was marked */
-    bool *start_pinched;        /* [render vertex] the same of struct tl_contacts */
+    double unsettled_speed;      /* m/s, when the time for settling ended before rest; else 0 */
+    struct tl_residual residual; /* when settling ended; 0 unless it was to balance */
+    double needle_share;         /* share of the triangles that are needles */
+    uint64_t collider_revision;  /* in the last frame in which something drove the cloth */
+    bool undriven;               /* nothing has driven the cloth since min_energy was first taken */
+    double min_energy;           /* J, smallest total energy since then: dissipated energy cannot return */
+    double start_energy;         /* J, kinetic and elastic energy at that time */
+    vec3d *start_x, *start_v;    /* [render vertex] the marked start; NULL: none was marked */
+    bool *start_pinched;         /* [render vertex] the same of struct tl_contacts */
 };
 
-/* Logs that the time for settling ended before the cloth was at rest. */
+/* Logs that settling ended before the cloth was in balance. */
 void tl_cloth_log_unsettled(const tl_cloth *cloth);
 
 /* Whether `preview` follows each sweep by one in the opposite order, as meshes of needles require (xpbd.h). A

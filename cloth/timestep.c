@@ -23,17 +23,26 @@ double tl_cloth_step_seconds(const tl_cloth *cloth)
  * edge lengths hang as one of 18 mm does with 30 substeps: a dress on the form with 0.9 % rms strain, and
  * 0.67 if solved to the end. */
 #define SUBSTEP_PER_EDGE 0.0317
-/* The mean edge length, about the root of the mean area per vertex, over struct tl_cloth's shortest_edge. */
+/* The longest substep of cloth that rests in balance, in multiples of its wave_step_s: beyond it a sweep
+ * leaves a row of constraints so little of its tension that calibration (cloth/step/calibrate.h) cannot make
+ * up for it. */
+#define WAVE_STEPS 4
+/* The mean edge length over struct tl_cloth's shortest_edge. */
 #define MEAN_EDGES 100
+
+double tl_cloth_mean_edge(const tl_cloth *cloth)
+{
+    return MEAN_EDGES * cloth->shortest_edge;
+}
 
 static double preview_substeps(const tl_cloth *cloth)
 {
     if (cloth->params.substeps > 0)
         return cloth->params.substeps;
-    double edge_m = MEAN_EDGES * cloth->shortest_edge;
-    if (edge_m > FINE_EDGE_M)
-        return COARSE_SUBSTEPS;
-    double wanted = ceil(tl_cloth_step_seconds(cloth) / (SUBSTEP_PER_EDGE * edge_m));
+    const double step_s = tl_cloth_step_seconds(cloth), edge_m = tl_cloth_mean_edge(cloth);
+    double wanted = edge_m > FINE_EDGE_M ? COARSE_SUBSTEPS : ceil(step_s / (SUBSTEP_PER_EDGE * edge_m));
+    if (cloth->params.settling == TL_SETTLING_BALANCE)
+        wanted = fmax(wanted, ceil(step_s / (WAVE_STEPS * cloth->wave_step_s)));
     return fmin(fmax(wanted, COARSE_SUBSTEPS), TL_CLOTH_MAX_SUBSTEPS);
 }
 

@@ -16,4 +16,7 @@ double tl_cloth_substeps_per_step(const tl_cloth *cloth);
 /* Duration of one substep of the chosen solver, seconds: a frame is a whole number of equal ones. */
 double tl_cloth_substep(const tl_cloth *cloth);
 
+/* The mean edge length, about the root of the mean area per vertex, m. */
+double tl_cloth_mean_edge(const tl_cloth *cloth);
+
 #endif

@@ -69,8 +69,8 @@ static void add_self(const struct tl_residual_source *source, struct row_list *r
     for (size_t i = 0; source->self && i < source->self->count; i++) {
         const struct tl_apart_contact *contact = &source->self->contacts[i];
         struct contact_row row = {.count = 4, .normal = contact->normal};
-        vec3d apart = tl_apart_between(contact, source->particles->x);
-        if (vec3d_dot(apart, contact->normal) > contact->kept + WITHIN_M)
+        vec3d gap = tl_apart_between(contact, source->particles->x);
+        if (vec3d_dot(gap, contact->normal) > contact->kept + WITHIN_M)
             continue;
         for (int k = 0; k < 4; k++) {
             row.v[k] = contact->v[k];
@@ -114,20 +114,22 @@ static struct tl_residual summarise(const struct tl_particles *particles, const 
                                     double gravity)
 {
     struct tl_residual residual = {0};
-    double *sizes = TL_NEW_ARRAY(double, particles->count), squares = 0;
+    double *sizes = TL_NEW_ARRAY(double, particles->count), squares = 0, bounded = 0;
     size_t count = 0;
     for (size_t i = 0; i < particles->count; i++) {
         if (!(particles->w[i] > 0))
             continue;
         sizes[count] = vec3d_norm(accelerations[i]) / gravity;
         squares += sizes[count] * sizes[count];
+        bounded += fmin(sizes[count] * sizes[count], 1);
         count++;
     }
     qsort(sizes, count, sizeof *sizes, compare);
     if (count > 0)
         residual = (struct tl_residual){.rms = sqrt(squares / (double)count),
                                         .high = sizes[(count - 1) * 99 / 100],
-                                        .largest = sizes[count - 1]};
+                                        .largest = sizes[count - 1],
+                                        .bounded_rms = sqrt(bounded / (double)count)};
     free(sizes);
     return residual;
 }

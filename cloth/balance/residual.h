@@ -21,15 +21,17 @@ struct tl_residual {
     double rms;
     double high; /* 99 % of the vertices have at most this */
     double largest;
+    double bounded_rms; /* no vertex counts as more than one that falls freely, which is 1 */
 };
 
-/* Cloth that has at most this is in balance. The largest is not bounded: a vertex in a crease of the body may
- * chatter between two planes, of which contact knows one. */
+/* Cloth that has at most this is in balance. The largest is not bounded, and so neither is the plain rms: in
+ * a crease of the body, or of the cloth, some vertices are pressed between surfaces of which contact knows
+ * one plane each (at the crotch of the built-in trousers one vertex of 2,597, by 8 times its weight). */
 #define TL_RESIDUAL_RMS  0.1
 #define TL_RESIDUAL_HIGH 0.5
 static inline bool tl_residual_is_balance(const struct tl_residual *residual)
 {
-    return residual->rms <= TL_RESIDUAL_RMS && residual->high <= TL_RESIDUAL_HIGH;
+    return residual->bounded_rms <= TL_RESIDUAL_RMS && residual->high <= TL_RESIDUAL_HIGH;
 }
 
 /* Borrowed for the call. */

@@ -1,8 +1,9 @@
-/* The longest stable step of an explicit solver, by Gershgorin's theorem. */
+/* Row sums of the stiffness, and the longest stable step of an explicit solver, by Gershgorin's theorem. */
 #include "cloth/energy/energy.h"
 #include "config/base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Adds to each vertex the row sum of |K| for an energy k/2 |sum_i rows_i x_i|^2, whose K_ij = k rows_i
  * rows_j. */
@@ -49,11 +50,11 @@ static void add_membrane_rows(const struct tl_membrane *m, size_t lane, const st
     add_rows(shear, TL_BATCH, &m->vertices[0][lane], 3, area * fabric->shear, sums);
 }
 
-double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                               size_t vertex_count, const double *inverse_masses, const vec3d *x)
+void tl_energy_row_sums(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                        size_t vertex_count, const vec3d *x, double *sums)
 {
-    double stiffness[3], fastest = 0;
-    double *sums = TL_NEW_ARRAY(double, vertex_count + 1);
+    double stiffness[3];
+    memset(sums, 0, (vertex_count + 1) * sizeof *sums);
     tl_bend_stiffness(fabric, stiffness);
     for (size_t i = 0; i < energy->membrane_count * TL_BATCH; i++)
         if (energy->membranes[i / TL_BATCH].area[i % TL_BATCH] > 0)
@@ -69,6 +70,14 @@ double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_c
         sums[energy->links[i].a] += 2 * fabric->stretch_warp;
         sums[energy->links[i].b] += 2 * fabric->stretch_warp;
     }
+}
+
+double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                               size_t vertex_count, const double *inverse_masses, const vec3d *x)
+{
+    double fastest = 0;
+    double *sums = TL_NEW_ARRAY(double, vertex_count + 1);
+    tl_energy_row_sums(energy, fabric, vertex_count, x, sums);
     for (size_t i = 0; i < vertex_count; i++)
         fastest = fmax(fastest, inverse_masses[i] * sums[i]);
     free(sums);

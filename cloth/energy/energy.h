@@ -47,7 +47,9 @@ struct tl_preview_membrane {
     double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, w c_i d_i, w d_i d_i */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
-    uint32_t from[3][TL_BATCH];                      /* offsets of the vertices in the pairs' `positions` */
+    double rest_strain[3][TL_BATCH]; /* of weft, warp and shear, at which they exert nothing: the sum of what
+                                        tl_xpbd_shift_rest has added */
+    uint32_t from[3][TL_BATCH];      /* offsets of the vertices in the pairs' `positions` */
 };
 
 /* Curvatures: L_uu, L_vv, sqrt(2) L_uv = sum of rows over the stencil's vertices. */
@@ -91,7 +93,7 @@ void tl_energy_release(struct tl_energy *energy);
 void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric *fabric);
 
 /* Sets the coefficients of `preview` for a fabric, a substep of `h` seconds and inverse masses [vertex_count
- * + 1]. */
+ * + 1]. Rest strains stay. */
 void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                            const double *inverse_masses, double h);
 
@@ -115,15 +117,20 @@ void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, ve
 /* Bending stiffness of the components L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);
 
-/* A lower bound of the longest step (s) at which explicit integration is stable, 2 / omega_max, with
- * omega_max^2 from Gershgorin's theorem on the rows of M^-1 K. Infinite when nothing resists.
+/* Writes the sums of |K| (N/m) over each vertex's row to `sums` [vertex_count + 1], in three dimensions: no
+ * eigenvalue of K exceeds the largest (Gershgorin's theorem).
  *
  * K is an upper bound of the Hessian, not the Hessian at rest: stretch stiffness counts in all three
  * directions, since k (1 - 1/|F|) across the thread stays below k however far it is stretched, so that
  * stretch, bending and links are bounded in any state. Shear is bounded while neither thread is shorter than
  * at rest, and grows as 1/|F|^2 when they are crushed: the state `x` [vertex_count + 1] is used for it, or
- * the rest state if NULL. At rest the true limit was measured to be 1.25 (a plate) to 1.74 times (isotropic
- * cloth) as long. */
+ * the rest state if NULL. */
+void tl_energy_row_sums(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                        size_t vertex_count, const vec3d *x, double *sums);
+
+/* A lower bound of the longest step (s) at which explicit integration is stable, 2 / omega_max, with
+ * omega_max^2 the largest row sum of M^-1 K (tl_energy_row_sums). Infinite when nothing resists. At rest the
+ * true limit was measured to be 1.25 (a plate) to 1.74 times (isotropic cloth) as long. */
 double tl_energy_critical_step(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
                                size_t vertex_count, const double *inverse_masses, const vec3d *x);
 

@@ -34,6 +34,7 @@ struct tl_substep {
     bool continues_previous; /* follows a substep directly: a solver may have merged that one's end with this
                                 one's start */
     bool continues_next;     /* is followed directly by another */
+    double (*applied)[3][TL_BATCH]; /* preview: receives what rows exert, see xpbd.h; NULL: not wanted */
 };
 
 /* Whether the chosen solver can simulate this fabric within its budget of substeps. */
@@ -127,14 +128,26 @@ static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
     bool limited = cloth->params.strain_limit > 0, seams_last = seams_come_last(cloth);
     if (!seams_last)
         draw_seams(cloth, substep);
-    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
+    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL, substep->applied);
     if (tl_cloth_uses_symmetric_sweep(cloth))
-        tl_xpbd_solve_backward(&cloth->energy, &cloth->particles);
+        tl_xpbd_solve_backward(&cloth->energy, &cloth->particles, substep->applied);
     if (limited)
         tl_strain_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
     apply_constraints(cloth, substep, seams_last);
     if (!substep->continues_next)
         tl_particles_finish(&cloth->particles, substep->h);
+}
+
+void tl_cloth_preview_substep(tl_cloth *cloth, const tl_collider *collider, double (*applied)[3][TL_BATCH])
+{
+    const struct tl_substep substep = {.h = tl_cloth_substep(cloth),
+                                       .gravity = cloth->params.gravity,
+                                       .phase_before = 1,
+                                       .phase = 1,
+                                       .collider = collider,
+                                       .applied = applied};
+    tl_cloth_renew_contact(cloth, substep.h, 1, false);
+    advance_preview(cloth, &substep);
 }
 
 struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
@@ -312,14 +325,8 @@ static void close_seams(tl_cloth *cloth, bool was_stuck)
     free(joined);
 }
 
-static bool check_state(const tl_cloth *cloth, tl_error *error)
+bool tl_cloth_check_state(const tl_cloth *cloth, tl_error *error)
 {
-    if (cloth->refused_step > 0)
-        return tl_fail(
-            error, TL_UNSTABLE,
-            "cloth: crushed at %.3f s so that the reference solver's step would be %.3g s; the last good "
-            "frame is kept: allow more cloth.reference_substeps, or choose cloth.solver settle",
-            cloth->time_s, cloth->refused_step);
     for (size_t i = 0; i < cloth->particles.count; i++)
         if (!vec3d_finite(cloth->particles.x[i]) || !vec3d_finite(cloth->particles.v[i]))
             return tl_fail(error, TL_UNSTABLE,
@@ -333,6 +340,16 @@ static bool check_state(const tl_cloth *cloth, tl_error *error)
                        "smaller, cloth.substeps larger or the fabric stiffer",
                        strain, cloth->time_s);
     return true;
+}
+
+static bool check_refused(const tl_cloth *cloth, tl_error *error)
+{
+    return !(cloth->refused_step > 0) ||
+           tl_fail(
+               error, TL_UNSTABLE,
+               "cloth: crushed at %.3f s so that the reference solver's step would be %.3g s; the last good "
+               "frame is kept: allow more cloth.reference_substeps, or choose cloth.solver preview",
+               cloth->time_s, cloth->refused_step);
 }
 
 /* Particles deeper below the ground than this are being lifted out of it; less is rounding. */
@@ -411,23 +428,12 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
     tl_apart_end_window(&cloth->apart);
 }
 
-/* Orders the layers once the panels have met: until then each panel is a piece of its own. */
-static bool decide_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
-{
-    if (!tl_cloth_is_tangled(cloth))
-        tl_layers_release(&cloth->layers);
-    if (!tl_cloth_is_tangled(cloth) || cloth->layers.ordered || tl_seams_are_closing(&cloth->seams))
-        return true;
-    return tl_layers_decide(&cloth->layers, &cloth->topology, (const vec2s(*)[3])cloth->rest, collider,
-                            cloth->particles.x, error);
-}
-
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error)
 {
     cloth->cage_is_current = cloth->was_caged = false;
     tl_cloth_prepare_contact(cloth);
-    if (!check_budget(cloth, error) || !decide_layers(cloth, collider, error))
+    if (!check_budget(cloth, error) || !tl_cloth_order_layers(cloth, collider, error))
         return false;
     uint64_t jump_followed = cloth->jump_followed;
     bool was_stuck = tl_seams_are_stuck(&cloth->seams);
@@ -447,7 +453,8 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
 
     bool good = tl_interrupted()
                     ? tl_fail(error, TL_INTERRUPTED, "cloth: interrupted at %.3f s", cloth->time_s)
-                    : check_state(cloth, error) && check_energy(cloth, collider, error);
+                    : check_refused(cloth, error) && tl_cloth_check_state(cloth, error) &&
+                          check_energy(cloth, collider, error);
     if (good) {
         close_seams(cloth, was_stuck);
         cloth->grab_from = cloth->grab_target;

@@ -23,6 +23,13 @@ struct tl_advance_params {
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error);
 
+/* One substep of `preview` against a collider that stands where its motion ends; `applied` receives what the
+ * rows exert (cloth/solvers/xpbd.h). */
+void tl_cloth_preview_substep(tl_cloth *cloth, const tl_collider *collider, double (*applied)[3][TL_BATCH]);
+
+/* Fails with TL_UNSTABLE where the state is not finite or is strained by more than TL_CLOTH_MAX_STRAIN. */
+bool tl_cloth_check_state(const tl_cloth *cloth, tl_error *error);
+
 /* The open seams as springs for `settle`, stiff enough to close against the fabric. Borrows the cloth. */
 struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
 

@@ -2,7 +2,10 @@
 #include "cloth/build.h"
 #include "cloth/cage/coarser.h"
 #include "cloth/measure.h"
+#include "cloth/solvers/xpbd.h"
 #include "cloth/step/advance.h"
+#include "cloth/step/calibrate.h"
+#include "cloth/step/relax.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
@@ -41,6 +44,12 @@ static struct tl_cloth_params params_of_phase(const struct tl_cloth_params *chos
 
 void tl_cloth_log_unsettled(const tl_cloth *cloth)
 {
+    if (cloth->params.settling == TL_SETTLING_BALANCE) {
+        tl_info("the cloth is out of balance by %.2g of its weight after settling (%.2g for 99 %% of its "
+                "vertices)",
+                cloth->residual.rms, cloth->residual.high);
+        return;
+    }
     tl_info("the cloth still moves at %.3f m/s after settling for %g s: increase cloth.settle_s",
             cloth->unsettled_speed, cloth->params.settle_s);
 }
@@ -167,6 +176,20 @@ bool tl_cloth_sew(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
     return good;
 }
 
+/* Relaxes the cloth, after which `preview` is calibrated to rest there. */
+static bool settle_in_balance(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    tl_cloth_use_solver(cloth, &cloth->params);
+    const bool carried = settle_coarser(cloth, collider);
+    if (!tl_cloth_relax(cloth, collider, carried, &cloth->residual, error))
+        return false;
+    cloth->settled = tl_residual_is_balance(&cloth->residual);
+    tl_cloth_calibrate(cloth, collider);
+    if (!cloth->settled)
+        tl_cloth_log_unsettled(cloth);
+    return true;
+}
+
 bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_cloth_params chosen = cloth->params, *params = &chosen;
@@ -175,10 +198,16 @@ bool tl_cloth_settle(tl_cloth *cloth, const tl_collider *collider, tl_error *err
     double settled_s = tl_seams_are_closing(&cloth->seams) ? frame_s : 0, phase_s = settled_s;
     size_t phase = 0;
     cloth->settled = false;
+    cloth->residual = (struct tl_residual){0};
+    tl_xpbd_reset_rest(&cloth->energy);
     bool is_new = cloth->seams.pair_count > 0 && cloth->seams.elapsed_s == 0;
     bool good = !(params->settle_s > 0) || close_seams(cloth, collider, params, error);
     if (good && params->settle_s > 0 && is_new && holds_height(cloth->garment))
         good = hang(cloth, collider, params, error);
+    if (good && params->settle_s > 0 && params->settling == TL_SETTLING_BALANCE) {
+        tl_cloth_use_solver(cloth, params);
+        return settle_in_balance(cloth, collider, error);
+    }
     bool tried = false, carried = false;
     struct still_span span = {0};
     struct tl_progress progress = tl_progress_begin("settling the cloth");

@@ -8,9 +8,10 @@
 
 /* Followed by the arrays in the order of `visit`. */
 struct head {
-    size_t render_count, particle_count, pin_count, seam_count;
+    size_t render_count, particle_count, pin_count, seam_count, membrane_count;
     struct tl_implicit_tally tally;
     double seams_elapsed_s, seams_firm_s, seams_welded_s, unsettled_speed;
+    struct tl_residual residual;
     uint64_t jump_followed, collider_revision;
     bool settled;
 };
@@ -19,12 +20,13 @@ struct head {
 struct arrays {
     uint32_t *weld; /* [render_count] */
     struct tl_particles particles;
-    bool *pinched;         /* [particle_count] */
-    struct tl_pin *pins;   /* [pin_count] */
-    struct tl_link *links; /* [seam_count] */
+    bool *pinched;                       /* [particle_count] */
+    struct tl_pin *pins;                 /* [pin_count] */
+    struct tl_link *links;               /* [seam_count] */
+    double (*rest_strains)[3][TL_BATCH]; /* [membrane_count] */
 };
 
-enum { ARRAYS = 8 };
+enum { ARRAYS = 9 };
 struct span {
     void *bytes;
     size_t size;
@@ -43,6 +45,7 @@ static void list_spans(const struct head *head, const struct arrays *arrays, str
         {arrays->pinched, count * sizeof *arrays->pinched},
         {arrays->pins, head->pin_count * sizeof *arrays->pins},
         {arrays->links, head->seam_count * sizeof *arrays->links},
+        {arrays->rest_strains, head->membrane_count * sizeof *arrays->rest_strains},
     };
     memcpy(out, spans, sizeof spans);
 }
@@ -63,11 +66,13 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
                               .particle_count = cloth->particles.count,
                               .pin_count = cloth->pin_count,
                               .seam_count = cloth->seams.pair_count,
+                              .membrane_count = cloth->energy.membrane_count,
                               .tally = cloth->tally,
                               .seams_elapsed_s = cloth->seams.elapsed_s,
                               .seams_firm_s = cloth->seams.firm_s,
                               .seams_welded_s = cloth->seams.welded_s,
                               .unsettled_speed = cloth->unsettled_speed,
+                              .residual = cloth->residual,
                               .jump_followed = cloth->jump_followed,
                               .collider_revision = cloth->collider_revision,
                               .settled = cloth->settled};
@@ -75,7 +80,10 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
                                   .particles = cloth->particles,
                                   .pinched = cloth->contacts.pinched,
                                   .pins = cloth->pins,
-                                  .links = cloth->seams.links};
+                                  .links = cloth->seams.links,
+                                  .rest_strains = tl_alloc(head.membrane_count, sizeof *arrays.rest_strains)};
+    for (size_t i = 0; i < head.membrane_count; i++)
+        memcpy(arrays.rest_strains[i], cloth->energy.previewed[i].rest_strain, sizeof *arrays.rest_strains);
     struct span spans[ARRAYS];
     list_spans(&head, &arrays, spans);
     *size = size_of(spans);
@@ -85,6 +93,7 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
     for (int i = 0; i < ARRAYS; at += spans[i].size, i++)
         if (spans[i].size > 0)
             memcpy(at, spans[i].bytes, spans[i].size);
+    free(arrays.rest_strains);
     return true;
 }
 
@@ -96,7 +105,8 @@ static struct arrays make_arrays(const struct head *head)
                            .particles = tl_particles_create(head->particle_count),
                            .pinched = TL_NEW_ARRAY(bool, head->particle_count),
                            .pins = TL_NEW_ARRAY(struct tl_pin, head->pin_count),
-                           .links = TL_NEW_ARRAY(struct tl_link, head->seam_count)};
+                           .links = TL_NEW_ARRAY(struct tl_link, head->seam_count),
+                           .rest_strains = tl_alloc(head->membrane_count, sizeof(double[3][TL_BATCH]))};
 }
 
 static void release_arrays(struct arrays *arrays)
@@ -106,6 +116,7 @@ static void release_arrays(struct arrays *arrays)
     free(arrays->pinched);
     free(arrays->pins);
     free(arrays->links);
+    free(arrays->rest_strains);
 }
 
 /* Sizes are bounded by the garment's before anything is allocated by them. */
@@ -114,7 +125,7 @@ static bool is_plausible(const struct head *head, const tl_cloth *cloth, size_t 
     size_t count = cloth->topology.render_count;
     if (head->render_count != count || head->particle_count > cloth->particles.count ||
         head->particle_count == 0 || head->pin_count > count + cloth->pin_count ||
-        head->seam_count > cloth->seams.pair_count)
+        head->seam_count > cloth->seams.pair_count || head->membrane_count > cloth->topology.triangle_count)
         return false;
     const struct arrays none = {0};
     struct span spans[ARRAYS];
@@ -164,6 +175,8 @@ static void take_arrays(tl_cloth *cloth, const struct head *head, struct arrays 
     arrays->pins = NULL;
     tl_cloth_set_constants(cloth);
     memcpy(cloth->contacts.pinched, arrays->pinched, head->particle_count * sizeof(bool));
+    for (size_t i = 0; i < head->membrane_count && head->membrane_count == cloth->energy.membrane_count; i++)
+        memcpy(cloth->energy.previewed[i].rest_strain, arrays->rest_strains[i], sizeof *arrays->rest_strains);
 }
 
 bool tl_cloth_restore(tl_cloth *cloth, const void *data, size_t size)
@@ -186,11 +199,12 @@ bool tl_cloth_restore(tl_cloth *cloth, const void *data, size_t size)
         take_arrays(cloth, &head, &arrays);
         cloth->tally = head.tally;
         cloth->unsettled_speed = head.unsettled_speed;
+        cloth->residual = head.residual;
         cloth->jump_followed = head.jump_followed;
         cloth->collider_revision = head.collider_revision;
         cloth->settled = head.settled;
         tl_cloth_mark_start(cloth);
-        if (cloth->unsettled_speed > 0)
+        if (cloth->unsettled_speed > 0 || (!cloth->settled && cloth->residual.rms > 0))
             tl_cloth_log_unsettled(cloth);
     }
     release_arrays(&arrays);
