@@ -57,8 +57,8 @@ static const struct tl_option cloth_rows[] = {
     TL_OPTION_ENUM(
         struct tl_cloth_params, settling, AFFECTS, tl_settling_names,
         "how cloth comes to rest before the first frame: motion: until it no longer moves, stretched "
-        "and wide by what a substep leaves; balance: until its forces balance, exact in fit (a dress "
-        "within 1 mm), but it sways by millimetres when play begins"),
+        "and wide by what a substep leaves; balance: until its forces balance, exact in fit (the "
+        "neck of a dress within 2 mm, where motion is 16 mm off), but it sways when play begins"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_s, AFFECTS, 0, 600, "s",
                      "maximum simulated time for coming to rest before the first frame"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, AFFECTS, 0, 10, "m/s",

@@ -51,16 +51,8 @@ enum tl_layout tl_environment_layout(const tl_environment *environment)
 static bool lay_out(const char *name, tl_environment *environment, tl_error *error)
 {
     const tl_image *image = &environment->image;
-    if (environment->layout == TL_ENV_CUBE)
+    if (environment->layout == TL_ENV_CUBE || environment->layout == TL_ENV_LATLONG)
         return true;
-    if (environment->layout == TL_ENV_LATLONG) {
-        if (image->width == image->height && image->width > 1)
-            tl_warn("%s: %d x %d texels are taken for lat-long, which is twice as wide as high: a mirror "
-                    "ball or an "
-                    "octahedral map is converted by toile env --from sphere (or octahedral) --layout latlong",
-                    name, image->width, image->height);
-        return true;
-    }
     const struct tl_sphere_map from = {tl_environment_layout(environment), image->width, image->height};
     struct tl_sphere_map to = {.layout = TL_LAYOUT_LATLONG};
     int64_t width, height;
@@ -119,6 +111,16 @@ static bool load(struct tl_moving_light *light, const char *name, double positio
     return load_frame(light, error);
 }
 
+static void warn_of_shape(const char *name, const tl_environment *environment)
+{
+    const tl_image *image = &environment->image;
+    if (environment->layout == TL_ENV_LATLONG && image->width == image->height && image->width > 1)
+        tl_warn(
+            "%s: %d x %d texels are taken for lat-long, which is twice as wide as high: a mirror ball or an "
+            "octahedral map is converted by toile env --from sphere (or octahedral) --layout latlong",
+            name, image->width, image->height);
+}
+
 bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error)
 {
     struct tl_moving_light fresh = {.revision = light->revision + 1};
@@ -127,6 +129,7 @@ bool tl_moving_light_open(struct tl_moving_light *light, const char *name, doubl
         return false;
     }
     tl_environment_warn_of_cleaning(&fresh.environment);
+    warn_of_shape(name, &fresh.environment);
     tl_moving_light_release(light);
     *light = fresh;
     return true;

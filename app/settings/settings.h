@@ -126,7 +126,7 @@ void tl_settings_wear(struct tl_scene_params *scene);
  * the view. Other environments stay. */
 void tl_settings_turn_studio(struct tl_settings *settings, float from_deg);
 
-/* Single options over settings already there: up to `most` of "table.key=value"; NULL ends them. */
+/* Single options over settings already there: up to `maximum` of "table.key=value"; NULL ends them. */
 bool tl_settings_assign(struct tl_settings *settings, const char *const *assignments, size_t maximum,
                         tl_error *error);
 

@@ -3,8 +3,9 @@ extern "C" {
 #include "assets/halfmesh/sector.h"
 }
 
-#ifndef __clang__ /* which has no such warning */
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized" /* in OpenMesh's properties, which are inlined */
+/* In OpenMesh's properties, which are inlined. Clang has no such warning. */
+#ifndef __clang__
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>

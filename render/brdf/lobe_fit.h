@@ -29,8 +29,8 @@ struct tl_fitted_lobe {
     vec3s weight; /* by channel */
 };
 
-/* Fits at most `most` lobes (1 to TL_LOBE_FIT_MAX) and returns their number: as many as it takes, and `least`
- * of facets with Gaussian slopes. 0 when the viewer is below the surface. */
+/* Fits at most `maximum` lobes (1 to TL_LOBE_FIT_MAX) and returns their number: as many as it takes, and
+ * `minimum` of facets with Gaussian slopes. 0 when the viewer is below the surface. */
 int tl_lobe_fit_make(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, int minimum,
                      int maximum, struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
 

@@ -68,8 +68,8 @@ TL_INLINE float tl_slope_mean_seen(float cut)
     return 0.4f * fall / (1 - 0.5f * fall);
 }
 
-/* `least`, `most`: of lobes. As many as it takes for neighbours to overlap, or else `most`, which are wider.
- */
+/* `minimum`, `maximum`: of lobes. As many as it takes for neighbours to overlap, or else `maximum`, which are
+ * wider. */
 TL_INLINE struct tl_lobe_set tl_lobe_set_of(float weft, float warp, float x, float y, float z, int minimum,
                                             int maximum)
 {

@@ -62,7 +62,7 @@ static void glossiness_range(const tl_material *material, float *low, float *hig
 /* The G-buffer rounds 1 - glossiness to a half. */
 #define ROUNDING 1e-3f
 
-/* Exponents from `least` to `greatest`. */
+/* Exponents from `minimum` to `maximum`. */
 static uint32_t exponents_between(float minimum, float maximum)
 {
     return tl_exponents_needed(1 - 1 / fmaxf(minimum * (1 - ROUNDING), 1),

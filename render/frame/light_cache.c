@@ -17,7 +17,7 @@ void tl_light_cache_release(struct tl_light_cache *cache)
     *cache = (struct tl_light_cache){0};
 }
 
-#define BLACK_REGIONS 6 /* one a face: the fewest of either cut */
+#define BLACK_REGIONS 6 /* one for each face: the cut of the cube makes no fewer */
 
 static bool is_black(const tl_cube *cube)
 {
@@ -30,7 +30,7 @@ static bool is_black(const tl_cube *cube)
 
 void tl_light_cut_regions(const tl_cube *cube, int regions, int cut, struct tl_regions *out)
 {
-    if (is_black(cube))
+    if (is_black(cube) && regions > BLACK_REGIONS)
         regions = BLACK_REGIONS;
     if (cut == TL_CUT_SPHERE)
         tl_regions_cut_sphere(cube, regions, out);

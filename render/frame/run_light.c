@@ -106,7 +106,7 @@ static uint64_t light_revision(const struct tl_ratios_job *job)
 {
     const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
     uint64_t hash = tl_hash(TL_HASH_START, parts, sizeof parts);
-    hash = tl_hash(hash, &job->light_options->bounce, sizeof job->light_options->bounce);
+    hash = tl_hash(hash, job->light_options, sizeof *job->light_options);
     return tl_hash(hash, job->yaw, sizeof *job->yaw);
 }
 

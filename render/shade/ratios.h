@@ -47,7 +47,8 @@ struct tl_ratios_request {
     float environment_yaw;          /* rad */
     vec3s eye;
     const struct tl_light_params *params;
-    uint64_t light_revision;  /* changes with the environment, its yaw and the surfaces' materials */
+    uint64_t light_revision;  /* changes with the environment, its yaw, the surfaces' materials and the
+                                 options of light */
     uint64_t shapes_revision; /* changes when vertex numbers or materials do */
 };
 

@@ -42,7 +42,7 @@ TL_CLONES static void join_rows(const uint8_t *states, int width, int height, in
 }
 
 /* Marks the pixels of a row that face the sun where the 3 x 3 about them see shares of it that differ by more
- * than `contrast`. `least` and `most` go on for a pixel before and after the row. */
+ * than `contrast`. `minimum` and `maximum` go on for a pixel before and after the row. */
 TL_CLONES static void mark_edges(const uint8_t *states, const uint8_t *minimum, const uint8_t *maximum,
                                  int width, float contrast, uint8_t *restrict marks)
 {

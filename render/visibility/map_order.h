@@ -13,11 +13,11 @@ struct tl_map_wait {
     int age;        /* frames that moved since it was drawn; at least 1 */
 };
 
-/* The cap: twice the number of frames in which every map is drawn once if `most` are drawn in each. */
+/* The cap: twice the number of frames in which every map is drawn once if `maximum` are drawn in each. */
 int tl_map_age_cap(int count, int maximum);
 
-/* Marks `most` of `count` maps, and more only if the cap requires it; all if `most` is 0 or at least `count`.
- */
+/* Marks `maximum` of `count` maps, and more only if the cap requires it; all if `maximum` is 0 or at least
+ * `count`. */
 void tl_map_order(const struct tl_map_wait *waits, int count, int maximum, bool due[]);
 
 #endif

@@ -100,8 +100,12 @@ static void print_cloth(const tl_session *session)
            tl_garment_state_names[tl_session_garment_state(session)], report.vertex_count,
            report.triangle_count);
     const struct tl_residual residual = tl_session_residual(session);
-    printf("  out of balance by %.2g of its weight rms, %.2g for 99 %% of the vertices, %.2g at most\n",
-           residual.rms, residual.high, residual.largest);
+    printf("  out of balance by %.3g of its weight rms, %.3g for 99 %% of the vertices, %.3g at most%s\n",
+           residual.rms, residual.high, residual.largest,
+           tl_residual_is_balance(&residual) ||
+                   tl_session_settings(session)->cloth.settling == TL_SETTLING_BALANCE
+               ? ""
+               : ": --set cloth.settling=balance drapes it in balance");
     printf("  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
            "the ground, %.1f mm deep; %zu pairs of triangles cross\n\n",
            PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,

@@ -64,7 +64,7 @@ static double distance_m(vec2s from, vec2s to)
     return (double)(SIDE_M * hypotf(to.x - from.x, to.y - from.y));
 }
 
-/* `most`: the share up to which the cell may be coarse. Limited parallax may move by the height alone. */
+/* `maximum`: the share up to which the cell may be coarse. Limited parallax may move by the height alone. */
 static struct detail_cell judge(const struct detail_view *view, vec2s to, float lit, double bound_m,
                                 double maximum)
 {

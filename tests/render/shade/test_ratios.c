@@ -78,8 +78,37 @@ static void test_motion(void **state)
     }
 }
 
+/* A moving frame after an option of light has changed is that of a new renderer: no vertex keeps its ratio.
+ */
+static void test_options(void **state)
+{
+    struct test_device *device = *state;
+    const struct folds folds = {"gentle", 0.05f, 2, 24, 0};
+    struct test_scene *scene = open_folds(&folds);
+    tl_error error = {0};
+    tl_renderer *fresh = tl_renderer_create(device->gpu, &error);
+    assert_ok(fresh != NULL, error);
+    scene->shapes[0].material.gloss =
+        (struct tl_gloss){.model = TL_REFLECT_WARD, .width_weft = 0.4f, .width_warp = 0.1f};
+    test_scene_refresh(scene);
+    scene->settings.light.lobes = 1;
+    tl_image one = test_scene_draw(scene, device->renderer);
+    scene->surfaces[0].motion_revision++;
+    scene->settings.light.lobes = 7;
+    tl_image followed = test_scene_draw(scene, device->renderer), made = test_scene_draw(scene, fresh);
+    const size_t bytes = 4 * sizeof(float) * WIDTH * HEIGHT;
+    assert_memory_not_equal(tl_image_floats(&one), tl_image_floats(&made), bytes);
+    assert_memory_equal(tl_image_floats(&followed), tl_image_floats(&made), bytes);
+    tl_image_release(&one);
+    tl_image_release(&followed);
+    tl_image_release(&made);
+    tl_renderer_destroy(&fresh);
+    test_scene_close(scene);
+    free(scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_motion)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_motion), cmocka_unit_test(test_options)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
