@@ -62,20 +62,22 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
 {
     if (cloth->layers.layer_count > 0)
         return false;
-    const struct head head = {.render_count = cloth->topology.render_count,
-                              .particle_count = cloth->particles.count,
-                              .pin_count = cloth->pin_count,
-                              .seam_count = cloth->seams.pair_count,
-                              .membrane_count = cloth->energy.membrane_count,
-                              .tally = cloth->tally,
-                              .seams_elapsed_s = cloth->seams.elapsed_s,
-                              .seams_firm_s = cloth->seams.firm_s,
-                              .seams_welded_s = cloth->seams.welded_s,
-                              .unsettled_speed = cloth->unsettled_speed,
-                              .residual = cloth->residual,
-                              .jump_followed = cloth->jump_followed,
-                              .collider_revision = cloth->collider_revision,
-                              .settled = cloth->settled};
+    struct head head;
+    memset(&head, 0, sizeof head); /* its padding is saved, too */
+    head.render_count = cloth->topology.render_count;
+    head.particle_count = cloth->particles.count;
+    head.pin_count = cloth->pin_count;
+    head.seam_count = cloth->seams.pair_count;
+    head.membrane_count = cloth->energy.membrane_count;
+    head.tally = cloth->tally;
+    head.seams_elapsed_s = cloth->seams.elapsed_s;
+    head.seams_firm_s = cloth->seams.firm_s;
+    head.seams_welded_s = cloth->seams.welded_s;
+    head.unsettled_speed = cloth->unsettled_speed;
+    head.residual = cloth->residual;
+    head.jump_followed = cloth->jump_followed;
+    head.collider_revision = cloth->collider_revision;
+    head.settled = cloth->settled;
     const struct arrays arrays = {.weld = cloth->topology.weld,
                                   .particles = cloth->particles,
                                   .pinched = cloth->contacts.pinched,

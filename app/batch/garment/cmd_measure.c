@@ -102,10 +102,10 @@ static void print_cloth(const tl_session *session)
     const struct tl_residual residual = tl_session_residual(session);
     printf("  out of balance by %.3g of its weight rms, %.3g for 99 %% of the vertices, %.3g at most%s\n",
            residual.rms, residual.high, residual.largest,
-           tl_residual_is_balance(&residual) ||
-                   tl_session_settings(session)->cloth.settling == TL_SETTLING_BALANCE
-               ? ""
-               : ": --set cloth.settling=balance drapes it in balance");
+           tl_session_garment_state(session) == TL_GARMENT_AT_REST && !tl_residual_is_balance(&residual) &&
+                   tl_session_settings(session)->cloth.settling == TL_SETTLING_MOTION
+               ? ": --set cloth.settling=balance drapes it in balance"
+               : "");
     printf("  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
            "the ground, %.1f mm deep; %zu pairs of triangles cross\n\n",
            PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,

@@ -129,7 +129,7 @@ static void test_starts(void **state)
     (void)state;
     for (int slippery = 0; slippery < 2; slippery++) {
         struct worn worn;
-    put_on(&worn, 0.02);
+        put_on(&worn, 0.02);
         struct tl_cloth_fabric fabric = worn.cloth->fabric;
         tl_error error = {0};
         fabric.friction = slippery ? 0 : fabric.friction;
@@ -203,7 +203,7 @@ static void test_calibration_is_kept(void **state)
     take_off(&other);
 }
 
-/* Waves cross an edge of denim in 0.093 ms, of which a substep is at most four: 48 of 1/60 s. */
+/* Waves cross an edge of denim in 0.0926 ms (mean), of which a substep is at most four: 45 of 1/60 s. */
 static void test_substeps(void **state)
 {
     (void)state;
@@ -212,7 +212,7 @@ static void test_substeps(void **state)
     put_on(&worn, 0.02);
     const struct tl_cloth_fabric denim = fabric_read("denim");
     assert_ok(tl_cloth_set(worn.cloth, &denim, &worn.cloth->params, &error), error);
-    assert_near(tl_cloth_substeps_per_step(worn.cloth), 46, 3);
+    assert_near(tl_cloth_substeps_per_step(worn.cloth), 45, 1);
     struct tl_cloth_params motion = worn.cloth->params;
     motion.settling = TL_SETTLING_MOTION;
     assert_ok(tl_cloth_set(worn.cloth, &denim, &motion, &error), error);
@@ -272,7 +272,7 @@ static void test_threads(void **state)
     for (int threads = 1; threads <= 3; threads++) {
         omp_set_num_threads(threads);
         struct worn worn;
-    put_on(&worn, 0.04);
+        put_on(&worn, 0.04);
         const size_t bytes = worn.cloth->particles.count * sizeof *first;
         settle(&worn);
         if (!first) {
