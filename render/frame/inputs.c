@@ -86,7 +86,7 @@ static void hash_options(const struct tl_render_settings *settings, uint64_t has
 #define HASH(input, place, table, affects)                                                                   \
     hashes[input] =                                                                                          \
         tl_options_hash(find_binding(bindings, &copy.table), 1,                                              \
-                        (struct tl_option_filter){.any_of = (affects) & ~unused}, TL_HASH_START);
+                        (struct tl_option_filter){.any_of = (affects) & ~unused}, hashes[input]);
     OPTION_INPUTS(HASH)
 #undef HASH
 }

@@ -120,7 +120,8 @@ enum tl_scene_fact { TL_SCENE_FACTS(TL_NUMBER) TL_SCENE_FACT_COUNT };
 
 #define TL_BIT(resource) ((tl_bits)1 << (resource))
 
-_Static_assert(TL_RESOURCE_COUNT <= 8 * sizeof(tl_bits), "a set of resources has a bit for each");
+_Static_assert(TL_RESOURCE_COUNT <= 8 * sizeof(tl_bits),
+               "tl_bits (render/plan/plan.h) is too narrow for the resources");
 
 extern const char *const tl_resource_names[TL_RESOURCE_COUNT + 1];
 extern const char *const tl_scene_fact_names[TL_SCENE_FACT_COUNT + 1];
