@@ -13,8 +13,10 @@ bool tl_setup_apply(const struct tl_setup *setup, const struct tl_settings *scen
     if (setup->preset && !tl_settings_apply_preset(out, setup->preset, error))
         return false;
     out->image = scene->image; /* a preset is compared by its light, at one resolution */
-    if (scene->light.bounce == TL_BOUNCE_OFF)
-        out->light.bounce = TL_BOUNCE_OFF; /* the reference leaves it out, too */
+    /* Light that the scene leaves out is not in the reference either. */
+    if (out->light.bounce > scene->light.bounce)
+        out->light.bounce = scene->light.bounce;
+    out->light.reflect_scene = out->light.reflect_scene && scene->light.reflect_scene;
     return tl_settings_assign(out, setup->assignments, TL_COUNT(setup->assignments), error);
 }
 
