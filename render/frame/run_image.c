@@ -115,17 +115,12 @@ bool tl_run_reference(const struct tl_reference_job *job, tl_error *error)
                             .environment_yaw = *job->yaw,
                             .lamps = job->lamps->items,
                             .lamp_count = job->lamps->count};
-    const struct tl_reference_request request = {
-        .frame = &frame,
-        .ground = job->ground_input->is_drawn ? job->ground : NULL,
-        .params = job->reference_options,
-        .detail = job->detail_steps,
-        .lobe = job->light_options->lobe,
-        .reflect_scene = job->light_options->reflect_scene,
-        .bounces = tl_reference_bounces(job->light_options, job->reference_options),
-        .width = job->size->options.width,
-        .height = job->size->options.height,
-        .supersample = job->size->options.supersample};
+    const struct tl_render_settings settings = {.light = *job->light_options,
+                                                .detail = *job->detail_steps,
+                                                .image = job->size->options,
+                                                .reference = *job->reference_options};
+    const struct tl_reference_request request =
+        tl_frame_reference_request(&frame, &settings, job->ground_input->is_drawn ? job->ground : NULL);
     tl_image image;
     struct tl_reference_report report;
     if (!tl_reference_draw(&request, &image, &report, error))

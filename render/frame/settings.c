@@ -29,7 +29,8 @@ struct tl_render_settings tl_render_settings_resolve(const struct tl_render_sett
     return used;
 }
 
-int tl_reference_bounces(const struct tl_light_params *light, const struct tl_reference_params *reference)
+/* The number of times that the reference follows light from surface to surface. */
+static int reference_bounces(const struct tl_light_params *light, const struct tl_reference_params *reference)
 {
     return light->bounce == TL_BOUNCE_OFF ? 0 : light->bounce == TL_BOUNCE_ONE ? 1 : reference->bounces;
 }
@@ -44,8 +45,7 @@ struct tl_reference_request tl_frame_reference_request(const tl_frame *frame,
                                          .detail = &settings->detail,
                                          .lobe = settings->light.lobe,
                                          .reflect_scene = settings->light.reflect_scene,
-                                         .bounces =
-                                             tl_reference_bounces(&settings->light, &settings->reference),
+                                         .bounces = reference_bounces(&settings->light, &settings->reference),
                                          .width = settings->image.width,
                                          .height = settings->image.height,
                                          .supersample = settings->image.supersample};

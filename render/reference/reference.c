@@ -146,7 +146,7 @@ static size_t accumulate(const struct reference_drawing *drawing, int replicate,
                    .lobe_samples = params->lobe_samples,
                    .random = tl_random_begin((uint64_t)replicate << 32 | (uint32_t)tile,
                                              (uint64_t)sample + (uint64_t)layer * (uint64_t)samples)},
-        .bounces = drawing->request->bounces,
+        .bounces = drawing->scene->bounces,
         .bounce_samples = params->bounce_samples,
         .reflect = drawing->scene->reflect};
     float light[3][TL_SHADING_POINTS];

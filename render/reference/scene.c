@@ -92,7 +92,8 @@ bool tl_reference_scene_make(const struct tl_reference_request *request, struct 
                                        .lobe = request->lobe,
                                        .terminator = request->params->terminator,
                                        .detail.params = *request->detail,
-                                       .reflect = request->reflect_scene};
+                                       .reflect = request->reflect_scene,
+                                       .bounces = request->bounces};
     out->materials = TL_NEW_ARRAY(struct tl_surface_materials, out->surface_count + 1);
     for (size_t i = 0; i < out->surface_count; i++)
         out->materials[i] = make_materials(out, &frame->surfaces[i]);

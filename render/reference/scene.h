@@ -54,6 +54,7 @@ struct tl_reference_scene {
     int lobe;       /* enum tl_lobe */
     int terminator; /* enum tl_terminator */
     bool reflect;   /* near mirrors reflect the lit scene */
+    int bounces;    /* how often surfaces send light on before the one that is seen */
 };
 
 /* Makes the scene of a request, whose image size is not used. False with TL_DEVICE if the BVH cannot be

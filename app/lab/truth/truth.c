@@ -27,7 +27,6 @@ struct comparison {
     struct tl_view view;
     int width, height, side; /* pixels; samples along one of them */
     int tiles_x, tiles_y;
-    int bounces;                /* of light, in the reference */
     float *cover;               /* [height][width] the reference's, by quick rays */
     const tl_material *garment; /* materials of the last surface */
     size_t garment_materials;
@@ -139,7 +138,7 @@ static void add_light(const struct tracing *tracing, const struct sample_hits *h
                    .lobe_samples = tracing->effort.lobe_samples,
                    .random =
                        tl_random_begin((uint64_t)tracing->tile << 16 | (uint64_t)tracing->replicate, turn)},
-        .bounces = tracing->comparison->bounces,
+        .bounces = scene->bounces,
         .bounce_samples = tracing->effort.lobe_samples,
         .reflect = scene->reflect};
     float gathered[3][TL_SHADING_POINTS];
@@ -542,8 +541,7 @@ bool tl_truth_compare(const tl_frame *frame, const struct tl_render_settings *se
                                     .height = height,
                                     .side = settings->image.supersample,
                                     .tiles_x = (width + TILE - 1) / TILE,
-                                    .tiles_y = (height + TILE - 1) / TILE,
-                                    .bounces = request.bounces};
+                                    .tiles_y = (height + TILE - 1) / TILE};
     size_t tile_count = (size_t)comparison.tiles_x * (size_t)comparison.tiles_y;
     find_garment(frame, &comparison);
     if (!tl_reference_scene_make(&request, &comparison.scene, error))
