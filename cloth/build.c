@@ -62,7 +62,6 @@ void tl_cloth_set_constants(tl_cloth *cloth)
     cloth->critical_step = tl_energy_critical_step(&cloth->energy, &cloth->fabric, cloth->particles.count,
                                                    cloth->particles.w, NULL);
     cloth->forces = tl_resize(cloth->forces, cloth->particles.count, sizeof *cloth->forces);
-    tl_implicit_destroy(&cloth->implicit);
     set_energy(cloth);
     tl_contacts_release(&cloth->contacts); /* the planes depend on the thickness */
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
@@ -82,7 +81,6 @@ void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)
         now->substeps == params->substeps)
         return;
     cloth->params = *params;
-    tl_implicit_destroy(&cloth->implicit);
     set_energy(cloth);
 }
 
@@ -184,7 +182,6 @@ void tl_cloth_release_state(tl_cloth *cloth)
     tl_apart_release(&cloth->apart);
     tl_strain_limits_release(&cloth->limits);
     tl_seams_release(&cloth->seams);
-    tl_implicit_destroy(&cloth->implicit);
     free(cloth->rest);
     free(cloth->made_at);
     free(cloth->pins);

@@ -121,12 +121,11 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
 }
 
 /* A run after a reset must equal the first one to the bit. So everything is reset that remembers earlier
- * frames: contact planes, the stick and slip states of `settle`, and the start lengths of the strain limits.
+ * frames: contact planes, and the start lengths of the strain limits.
  */
 static void reset_history(tl_cloth *cloth)
 {
     tl_strain_limits_restart(&cloth->limits, cloth->particles.x);
-    tl_implicit_destroy(&cloth->implicit);
     tl_contacts_release(&cloth->contacts);
     cloth->contacts = tl_contacts_create(&cloth->topology, cloth->rest);
     for (size_t i = 0; i < cloth->topology.render_count; i++)

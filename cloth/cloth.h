@@ -1,5 +1,5 @@
 /* The cloth: a triangle mesh with an elastic energy in physical units, in double precision, and a choice of
- * three solvers for its motion.
+ * two solvers for its motion.
  *
  * Render vertices are welded into physics vertices where their start positions are equal to the bit (and
  * along seams, once these are closed), so that UV seams do not tear. Results do not depend on the number of
@@ -28,9 +28,8 @@ typedef struct tl_cloth tl_cloth;
 /* A larger strain than this means that the solver has failed: the frame is refused. */
 #define TL_CLOTH_MAX_STRAIN 10
 
-/* Solvers of the motion. Table "cloth". preview: cloth/solvers/xpbd.h; settle:
- * cloth/solvers/implicit/implicit.h; reference: cloth/solvers/verlet.h. */
-enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_SETTLE, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
+/* Solvers of the motion. Table "cloth". preview: cloth/solvers/xpbd.h; reference: cloth/solvers/verlet.h. */
+enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COUNT };
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 enum tl_pin_colour { TL_PIN_NO_COLOUR, TL_PIN_RED, TL_PIN_GREEN, TL_PIN_BLUE };
 extern const char *const tl_pin_colour_names[]; /* NULL-terminated */
@@ -46,8 +45,6 @@ struct tl_cloth_params {
     double dt;              /* s, longest step; a frame is made of equal steps: see frame_rate */
     double frame_rate;      /* frames per second of the animation */
     int substeps;           /* preview: per step; 0: as many as the mesh needs */
-    int cg_iterations;      /* settle: at most, per solve */
-    double cg_tolerance;    /* settle: residual at the end of a solve, relative to its start */
     int reference_substeps; /* reference: at most, per frame; a fabric that needs more is refused */
     double strain_limit;    /* preview: largest strain of an edge; 0: only the energy resists */
     double pin_above_m;     /* vertices that start higher are pinned to the avatar's nearest point; 0: none */
@@ -86,13 +83,10 @@ struct tl_cloth_report {
     double potential_energy; /* J, of free particles in gravity; 0 at y = 0 */
     double critical_step_s;  /* the longest stable step of an explicit solver */
     double substep_s;        /* the chosen solver's substep */
-    size_t
-        unconverged_steps; /* settle: steps since creation whose solve reached cg_iterations: still bounded */
-    size_t shortened_steps; /* settle: steps since creation that were shortened because they gained energy */
-    double deepest_m;       /* deepest penetration of the avatar's surface or the ground; 0: none */
-    size_t inside_count;    /* particles inside the avatar or below the ground */
-    size_t caught_count;    /* particles caught between parts of the avatar in the last frame: moved back
-                               outside,    or slipped past one part, both at the price of strain */
+    double deepest_m;        /* deepest penetration of the avatar's surface or the ground; 0: none */
+    size_t inside_count;     /* particles inside the avatar or below the ground */
+    size_t caught_count;     /* particles caught between parts of the avatar in the last frame: moved back
+                                outside,    or slipped past one part, both at the price of strain */
     bool settled;
 };
 

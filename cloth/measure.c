@@ -135,8 +135,6 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
                                      .rms_strain = rms_strain(moved),
                                      .critical_step_s = cloth->critical_step,
                                      .substep_s = tl_cloth_substep(cloth),
-                                     .unconverged_steps = cloth->tally.unconverged,
-                                     .shortened_steps = cloth->tally.shortened,
                                      .caught_count = moved->contacts.caught_count,
                                      .settled = cloth->settled};
     struct tl_energies energies = tl_cloth_energies(cloth);

@@ -5,33 +5,27 @@
 
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .self_contact = true, \
-    .cg_iterations = 200, .cg_tolerance = 3e-2, .reference_substeps = 20000, .gravity = 9.81,                \
-    .settle_s = 10, .settle_speed = 0.003, .cages = true, .caged_above = 40000, .edge_m = 0.02f,             \
-    .longest_edge_m = 0.1f
+    .reference_substeps = 20000, .gravity = 9.81, .settle_s = 10, .settle_speed = 0.003, .cages = true,      \
+    .caged_above = 40000, .edge_m = 0.02f, .longest_edge_m = 0.1f
 
-const char *const tl_cloth_solver_names[] = {"preview", "settle", "reference", NULL};
+const char *const tl_cloth_solver_names[] = {"preview", "reference", NULL};
 
 const char *const tl_settling_names[] = {"motion", "balance", NULL};
 
 const char *const tl_pin_colour_names[] = {"none", "red", "green", "blue", NULL};
 
 static const struct tl_option cloth_rows[] = {
-    TL_OPTION_ENUM(
-        struct tl_cloth_params, solver, AFFECTS, tl_cloth_solver_names,
-        "preview: bounded cost, rests as if slightly softer; settle: stable at any step, exact at rest, "
-        "overdamped in motion; reference: exact in motion, its step shrinks with the fabric's stiffness"),
+    TL_OPTION_ENUM(struct tl_cloth_params, solver, AFFECTS, tl_cloth_solver_names,
+                   "of the motion. preview: bounded cost; reference: exact, its step shrinks with the "
+                   "fabric's stiffness"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, dt, AFFECTS, 1e-5, 0.1, "s",
                      "maximum time step; a frame is divided into equal steps; larger: faster, less exact"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, frame_rate, AFFECTS | TL_AFFECTS_WORK, 1, 1000, "1/s",
                      "frames per second of animation"),
-    TL_OPTION_INT(struct tl_cloth_params, substeps, AFFECTS, 0, TL_CLOTH_MAX_SUBSTEPS, "",
-                  "preview: substeps per step; more: slower, stretches less; 0: 30, or as many as mean edges "
-                  "below 12 mm need"),
-    TL_OPTION_INT(struct tl_cloth_params, cg_iterations, AFFECTS, 1, 1000000, "",
-                  "settle: maximum iterations of a step's solve; more: slower, more steps converge"),
-    TL_OPTION_DOUBLE(
-        struct tl_cloth_params, cg_tolerance, AFFECTS, 1e-12, 0.5, "",
-        "settle: residual at which a solve ends, relative to its start; larger: faster, less exact motion"),
+    TL_OPTION_INT(
+        struct tl_cloth_params, substeps, AFFECTS, 0, TL_CLOTH_MAX_SUBSTEPS, "",
+        "preview: substeps per step; more: slower, stretches less in motion; 0: 30, or as many as the "
+        "fabric's stiffness and mean edges below 12 mm need"),
     TL_OPTION_INT(struct tl_cloth_params, reference_substeps, AFFECTS, 1, 100000000, "",
                   "reference: maximum substeps per frame; a fabric that needs more is refused"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, strain_limit, AFFECTS, 0, 10, "",
@@ -54,15 +48,12 @@ static const struct tl_option cloth_rows[] = {
                      "velocity of the air, which exerts pressure on the cloth; 0 0 0: no wind is computed"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, gust, AFFECTS, 0, 1, "",
                      "amplitude of the gusts, relative to the wind's speed"),
-    TL_OPTION_ENUM(
-        struct tl_cloth_params, settling, AFFECTS, tl_settling_names,
-        "how cloth comes to rest before the first frame: motion: until it no longer moves, stretched "
-        "and wide by what a substep leaves; balance: until its forces balance, exact in fit (the "
-        "neck of a dress within 2 mm, where motion is 16 mm off), but it sways when play begins"),
-    TL_OPTION_DOUBLE(struct tl_cloth_params, settle_s, AFFECTS, 0, 600, "s",
-                     "maximum simulated time for coming to rest before the first frame"),
+    TL_OPTION_DOUBLE(
+        struct tl_cloth_params, settle_s, AFFECTS, 0, 600, "s",
+        "maximum time for coming to balance before the first frame, in substeps; 0: the cloth is not "
+        "settled"),
     TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, AFFECTS, 0, 10, "m/s",
-                     "settled when no vertex moves faster than this over a frame; larger: settles sooner"),
+                     "in motion the cloth is at rest when no vertex moves faster than this over a frame"),
     TL_OPTION_BOOL(struct tl_cloth_params, cages, AFFECTS,
                    "settles coarser versions of a fine cloth first, from which it comes to rest sooner"),
     TL_OPTION_INT(struct tl_cloth_params, caged_above, AFFECTS, 0, 1000000000, "",

@@ -8,7 +8,6 @@
 #include "cloth/drive/pins.h"
 #include "cloth/drive/seams.h"
 #include "cloth/self_contact/keep_apart.h"
-#include "cloth/solvers/implicit/implicit.h"
 #include "cloth/solvers/strain_limit.h"
 
 struct tl_cloth {
@@ -26,10 +25,8 @@ struct tl_cloth {
         refused_step; /* s, reference: the step that a crushed state needed and the budget refused; 0: none */
     struct tl_particles particles;
     vec3d *forces; /* [particles.count] N, elastic, valid within one step: reference, and preview's bending */
-    vec3d *external;        /* [particles.count] N, of the wind; NULL: there was none yet */
-    vec3d *good_x, *good_v; /* [particles.count] at the frame's start, restored after a failure */
-    tl_implicit *implicit;  /* settle only */
-    struct tl_implicit_tally tally;
+    vec3d *external;                /* [particles.count] N, of the wind; NULL: there was none yet */
+    vec3d *good_x, *good_v;         /* [particles.count] at the frame's start, restored after a failure */
     struct tl_strain_limits limits; /* preview */
     struct tl_contacts contacts;
     struct tl_layers layers; /* with params.self_contact */

@@ -50,8 +50,6 @@ double tl_cloth_substeps_per_step(const tl_cloth *cloth)
 {
     if (cloth->params.solver == TL_CLOTH_PREVIEW)
         return preview_substeps(cloth);
-    if (cloth->params.solver == TL_CLOTH_SETTLE)
-        return 1;
     return fmax(ceil(tl_cloth_step_seconds(cloth) / (TL_VERLET_SAFETY * cloth->critical_step)), 1);
 }
 

@@ -64,10 +64,8 @@ static bool load_settings(const char *source, const struct tl_arguments *argumen
     char *fabric = tl_format("scene.fabric=%s", source);
     const char *const own[] = {fabric,
                                "scene.colourways=own",
-                               "cloth.solver=settle",
                                "cloth.edge_m=0.008",
                                "cloth.settle_s=20",
-                               "cloth.settle_speed=0.0005",
                                "fabric.damping=2", /* ends the swinging; the rest is the same */
                                "image.ground=false",
                                "image.background=grey"};

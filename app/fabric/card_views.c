@@ -93,10 +93,8 @@ static bool draw_disc(struct tl_headless *headless, struct tl_card *card, tl_err
 static bool draw_ball(struct tl_headless *headless, struct tl_card *card, tl_error *error)
 {
     const struct tl_cloth_params *defaults = tl_cloth_options.defaults;
-    headless->settings.cloth.solver = defaults->solver; /* friction holds the sheet on the ball */
     headless->settings.cloth.edge_m *= SHEET_EDGES;
     headless->settings.cloth.settle_s = defaults->settle_s;
-    headless->settings.cloth.settle_speed = defaults->settle_speed;
     headless->settings.scene.garment = "sheet";
     headless->settings.scene.avatar = "ball";
     view_from_side(&headless->settings, 0.95f, 0.31f);

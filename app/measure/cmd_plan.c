@@ -109,11 +109,8 @@ static void print_cloth(const struct tl_settings *settings, const struct tl_clot
            report->vertex_count, 1000 * report->critical_step_s,
            tl_cloth_solver_names[settings->cloth.solver], substeps_per_frame(settings, report),
            1000 * report->substep_s, self_contact);
-    if (report->caught_count + report->unconverged_steps + report->shortened_steps > 0)
-        printf("cloth: %zu vertices caught between parts of the avatar, %zu steps cut short before "
-               "they "
-               "converged, %zu shortened because they would have gained energy\n",
-               report->caught_count, report->unconverged_steps, report->shortened_steps);
+    if (report->caught_count > 0)
+        printf("cloth: %zu vertices caught between parts of the avatar\n", report->caught_count);
 }
 
 static void add_cloth(cJSON *object, const struct tl_settings *settings, const struct tl_cloth_report *report)
@@ -129,8 +126,6 @@ static void add_cloth(cJSON *object, const struct tl_settings *settings, const s
     cJSON_AddStringToObject(cloth, "self_contact", self_contact);
     cJSON_AddNumberToObject(cloth, "crossings", (double)report->crossing_count);
     cJSON_AddNumberToObject(cloth, "caught", (double)report->caught_count);
-    cJSON_AddNumberToObject(cloth, "unconverged_steps", (double)report->unconverged_steps);
-    cJSON_AddNumberToObject(cloth, "shortened_steps", (double)report->shortened_steps);
 }
 
 /* ---- The report ---- */

@@ -245,14 +245,6 @@ static bool is_sample_released(const struct tl_contacts *contacts, const struct 
     return is_released(contacts, v[0]) || is_released(contacts, v[1]) || is_released(contacts, v[2]);
 }
 
-/* Index as of tl_contacts_planes. */
-static bool is_any_released(const struct tl_contacts *contacts, size_t index)
-{
-    return index < contacts->particle_count
-               ? is_released(contacts, index)
-               : is_sample_released(contacts, &contacts->samples[index - contacts->particle_count]);
-}
-
 /* Vertices that are outside again are held outside. Those still inside when their time is over come out at
  * push_out_speed. */
 static void follow_released(struct tl_contacts *contacts, size_t i, const struct tl_contact_params *step,
@@ -540,37 +532,4 @@ void tl_contacts_solve_velocities(const struct tl_contacts *contacts, const stru
         if (particles->w[i] > 0)
             particles->v[i] = apply_all_friction(&surroundings, &contacts->caches[i], particles->x[i],
                                                  particles->v[i], params);
-}
-
-/* ---- Planes for solvers that enforce them ---- */
-
-/* The inequality for a particle at x at the substep's start. Outside (depth < 0) it may approach by its
- * distance; inside it has to move out by its depth, at push_out_speed at most. Both are relative to the
- * surface's own motion. */
-static struct tl_contact_plane plane_of(vec3d x, vec3d surface, vec3d surface_before, vec3d normal,
-                                        const struct tl_contact_params *params)
-{
-    vec3d motion = vec3d_sub(surface, surface_before);
-    double depth = params->thickness_m - vec3d_dot(vec3d_sub(x, surface_before), normal);
-    double pushed = depth > 0 ? fmin(depth, params->push_out_speed * params->h) : depth;
-    return (struct tl_contact_plane){normal, motion, vec3d_dot(motion, normal) + pushed};
-}
-
-size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
-                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES])
-{
-    const struct surroundings surroundings = surroundings_of(contacts->collider);
-    size_t count = 0;
-    if (!surroundings.collider || is_any_released(contacts, particle))
-        return 0;
-    struct tl_contact_cache *cache = &contacts->caches[particle];
-    if (is_stale(cache, surroundings.travel, params->phase_before, x))
-        query(surroundings.collider, params->thickness_m, params->phase_before,
-              predicted_point(cache, params->thickness_m, params->phase_before, x), cache);
-    if (cache->near)
-        out[count++] = plane_of(x, anchor_at(cache, params->phase), anchor_at(cache, params->phase_before),
-                                cache->normal, params);
-    if (surroundings.ground)
-        out[count++] = plane_of(x, (vec3d){0}, (vec3d){0}, (vec3d){0, 1, 0}, params);
-    return count;
 }

@@ -6,7 +6,7 @@
  * Penetration that existed before the substep is removed at a limited speed, because removing it at once
  * would add energy.
  *
- * A step calls tl_contacts_update at its start, tl_contacts_solve (or tl_contacts_planes) in each substep and
+ * A step calls tl_contacts_update at its start, tl_contacts_solve in each substep and
  * tl_contacts_enforce at its end. A probe is a contact sample between vertices. Metres, seconds, world axes
  * with y up. Errors: none. Lifetime: the contacts own their arrays; the collider must outlive the frame.
  * Threads: pure. */
@@ -54,9 +54,7 @@ void tl_contacts_release(struct tl_contacts *contacts);
 
 struct tl_contact_params {
     double friction, thickness_m;
-    double push_out_speed; /* m/s at which penetration from before the substep is removed */
-    double
-        min_slip_speed; /* m/s, for solvers that enforce planes themselves: slower slip counts as sticking */
+    double push_out_speed;      /* m/s at which penetration from before the substep is removed */
     double phase_before, phase; /* of the collider's motion, at the substep's start and end */
     double h;                   /* s, the substep */
 };
@@ -71,20 +69,6 @@ void tl_contacts_forget(struct tl_contacts *contacts);
 /* Call once per step, at its start, with the positions `x`. Queries the collider for every invalid cache, and
  * also for the near ones while the collider moves, because a cached plane is translated but not rotated. */
 void tl_contacts_update(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
-
-/* A plane that a particle may not cross during a substep, as an inequality for a solver that enforces it
- * itself: the particle's displacement d (m) satisfies d.normal >= min_normal_step. */
-struct tl_contact_plane {
-    vec3d normal;           /* outward, unit */
-    vec3d motion;           /* m, of the surface during the substep */
-    double min_normal_step; /* m; removes penetration at the limited speed */
-};
-#define TL_CONTACT_PLANES 2 /* one of the avatar, one of the ground */
-
-/* Writes the planes of one particle that starts the substep at `x`; index particle_count + i means probe i.
- * Returns their number. */
-size_t tl_contacts_planes(struct tl_contacts *contacts, const struct tl_contact_params *params,
-                          size_t particle, vec3d x, struct tl_contact_plane out[TL_CONTACT_PLANES]);
 
 /* Height of a particle above the nearer of avatar and ground, as far as the caches know: returns false if
  * neither is known to be near. */

@@ -99,7 +99,8 @@ static double speed_now(const struct tl_seams *seams)
     return tl_seams_are_stuck(seams) ? STUCK_SPEED : tl_seams_are_firm(seams) ? FIRM_SPEED : GENTLE_SPEED;
 }
 
-void tl_seams_shrink(struct tl_seams *seams, const vec3d *x, double h)
+/* Sets the links' lengths from their lengths at the substep's start. */
+static void shrink(struct tl_seams *seams, const vec3d *x, double h)
 {
     double drawn_in = h * speed_now(seams);
     seams->elapsed_s += h;
@@ -120,7 +121,7 @@ static void draw_over(struct tl_particles *particles, uint32_t particle, vec3d o
 
 void tl_seams_solve(struct tl_seams *seams, struct tl_particles *particles, double h)
 {
-    tl_seams_shrink(seams, particles->previous, h);
+    shrink(seams, particles->previous, h);
     for (size_t i = 0; i < seams->way_count && seams->elapsed_s < WAYS_S; i++) {
         draw_over(particles, seams->ways[i].a, seams->ways[i].over, h * GENTLE_SPEED);
         draw_over(particles, seams->ways[i].b, seams->ways[i].over, h * GENTLE_SPEED);

@@ -51,10 +51,8 @@ bool tl_seams_are_stuck(const struct tl_seams *seams);
 /* 1/s, of the cloth while they close: panels that coast pass their seam, and each other. */
 double tl_seams_drag(const struct tl_seams *seams);
 
-/* Advances time by h seconds: sets the links' lengths from their lengths at the positions `x`. */
-void tl_seams_shrink(struct tl_seams *seams, const vec3d *x, double h);
-
-/* The same from the substep's start, and solves the links and the ways. */
+/* Advances time by h seconds: sets the links' lengths from their lengths at the substep's start, and solves
+ * the links and the ways. */
 void tl_seams_solve(struct tl_seams *seams, struct tl_particles *particles, double h);
 
 /* Welds closed pairs: fills `joined` [particles->count] with the new number of each vertex and returns the

@@ -28,8 +28,7 @@
 struct tl_substep {
     double h; /* s */
     double gravity, drag;
-    double contact_budget, min_slip_speed; /* see struct tl_advance_params */
-    double phase_before, phase;            /* of the collider's motion at the substep's start and end */
+    double phase_before, phase; /* of the collider's motion at the substep's start and end */
     const tl_collider *collider;
     bool continues_previous; /* follows a substep directly: a solver may have merged that one's end with this
                                 one's start */
@@ -78,10 +77,7 @@ static void pull_grabbed(tl_cloth *cloth, const struct tl_substep *substep)
 
 static struct tl_contact_params contact_params(const tl_cloth *cloth, const struct tl_substep *substep)
 {
-    struct tl_contact_params params =
-        tl_cloth_contact_params(cloth, substep->h, substep->phase_before, substep->phase);
-    params.min_slip_speed = substep->min_slip_speed;
-    return params;
+    return tl_cloth_contact_params(cloth, substep->h, substep->phase_before, substep->phase);
 }
 
 static void draw_seams(tl_cloth *cloth, const struct tl_substep *substep)
@@ -148,47 +144,6 @@ void tl_cloth_preview_substep(tl_cloth *cloth, const tl_collider *collider, doub
                                        .applied = applied};
     tl_cloth_renew_contact(cloth, substep.h, 1, false);
     advance_preview(cloth, &substep);
-}
-
-struct tl_springs tl_cloth_springs(const tl_cloth *cloth)
-{
-    const double factor = 10, min = 1000; /* N/m: closing seams must overcome the fabric's own stretch */
-    return (struct tl_springs){.count = cloth->seams.pair_count,
-                               .links = cloth->seams.links,
-                               .stiffness = fmax(factor * cloth->fabric.stretch_warp, min)};
-}
-
-/* One step of backward Euler. Pins move first, as they are prescribed to the solve. The solve already
- * enforces contact planes; the projection after it catches what has moved past the planes that it knew. */
-static void advance_settle(tl_cloth *cloth, const struct tl_substep *substep)
-{
-    struct tl_particles *particles = &cloth->particles;
-    if (cloth->seams.pair_count > 0)
-        tl_seams_shrink(&cloth->seams, particles->x, substep->h);
-    const struct tl_springs springs = tl_cloth_springs(cloth);
-    const struct tl_implicit_problem problem = {
-        .energy = &cloth->energy,
-        .fabric = &cloth->fabric,
-        .springs = springs,
-        .hand = {.particle = cloth->grabbed ? cloth->topology.weld[cloth->grabbed_vertex] : TL_NONE,
-                 .target = hand_at(cloth, substep->phase),
-                 .stiffness = GRAB_STIFFNESS,
-                 .max_force = GRAB_FORCE},
-        .contacts = &cloth->contacts,
-        .contact = contact_params(cloth, substep),
-        .gravity = substep->gravity,
-        .drag = substep->drag,
-        .h = substep->h,
-        .contact_budget = substep->contact_budget,
-        .tolerance = cloth->params.cg_tolerance,
-        .max_iterations = cloth->params.cg_iterations};
-    if (!cloth->implicit)
-        cloth->implicit = tl_implicit_create(&problem, particles);
-    memcpy(particles->previous, particles->x, particles->count * sizeof *particles->x);
-    tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
-    tl_implicit_step(cloth->implicit, &problem, particles, &cloth->tally);
-    tl_cloth_keep_apart(cloth, &problem.contact);
-    tl_particles_finish(particles, substep->h);
 }
 
 static void compute_forces(tl_cloth *cloth, const struct tl_particle_kernel *then)
@@ -271,8 +226,6 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
         const struct tl_substep substep = {.h = tl_cloth_step_seconds(cloth) / substeps,
                                            .gravity = gravity,
                                            .drag = fmax(advance->drag, cloth->fabric.damping),
-                                           .contact_budget = advance->contact_budget,
-                                           .min_slip_speed = advance->min_slip_speed,
                                            .phase_before = done / total,
                                            .phase = (done + 1) / total,
                                            .collider = collider,
@@ -283,8 +236,6 @@ static void run_step(tl_cloth *cloth, const tl_collider *collider, const struct 
             apply_wind(cloth, &substep);
         if (cloth->params.solver == TL_CLOTH_REFERENCE)
             advance_reference(cloth, &substep, (double)(sub + 1) == substeps);
-        else if (cloth->params.solver == TL_CLOTH_SETTLE)
-            advance_settle(cloth, &substep);
         else
             advance_preview(cloth, &substep);
     }
@@ -401,7 +352,7 @@ static bool check_energy(tl_cloth *cloth, const tl_collider *collider, tl_error 
     return tl_fail(
         error, TL_UNSTABLE,
         "cloth: gained %.3g J at %.3f s though nothing drives it; the last good frame is kept: repair needle "
-        "triangles, make cloth.dt smaller, or choose cloth.solver settle",
+        "triangles, or make cloth.dt smaller",
         gain, cloth->time_s);
 }
 

@@ -7,16 +7,9 @@
 
 /* The way in which tl_cloth_advance advances one frame. */
 struct tl_advance_params {
-    double drag;           /* 1/s, replaces the fabric's damping if larger */
-    bool clock;            /* whether the animation's clock runs */
-    double contact_budget; /* settle: see struct tl_implicit_problem */
-    double min_slip_speed; /* m/s: see struct tl_contact_params */
+    double drag; /* 1/s, replaces the fabric's damping if larger */
+    bool clock;  /* whether the animation's clock runs */
 };
-
-/* m/s, the usual min_slip_speed. A worn garment is held by hundreds of particles near Coulomb's bound, which
- * stick and slip in turn: with a tenth of this they never stick all at once, and a dress creeps for ever at a
- * few mm/s. */
-#define TL_MIN_SLIP_SPEED 1e-3
 
 /* Advances by one frame. Errors: as tl_cloth_settle; positions and velocities are then those of the frame's
  * start. */
@@ -29,8 +22,5 @@ void tl_cloth_preview_substep(tl_cloth *cloth, const tl_collider *collider, doub
 
 /* Fails with TL_UNSTABLE where the state is not finite or is strained by more than TL_CLOTH_MAX_STRAIN. */
 bool tl_cloth_check_state(const tl_cloth *cloth, tl_error *error);
-
-/* The open seams as springs for `settle`, stiff enough to close against the fabric. Borrows the cloth. */
-struct tl_springs tl_cloth_springs(const tl_cloth *cloth);
 
 #endif

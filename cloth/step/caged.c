@@ -89,8 +89,7 @@ static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
 
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
-    const struct tl_advance_params advance = {
-        .clock = true, .contact_budget = 2, .min_slip_speed = TL_MIN_SLIP_SPEED};
+    const struct tl_advance_params advance = {.clock = true};
     if (is_heavy(cloth) && prepare(cloth))
         return advance_caged(cloth, collider, &advance, error);
     if (cloth->was_caged)

@@ -69,7 +69,6 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
     head.pin_count = cloth->pin_count;
     head.seam_count = cloth->seams.pair_count;
     head.membrane_count = cloth->energy.membrane_count;
-    head.tally = cloth->tally;
     head.seams_elapsed_s = cloth->seams.elapsed_s;
     head.seams_firm_s = cloth->seams.firm_s;
     head.seams_welded_s = cloth->seams.welded_s;

@@ -22,35 +22,24 @@ static inline bool solver_rests_exactly(int solver)
     return solver != TL_CLOTH_PREVIEW;
 }
 
-static inline void params_solve_exactly(struct tl_cloth_params *params)
-{
-    params->cg_tolerance = 1e-12;
-    params->cg_iterations = 10000;
-}
-
-/* Parameters with which the solver solves a step as exactly as it can. */
+/* Parameters of the solver alone. */
 static inline struct tl_cloth_params params_exact(int solver)
 {
     struct tl_cloth_params params = params_defaults();
     params.solver = solver;
     params.strain_limit = 0; /* the energy alone, without what acts beside it */
     params.self_contact = false;
-    params_solve_exactly(&params);
     return params;
 }
 
-/* A step length at which the solver comes to rest soon: large for an unconditionally stable one. */
-static inline double solver_resting_step(int solver)
-{
-    return solver == TL_CLOTH_SETTLE ? 1.0 / 60 : 1.0 / 1920;
-}
+/* A step length at which both solvers come to rest soon. */
+#define RESTING_STEP (1.0 / 1920)
 
-/* Steps of `h` seconds, of one substep each, solved to rounding. */
+/* Steps of `h` seconds, of one substep each. */
 static inline void params_set_step(struct tl_cloth_params *params, double h)
 {
     params->dt = h;
     params->substeps = 1;
-    params_solve_exactly(params);
 }
 
 static inline void cloth_run(tl_cloth *cloth, const tl_collider *collider, double seconds)

@@ -1,7 +1,6 @@
 /* Every solver gives the same bits in every run and at any number of threads: an FNV-1a hash of all positions
  * after each frame. test_threads prints hashes that equal those of a Debug build. */
 #include "cloth/mesh/team.h"
-#include "cloth/solvers/implicit/stiffness.h"
 #include "cloth/state.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "tests/cloth/bodies.h"
@@ -159,7 +158,6 @@ static void test_marked_start(void **state)
 {
     (void)state;
     check_marked_start(TL_CLOTH_PREVIEW, 40);
-    check_marked_start(TL_CLOTH_SETTLE, 20);
     check_marked_start(TL_CLOTH_REFERENCE, 12);
 }
 

@@ -38,7 +38,6 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     tl_garment garment = make_specimen(edge_m, 0.4 * seed);
     struct tl_cloth_fabric damped = *fabric;
     struct tl_cloth_params params = params_defaults();
-    params.solver = TL_CLOTH_SETTLE;
     damped.damping = 2;
     tl_cloth *cloth = cloth_make(&garment, &damped, &params);
     for (size_t i = 0; i < cloth->particles.count;

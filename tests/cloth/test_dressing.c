@@ -225,24 +225,6 @@ static void test_drafted(void **state)
     }
 }
 
-/* With preview test_built_in measures the creep. */
-static void test_rests_by_settle(void **state)
-{
-    (void)state;
-    tl_error error = {0};
-    struct dressed d = {.avatar = tl_avatar_form()};
-    assert_ok(tl_garment_cut("dress", params_defaults().edge_m, &d.garment, &error), error);
-    dress(&d);
-    struct tl_cloth_params params = d.cloth->params;
-    params.solver = TL_CLOTH_SETTLE;
-    assert_ok(tl_cloth_set(d.cloth, &d.cloth->fabric, &params, &error), error);
-    assert_ok(tl_cloth_settle(d.cloth, d.collider, &error), error);
-    for (int frame = 0; frame < 60; frame++)
-        assert_ok(tl_cloth_step(d.cloth, d.collider, &error), error);
-    check_creep(&d, "dress");
-    undress(&d);
-}
-
 /* A few of ten thousand vertices may oscillate between substeps, which is not visible in frames. Settling
  * still ends, and none oscillates for long, because the strain limit shortens the same edges in every
  * substep. */

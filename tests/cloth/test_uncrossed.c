@@ -68,8 +68,7 @@ static uint64_t play(struct worn *worn, const char *name, int settling, int moti
     uint64_t hash = TL_HASH_START;
     double strain = 0, deepest = 0;
     for (int frame = 0; frame < settling + motion; frame++) {
-        struct tl_advance_params advance = {
-            .drag = 5, .contact_budget = 2, .min_slip_speed = TL_MIN_SLIP_SPEED};
+        struct tl_advance_params advance = {.drag = 5};
         if (frame >= settling) {
             advance.drag = 0;
             twist(worn, frame - settling + 1);

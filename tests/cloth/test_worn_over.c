@@ -126,8 +126,7 @@ static void test_three_garments(void **state)
     const int motion = wanted ? atoi(wanted) : MOTION;
     double strain = 0, deepest = 0;
     for (int frame = 0; frame < SETTLING + motion; frame++) {
-        struct tl_advance_params advance = {
-            .drag = frame < SETTLING ? 5 : 0, .contact_budget = 2, .min_slip_speed = TL_MIN_SLIP_SPEED};
+        struct tl_advance_params advance = {.drag = frame < SETTLING ? 5 : 0};
         if (frame >= SETTLING) {
             twist_pose(body, frame - SETTLING + 1, pose);
             tl_collider_move(collider, pose);

@@ -12,7 +12,6 @@ static const struct tl_technique techniques[] = {
     {.picture = "denim", .id = "E1", SET("scene.fabric=denim")},
 
     {.picture = "preview", .id = "E2", SET("cloth.solver=preview")},
-    {.picture = "settle", .id = "E2", SET("cloth.solver=settle")},
 
     {.picture = "friction 0.3", .id = "E3", SET("fabric.friction=0.3")},
     {.picture = "friction 1", .id = "E3", SET("fabric.friction=1")},
@@ -46,7 +45,7 @@ static const struct tl_experiment experiments[] = {
      .name = "e2",
      .scene = "gallery",
      .title = "E2  Solvers of the cloth",
-     .text = "Three integrators over one energy. The sheet falls over the ball and comes to rest; the solid "
+     .text = "Two integrators over one energy. The sheet falls over the ball and comes to rest; the solid "
              "is no cloth and stays equal.",
      .exact_text = "the solver `reference`, whose step follows the fabric's stiffness",
      .motion = TL_MOTION_CLOTH,

@@ -13,7 +13,8 @@
 #define FALL_S      0.5
 #define ENOUGH_MS   100  /* a shorter fall is measured again */
 #define REST_SIDE   33   /* vertices a side of the largest sheet whose rest is measured */
-#define REST_S      60   /* longest */
+#define REST_S      60   /* of settling, longest */
+#define RESTED_S    1    /* of motion after that: each solver then shows where it rests */
 #define TRUTH_SHARE 0.25 /* of the reference's own step */
 
 /* One choice of settings. An unknown solver name is skipped. */
@@ -21,7 +22,7 @@ struct setting {
     const char *solver, *name;
     double dt;    /* s; 0: the longest that the solver accepts */
     double share; /* of the solver's own substep, instead of dt; 0: none */
-    int substeps; /* of preview, which also pre-settles the other solvers; 0: the default */
+    int substeps; /* of preview; 0: the default */
     bool quick;
 };
 static const struct setting settings[] = {
@@ -31,11 +32,6 @@ static const struct setting settings[] = {
     {"preview", "preview 32", 1.0 / 60, 0, 32, false},
     {"preview", "preview 64", 1.0 / 60, 0, 64, false},
     {"preview", "preview 128", 1.0 / 60, 0, 128, false},
-    {"settle", "settle 30 Hz", 1.0 / 30, 0, 0, false},
-    {"settle", "settle 60 Hz", 1.0 / 60, 0, 0, true},
-    {"settle", "settle 120 Hz", 1.0 / 120, 0, 0, false},
-    {"settle", "settle 240 Hz", 1.0 / 240, 0, 0, true},
-    {"settle", "settle 960 Hz", 1.0 / 960, 0, 0, false},
     {"reference", "reference", 0, 1, 0, true},
     {"reference", "reference, half step", 0, 0.5, 0, false},
 };
@@ -45,13 +41,10 @@ struct cloth_scene {
     enum tl_sheet_hold hold;
     double frame_rate;
     bool damped;
-    double settle_speed; /* m/s */
 };
-static const struct cloth_scene falling = {TL_SHEET_EDGE, 10, false,
-                                           0}, /* every step divides a tenth of a second */
-    resting = {TL_SHEET_CORNERS, 30, true, 1e-3},
-                                calmest = {TL_SHEET_CORNERS, 30, true,
-                                           1e-4}; /* what others are compared with */
+static const struct cloth_scene falling = {TL_SHEET_EDGE, 10,
+                                           false}, /* every step divides a tenth of a second */
+    resting = {TL_SHEET_CORNERS, 30, true};
 
 /* Vertices a side; the finest is the reference only. */
 struct sizes {
@@ -161,7 +154,6 @@ static tl_cloth *make_cloth(const tl_garment *sheet, const struct setting *setti
         params.substeps = setting->substeps;
     params.reference_substeps = 100000000;
     params.settle_s = REST_S;
-    params.settle_speed = scene->settle_speed;
     tl_cloth *cloth = tl_cloth_create(sheet, &fabric, &params, error);
     if (!cloth || !(setting->share > 0))
         return cloth;
@@ -215,6 +207,8 @@ static bool rest(int side, const struct setting *setting, const struct cloth_sce
     struct tl_stopwatch watch = tl_stopwatch_start();
     bool done = cloth && tl_cloth_settle(cloth, NULL, error);
     *taken = tl_stopwatch_read(&watch);
+    for (int frame = 0; done && frame < RESTED_S * scene->frame_rate; frame++)
+        done = tl_cloth_step(cloth, NULL, error);
     if (done)
         *out = read_shape(cloth, side);
     tl_cloth_destroy(&cloth);
@@ -281,7 +275,7 @@ static bool find_truths(struct cloth_run *run, int side, tl_error *error)
     release_shape(&run->fallen);
     release_shape(&run->rested);
     return fall(side, &short_step, &run->fallen, &unused, error) &&
-           (side > REST_SIDE || rest(side, &own_step, &calmest, &run->rested, &taken, error));
+           (side > REST_SIDE || rest(side, &own_step, &resting, &run->rested, &taken, error));
 }
 
 static bool find_finest(struct cloth_run *run, tl_error *error)

@@ -16,7 +16,6 @@ for scene in "$folder"/scenes/*.yaml; do
     scene=$(basename "$scene" .yaml)
     solver=
     case $scene in # each solver has a scene
-        skirt) solver="--set cloth.solver=settle" ;;
         trousers) solver="--set cloth.solver=reference" ;;
     esac
     sound "scene $scene" "$scene" --set light.pem_size=32 --set detail.angles=8 $solver --frames 2 --every 2

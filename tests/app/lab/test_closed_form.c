@@ -86,10 +86,8 @@ static void known_cells(void **state)
         double stiffness, dt, ratio, height_m;
     } cells[] = {
         {TL_CLOTH_REFERENCE, TL_OUTCOME_EXACT, 1e3, 1e-2, 1, 1},
-        {TL_CLOTH_SETTLE, TL_OUTCOME_EXACT, 1e3, 1e-2, 1, 1},
         {TL_CLOTH_PREVIEW, TL_OUTCOME_BOUNDED, 1e9, 1e-1, 1, 1},
         {TL_CLOTH_PREVIEW, TL_OUTCOME_REFUSED, 1e-2, 1e-2, 1, 100},
-        {TL_CLOTH_SETTLE, TL_OUTCOME_REFUSED, 1e-2, 1e-2, 1, 100},
         {TL_CLOTH_REFERENCE, TL_OUTCOME_REFUSED, 1e-2, 1e-2, 1, 100},
         {TL_CLOTH_REFERENCE, TL_OUTCOME_REFUSED, 1e9, 1e-1, 1e6, 1},
     };

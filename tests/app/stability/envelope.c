@@ -13,7 +13,6 @@
 #define FRAMES_MAX  100
 #define FRAMES_WORK 1e6 /* particle-substeps */
 #define MIN_WORK    20  /* of a substep, in particles */
-#define SOLVE_WORK  800 /* of a step of settle, in substeps of the others */
 #define EXACT_SHARE 1e-3
 #define FLOAT_SHARE 1e-6
 #define SCRAMBLE    0.2
@@ -160,8 +159,6 @@ static int frame_count(const tl_cloth *cloth, const struct subject *subject)
         return 1;
     double work =
         fmax((double)report.vertex_count, MIN_WORK) / (subject->params.frame_rate * report.substep_s);
-    if (subject->params.solver == TL_CLOTH_SETTLE)
-        work *= SOLVE_WORK;
     return (int)fmin(fmax(FRAMES_WORK / work, FRAMES_MIN), FRAMES_MAX);
 }
 

@@ -20,20 +20,6 @@ static size_t extreme_named(const char *name)
     return 0;
 }
 
-/* Its long substeps make what is known of contacts old within a few of them: cloth that slides on itself then
- * never stopped. */
-static void test_rest(void **state)
-{
-    (void)state;
-    tl_error found = {0};
-    struct tl_cell_error error;
-    enum tl_outcome outcome =
-        tl_cloth_extreme_run(extreme_named("at rest on a ball"), TL_CLOTH_SETTLE, &error, &found);
-    printf("at rest on a ball, settle: %s %s\n", tl_outcome_names[outcome], found.message);
-    assert_int_equal(outcome, TL_OUTCOME_BOUNDED);
-    assert_true(error.share <= TL_STATED_SHARE && error.own >= 0);
-}
-
 static void test_outcomes(void **state)
 {
     (void)state;

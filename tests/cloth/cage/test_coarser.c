@@ -159,28 +159,16 @@ static struct rest settle_sheet(struct tl_cloth_params params, bool cages)
 /* With and without cages the sheet hangs at one height. It hangs by its length and by what its weight and the
  * solver stretch it, of which the first alone is 0.6 m: a cage with other rest lengths, weight or pins would
  * leave it elsewhere, and one that is not carried would be at 1 m still. */
-static void check_sheet(int solver)
+static void test_sheet(void **state)
 {
-    struct tl_cloth_params params = params_defaults();
-    params.solver = solver;
+    (void)state;
+    const struct tl_cloth_params params = params_defaults();
     const struct rest with = settle_sheet(params, true), without = settle_sheet(params, false);
     assert_true(with.settled); /* without, the sheet still swings by a millimetre after ten seconds */
     assert_near(with.hem_y, without.hem_y, 1e-3);
     assert_near(with.rms_strain, without.rms_strain, 2e-3);
     assert_int_equal(with.crossings, 0);
     assert_true(with.hem_y < 1 - SIDE);
-}
-
-static void test_preview(void **state)
-{
-    (void)state;
-    check_sheet(TL_CLOTH_PREVIEW);
-}
-
-static void test_settle(void **state)
-{
-    (void)state;
-    check_sheet(TL_CLOTH_SETTLE);
 }
 
 /* Cloth with open seams has no coarser version. */
@@ -200,8 +188,8 @@ int main(void)
 {
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rigid), cmocka_unit_test(test_folded),  cmocka_unit_test(test_same_cloth),
-        cmocka_unit_test(test_none),  cmocka_unit_test(test_preview), cmocka_unit_test(test_settle),
+        cmocka_unit_test(test_rigid), cmocka_unit_test(test_folded), cmocka_unit_test(test_same_cloth),
+        cmocka_unit_test(test_none),  cmocka_unit_test(test_sheet),  cmocka_unit_test(test_settle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

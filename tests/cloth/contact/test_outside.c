@@ -181,7 +181,7 @@ static void test_walking_slow_solvers(void **state)
     (void)state;
     static const struct {
         int solver, share;
-    } cases[] = {{TL_CLOTH_SETTLE, 2}, {TL_CLOTH_REFERENCE, 9}};
+    } cases[] = {{TL_CLOTH_REFERENCE, 9}};
     struct dressed d = {0};
     struct worst worst = {0};
     const int first = POSE_IN + 14;
@@ -217,7 +217,7 @@ static void check_twisting(const char *garment, const char *avatar)
 {
     static const struct {
         int solver, share;
-    } cases[] = {{TL_CLOTH_PREVIEW, 1}, {TL_CLOTH_SETTLE, 9}, {TL_CLOTH_REFERENCE, 9}};
+    } cases[] = {{TL_CLOTH_PREVIEW, 1}, {TL_CLOTH_REFERENCE, 9}};
     tl_error error = {0};
     struct dressed d = {0};
     assert_ok(tl_avatar_load(test_data(avatar), &d.avatar, &error), error);

@@ -31,8 +31,6 @@ static void test_terminal_velocity(void **state)
             params.solver = solver;
             params.dt = 1.0 / 600;
             params.substeps = 4;
-            params.cg_tolerance =
-                1e-9; /* relative to the momentum: a looser tolerance would miss the weight of fast cloth */
             params.wind[0] = (float)still;
             tl_cloth *cloth = tl_cloth_create(&garment, &fabric, &params, &error);
             assert_non_null(cloth);
