@@ -91,7 +91,6 @@ static void test_threads(void **state)
     (void)state;
     const int counts[] = {1, 3, MAX_THREADS}, frames = 2, cells = 72;
     assert_true((cells + 1) * (cells + 1) > MAX_THREADS * TL_VERTICES_PER_THREAD);
-    assert_true((cells + 1) * (cells + 1) > TL_PARALLEL_ROWS);
     for (int solver = 0; solver < TL_CLOTH_SOLVER_COUNT; solver++) {
         uint64_t hashes[TL_COUNT(counts)][FRAMES] = {0};
         for (size_t i = 0; i < TL_COUNT(counts); i++) {

@@ -248,9 +248,9 @@ static void test_fine_rests(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_casual_suit),     cmocka_unit_test(test_sports_suit),
-        cmocka_unit_test(test_built_in),        cmocka_unit_test(test_drafted),
-        cmocka_unit_test(test_rests_by_settle), cmocka_unit_test(test_fine_rests),
+        cmocka_unit_test(test_casual_suit), cmocka_unit_test(test_sports_suit),
+        cmocka_unit_test(test_built_in),    cmocka_unit_test(test_drafted),
+        cmocka_unit_test(test_fine_rests),
     };
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -189,7 +189,7 @@ int main(void)
     tl_log_set_level(TL_LOG_WARN);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rigid), cmocka_unit_test(test_folded), cmocka_unit_test(test_same_cloth),
-        cmocka_unit_test(test_none),  cmocka_unit_test(test_sheet),  cmocka_unit_test(test_settle),
+        cmocka_unit_test(test_none),  cmocka_unit_test(test_sheet),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
