@@ -31,12 +31,9 @@ static void set_inverse_masses(tl_cloth *cloth)
 
 static void set_energy(tl_cloth *cloth)
 {
-    bool symmetric = tl_cloth_uses_symmetric_sweep(cloth);
+    const bool symmetric = tl_cloth_uses_symmetric_sweep(cloth);
     tl_energy_set_preview(&cloth->energy, &cloth->fabric, cloth->particles.w,
-                          tl_xpbd_step(tl_cloth_substep(cloth), symmetric));
-    cloth->energy.bending_is_force =
-        cloth->energy.bending_is_force &&
-        !symmetric; /* that bound was taken with the whole step, not the halved stiffness */
+                          tl_xpbd_step(tl_cloth_substep(cloth), symmetric), symmetric);
 }
 
 /* The step is infinite where nothing resists. */
@@ -72,6 +69,16 @@ void tl_cloth_set_constants(tl_cloth *cloth)
     tl_layers_forget(&cloth->layers);
     tl_apart_forget(&cloth->apart);
     cloth->undriven = cloth->cage_is_current = false;
+}
+
+void tl_cloth_set_prestress(tl_cloth *cloth, bool is_prestressed)
+{
+    tl_energy_clear_prestress(&cloth->energy);
+    cloth->energy.is_prestressed = is_prestressed; /* on which the substep depends */
+    set_energy(cloth);
+    if (is_prestressed)
+        tl_energy_set_prestress(&cloth->energy, &cloth->fabric, cloth->particles.w, tl_cloth_substep(cloth),
+                                cloth->particles.x);
 }
 
 void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params)

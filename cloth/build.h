@@ -26,6 +26,9 @@ void tl_cloth_make_pins(tl_cloth *cloth);
 /* Appends one pin at the particle's present position. tl_cloth_set_constants must follow. */
 void tl_cloth_add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand);
 
+/* Prestresses `preview` at the present positions (tl_energy_set_prestress), or takes that back. */
+void tl_cloth_set_prestress(tl_cloth *cloth, bool is_prestressed);
+
 /* Switches to the solver, time step and substeps of `params`, which must equal the cloth's own in all else.
  */
 void tl_cloth_use_solver(tl_cloth *cloth, const struct tl_cloth_params *params);

@@ -109,14 +109,14 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
         params->pin_above_m != cloth->params.pin_above_m || params->pin_colour != cloth->params.pin_colour;
     bool weight_changes =
         memcmp(fabric, &cloth->fabric, sizeof *fabric) != 0 || params->gravity != cloth->params.gravity;
-    double substep = tl_cloth_substep(cloth);
+    const double substep = tl_cloth_substep(cloth);
     cloth->fabric = *fabric;
     cloth->params = *params;
     if (pins_change)
         tl_cloth_make_pins(cloth);
     tl_cloth_set_constants(cloth);
     if (weight_changes || tl_cloth_substep(cloth) != substep)
-        tl_xpbd_reset_rest(&cloth->energy); /* calibrated for what was */
+        tl_cloth_set_prestress(cloth, false); /* it is of what was */
     return true;
 }
 

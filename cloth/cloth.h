@@ -33,13 +33,6 @@ enum tl_cloth_solver { TL_CLOTH_PREVIEW, TL_CLOTH_REFERENCE, TL_CLOTH_SOLVER_COU
 extern const char *const tl_cloth_solver_names[]; /* NULL-terminated */
 enum tl_pin_colour { TL_PIN_NO_COLOUR, TL_PIN_RED, TL_PIN_GREEN, TL_PIN_BLUE };
 extern const char *const tl_pin_colour_names[]; /* NULL-terminated */
-/* Settling: the way to rest before the first frame. Motion: by `preview` under drag, until nothing moves.
- * Balance: by dynamic relaxation of the exact energy (cloth/step/relax.h), until forces balance; then
- * `preview` is calibrated to rest there (cloth/step/calibrate.h), and takes as many substeps as the fabric's
- * stiffness needs. */
-enum tl_settling { TL_SETTLING_MOTION, TL_SETTLING_BALANCE };
-extern const char *const tl_settling_names[]; /* in the order of the enum, then NULL */
-
 struct tl_cloth_params {
     int solver;             /* enum tl_cloth_solver */
     double dt;              /* s, longest step; a frame is made of equal steps: see frame_rate */
@@ -55,9 +48,8 @@ struct tl_cloth_params {
     double gravity;           /* m/s^2, along -Y */
     float wind[3];            /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
     double gust;              /* 0 to 1: amplitude of the wind's speed, relative to it */
-    int settling;             /* enum tl_settling */
     double settle_s;          /* longest simulated time of settling before the first frame */
-    double settle_speed;      /* m/s: the cloth is settled when no vertex moves faster over a frame */
+    double settle_speed;      /* m/s: tl_cloth_is_still */
     bool cages;               /* settling begins on coarser versions of a fine cloth: cloth/cage/coarser.h */
     int caged_above;          /* cloth of more vertices is moved by a cage: cloth/step/caged.c; 0: none is */
     float edge_m;             /* target edge length of built-in garments */
@@ -115,10 +107,10 @@ void tl_cloth_mark_start(tl_cloth *cloth);
  * again; a vertex that was grabbed or pinned by hand is free. */
 void tl_cloth_reset(tl_cloth *cloth);
 
-/* Largest displacement of a free vertex over the last frame, as a speed in m/s. Velocities do not show rest:
- * a vertex that oscillates by a tenth of a millimetre between substeps has a large one and goes nowhere. 0
- * before the first frame. */
-double tl_cloth_frame_speed(const tl_cloth *cloth);
+/* Whether the vertices went no faster than params.settle_speed over the last frame, root mean square: single
+ * ones may tremble for ever between contact and their neighbours. Velocities do not show rest: a vertex that
+ * oscillates by a tenth of a millimetre between substeps has a large one and goes nowhere. */
+bool tl_cloth_is_still(const tl_cloth *cloth);
 
 /* Whether settling has ended at rest; false for cloth that was not settled, or not long enough. */
 bool tl_cloth_is_settled(const tl_cloth *cloth);
@@ -180,7 +172,16 @@ uint64_t tl_cloth_cage(const tl_cloth *cloth, struct tl_cage_places *out);
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider);
 
 /* Measures how far the cloth's forces are from balance where it is now, contact included; searches that, and
- * so takes as long as some substeps. Of cloth that a cage moves it is the cage's. `collider` may be NULL. */
+ * so takes as long as some substeps. `collider` may be NULL. Cloth that has moved by `preview` is far from it
+ * even at rest: ripples of a micrometre, which a sweep leaves, take forces of many weights. */
 struct tl_residual tl_cloth_residual(const tl_cloth *cloth, const tl_collider *collider);
+
+/* States how settling ended: by how much the cloth was out of balance, and how far it then moved (m, rms)
+ * until it rested in motion, too. Zeros if it was not settled. */
+struct tl_balance {
+    struct tl_residual residual;
+    double moved_m;
+};
+struct tl_balance tl_cloth_balance(const tl_cloth *cloth);
 
 #endif

@@ -48,13 +48,21 @@ double tl_cloth_max_strain(const tl_cloth *cloth)
     return worst;
 }
 
-double tl_cloth_frame_speed(const tl_cloth *cloth)
+double tl_cloth_moved_from(const tl_cloth *cloth, const vec3d *from)
 {
-    double farthest = 0;
-    for (size_t i = 0; cloth->good_x && i < cloth->particles.count; i++)
-        if (cloth->particles.w[i] > 0)
-            farthest = fmax(farthest, vec3d_distance(cloth->particles.x[i], cloth->good_x[i]));
-    return farthest * cloth->params.frame_rate;
+    const struct tl_particles *particles = &cloth->particles;
+    double squares = 0;
+    for (size_t i = 0; i < particles->count; i++) {
+        const vec3d way = vec3d_sub(particles->x[i], from[i]);
+        squares += vec3d_dot(way, way);
+    }
+    return sqrt(squares / (double)particles->count);
+}
+
+bool tl_cloth_is_still(const tl_cloth *cloth)
+{
+    return !cloth->good_x ||
+           tl_cloth_moved_from(cloth, cloth->good_x) * cloth->params.frame_rate <= cloth->params.settle_speed;
 }
 
 /* Root mean square over the sides of all triangles. */
@@ -151,22 +159,26 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
 
 struct tl_residual tl_cloth_residual(const tl_cloth *cloth, const tl_collider *collider)
 {
-    const tl_cloth *moved = cloth->was_caged ? cloth->caged_cloth : cloth;
     struct tl_contacts body;
     struct tl_apart self;
-    vec3d *forces = TL_NEW_ARRAY(vec3d, moved->particles.count);
-    tl_energy_forces(&moved->energy, &moved->fabric, moved->particles.x, forces, NULL);
-    tl_cloth_find_contacts(moved, collider, &body, &self);
-    const struct tl_residual_source source = {.particles = &moved->particles,
+    vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+    tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.x, forces, NULL);
+    tl_cloth_find_contacts(cloth, collider, &body, &self);
+    const struct tl_residual_source source = {.particles = &cloth->particles,
                                               .forces = forces,
                                               .body = &body,
                                               .self = self.made ? &self.contacts : NULL,
-                                              .gravity = moved->params.gravity,
-                                              .friction = moved->fabric.friction,
-                                              .thickness_m = moved->fabric.thickness_m};
+                                              .gravity = cloth->params.gravity,
+                                              .friction = cloth->fabric.friction,
+                                              .thickness_m = cloth->fabric.thickness_m};
     struct tl_residual residual = tl_residual_measure(&source);
     tl_contacts_release(&body);
     tl_apart_release(&self);
     free(forces);
     return residual;
+}
+
+struct tl_balance tl_cloth_balance(const tl_cloth *cloth)
+{
+    return cloth->balance;
 }

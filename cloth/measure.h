@@ -14,6 +14,9 @@ struct tl_energies tl_cloth_energies(const tl_cloth *cloth);
 /* Speed of the fastest free particle, m/s. */
 double tl_cloth_max_speed(const tl_cloth *cloth);
 
+/* Root mean square distance of the particles from `from` [particles.count], m. */
+double tl_cloth_moved_from(const tl_cloth *cloth, const vec3d *from);
+
 /* Largest strain of a triangle's side, as struct tl_cloth_report defines it. */
 double tl_cloth_max_strain(const tl_cloth *cloth);
 

@@ -6,11 +6,9 @@
 #define TL_CLOTH_DEFAULTS                                                                                    \
     .solver = TL_CLOTH_PREVIEW, .strain_limit = 0.1, .dt = 1.0 / 60, .frame_rate = 30, .self_contact = true, \
     .reference_substeps = 20000, .gravity = 9.81, .settle_s = 10, .settle_speed = 0.003, .cages = true,      \
-    .caged_above = 40000, .edge_m = 0.02f, .longest_edge_m = 0.1f
+    .caged_above = 10000, .edge_m = 0.02f, .longest_edge_m = 0.1f
 
 const char *const tl_cloth_solver_names[] = {"preview", "reference", NULL};
-
-const char *const tl_settling_names[] = {"motion", "balance", NULL};
 
 const char *const tl_pin_colour_names[] = {"none", "red", "green", "blue", NULL};
 
@@ -52,8 +50,9 @@ static const struct tl_option cloth_rows[] = {
         struct tl_cloth_params, settle_s, AFFECTS, 0, 600, "s",
         "maximum time for coming to balance before the first frame, in substeps; 0: the cloth is not "
         "settled"),
-    TL_OPTION_DOUBLE(struct tl_cloth_params, settle_speed, AFFECTS, 0, 10, "m/s",
-                     "in motion the cloth is at rest when no vertex moves faster than this over a frame"),
+    TL_OPTION_DOUBLE(
+        struct tl_cloth_params, settle_speed, AFFECTS, 0, 10, "m/s",
+        "cloth in motion is at rest when its vertices move no faster than this over a frame (rms)"),
     TL_OPTION_BOOL(struct tl_cloth_params, cages, AFFECTS,
                    "settles coarser versions of a fine cloth first, from which it comes to rest sooner"),
     TL_OPTION_INT(struct tl_cloth_params, caged_above, AFFECTS, 0, 1000000000, "",

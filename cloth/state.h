@@ -49,15 +49,14 @@ struct tl_cloth {
     vec3d cage_grab;             /* m, from the grabbed vertex to the cage's */
     uint64_t cage_revision;
     bool settled;
-    double unsettled_speed;      /* m/s, when the time for settling ended before rest; else 0 */
-    struct tl_residual residual; /* when settling ended; 0 unless it was to balance */
-    double needle_share;         /* share of the triangles that are needles */
-    uint64_t collider_revision;  /* in the last frame in which something drove the cloth */
-    bool undriven;               /* nothing has driven the cloth since min_energy was first taken */
-    double min_energy;           /* J, smallest total energy since then: dissipated energy cannot return */
-    double start_energy;         /* J, kinetic and elastic energy at that time */
-    vec3d *start_x, *start_v;    /* [render vertex] the marked start; NULL: none was marked */
-    bool *start_pinched;         /* [render vertex] the same of struct tl_contacts */
+    struct tl_balance balance;
+    double needle_share;        /* share of the triangles that are needles */
+    uint64_t collider_revision; /* in the last frame in which something drove the cloth */
+    bool undriven;              /* nothing has driven the cloth since min_energy was first taken */
+    double min_energy;          /* J, smallest total energy since then: dissipated energy cannot return */
+    double start_energy;        /* J, kinetic and elastic energy at that time */
+    vec3d *start_x, *start_v;   /* [render vertex] the marked start; NULL: none was marked */
+    bool *start_pinched;        /* [render vertex] the same of struct tl_contacts */
 };
 
 /* Logs that settling ended before the cloth was in balance. */

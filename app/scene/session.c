@@ -627,9 +627,8 @@ enum tl_garment_state tl_session_garment_state(const tl_session *session)
         return TL_GARMENT_AUTHORED;
     if (session->frame == 0 && session->only_sewn)
         return TL_GARMENT_SEWN;
-    bool rests = session->frame == 0
-                     ? !session->authored && tl_cloth_is_settled(session->cloth)
-                     : tl_cloth_frame_speed(session->cloth) < session->settings.cloth.settle_speed;
+    bool rests = session->frame == 0 ? !session->authored && tl_cloth_is_settled(session->cloth)
+                                     : tl_cloth_is_still(session->cloth);
     return rests ? TL_GARMENT_AT_REST : TL_GARMENT_MOVED;
 }
 
@@ -695,9 +694,11 @@ struct tl_cloth_report tl_session_report(const tl_session *session)
     return tl_cloth_measure(session->cloth, session->collider);
 }
 
-struct tl_residual tl_session_residual(const tl_session *session)
+struct tl_balance tl_session_balance(const tl_session *session)
 {
-    if (!session->cloth)
-        return (struct tl_residual){0};
-    return tl_cloth_residual(session->cloth, session->collider);
+    if (!session->cloth || session->frame > 0)
+        return (struct tl_balance){0};
+    if (tl_session_garment_state(session) == TL_GARMENT_AUTHORED)
+        return (struct tl_balance){.residual = tl_cloth_residual(session->cloth, session->collider)};
+    return tl_cloth_balance(session->cloth);
 }

@@ -199,7 +199,7 @@ enum tl_garment_state {
 };
 extern const char *const tl_garment_state_names[]; /* "", "as authored", ... */
 
-/* At rest: no vertex went faster in the last frame than cloth.settle_speed. Errors: none. Threads: the
+/* At rest: settled, or tl_cloth_is_still. Errors: none. Threads: the
  * session's. */
 enum tl_garment_state tl_session_garment_state(const tl_session *session);
 
@@ -245,8 +245,8 @@ const tl_garment *tl_session_cut(const tl_session *session);
  * Errors: none. Threads: the session's. */
 struct tl_cloth_report tl_session_report(const tl_session *session);
 
-/* Measures how far the cloth is from balance in the present frame (tl_cloth_residual); zeros without cloth.
- */
-struct tl_residual tl_session_residual(const tl_session *session);
+/* States how far from balance the cloth of frame 0 is: as it was settled (tl_cloth_balance), or as authored
+ * (tl_cloth_residual). Zeros without cloth, and where it has moved. */
+struct tl_balance tl_session_balance(const tl_session *session);
 
 #endif

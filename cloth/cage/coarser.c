@@ -323,9 +323,15 @@ void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth)
     take_pins(coarser, cloth);
     tl_cloth_set_constants(coarser->cloth);
     tl_cloth_mark_start(coarser->cloth);
+}
+
+void tl_coarser_bind(tl_coarser *coarser, const tl_cloth *cloth)
+{
+    vec3d *places = places_of(coarser);
     if (!coarser->follower)
-        coarser->follower = tl_follower_create(cage, &cloth->topology);
-    tl_follower_start(coarser->follower, coarser->made, cloth->particles.x);
+        coarser->follower = tl_follower_create(&coarser->cage, &cloth->topology);
+    tl_follower_start(coarser->follower, places, cloth->particles.x);
+    free(places);
 }
 
 /* Values by vertices of the cage, as a new array. */

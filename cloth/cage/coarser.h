@@ -33,9 +33,12 @@ void tl_coarser_carry(const tl_coarser *coarser, tl_cloth *cloth);
 
 /* ---- In motion (caged.c) ---- */
 
-/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of, and is in
- * balance there (cage_rest.h). */
+/* Takes the positions, velocities, pins, fabric and params of the cloth that it was made of, and is
+ * near to balance there (cage_rest.h). tl_coarser_bind must follow. */
 void tl_coarser_restart(tl_coarser *coarser, const tl_cloth *cloth);
+
+/* The cloth follows from where the two are now. */
+void tl_coarser_bind(tl_coarser *coarser, const tl_cloth *cloth);
 
 /* Moves the free particles of the cloth that it was made of with the coarser cloth (follower.h). */
 void tl_coarser_follow(tl_coarser *coarser, const tl_collider *collider, const tl_cloth *cloth,

@@ -385,13 +385,15 @@ static double fastest_bending(const struct tl_pair_forces *pairs, const double *
 }
 
 void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                           const double *inverse_masses, double h)
+                           const double *inverse_masses, double h, bool bends_by_rows)
 {
     for (size_t i = 0; i < energy->membrane_count; i++)
         set_preview(&energy->membranes[i], fabric, inverse_masses, h, &energy->previewed[i]);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
-    energy->bending_is_force = h * sqrt(fastest_bending(&energy->pairs, inverse_masses)) <= FORCE_LIMIT;
+    energy->bending_is_force =
+        !bends_by_rows && h * sqrt(fastest_bending(&energy->pairs, inverse_masses)) <= FORCE_LIMIT;
     for (size_t i = 0; i < energy->link_count; i++)
         energy->links[i].compliance = 1 / (fabric->stretch_warp * h * h);
+    tl_pair_forces_set_packs(&energy->pairs, energy->bending_is_force);
 }

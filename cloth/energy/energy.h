@@ -47,8 +47,7 @@ struct tl_preview_membrane {
     double cc[TL_BATCH], cd[TL_BATCH], dd[TL_BATCH]; /* sums of w c_i c_i, w c_i d_i, w d_i d_i */
     double weft[TL_BATCH], warp[TL_BATCH];           /* -1 / (w |grad|^2 + 1 / (k A h^2)) */
     double shear[TL_BATCH];                          /* 1 / (k A h^2) */
-    double rest_strain[3][TL_BATCH]; /* of weft, warp and shear, at which they exert nothing: the sum of what
-                                        tl_xpbd_shift_rest has added */
+    double rest_strain[3][TL_BATCH]; /* of weft, warp and shear, at which their rows exert nothing */
     uint32_t from[3][TL_BATCH];      /* offsets of the vertices in the pairs' `positions` */
 };
 
@@ -83,19 +82,29 @@ struct tl_energy {
     struct tl_pair_forces pairs;
     bool bending_is_force; /* preview: its substep is short enough for bending as an explicit force, see
                               xpbd.h */
+    bool is_prestressed;
 };
 
 /* Builds the energy of a mesh whose triangles have the flat `rest` shapes. */
 struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_energy_release(struct tl_energy *energy);
 
-/* Sets the fabric; must precede evaluation of energy and forces. */
+/* Sets the fabric; must precede evaluation of energy and forces, and tl_energy_set_preview must follow. */
 void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric *fabric);
 
 /* Sets the coefficients of `preview` for a fabric, a substep of `h` seconds and inverse masses [vertex_count
- * + 1]. Rest strains stay. */
+ * + 1]. Prestress stays. `bends_by_rows`: bending must not be an explicit force. */
 void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
-                           const double *inverse_masses, double h);
+                           const double *inverse_masses, double h, bool bends_by_rows);
+
+/* Splits the tension that membranes have at positions `x` [vertex_count] from the rest. `preview` exerts it
+ * as an explicit force, by constant force densities along edges [Schek 1974], which turn with the cloth; the
+ * rows are solved for strains from `x` on. So cloth that is in balance at `x` stays there: rows start from no
+ * tension in each substep, and alone they reach too little of it. Where the densities would be unstable in
+ * substeps of `h` seconds, a share of them is split off. Both stay until they are set again or cleared. */
+void tl_energy_set_prestress(struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                             const double *inverse_masses, double h, const vec3d *x);
+void tl_energy_clear_prestress(struct tl_energy *energy);
 
 /* Returns the elastic energy (J) at positions `x` [vertex_count] and writes its forces -dE/dx (N) to `forces`
  * [vertex_count]. A link's energy is k/2 (length - rest)^2 with the stretch stiffness of the warp. `fabric`
@@ -110,9 +119,13 @@ double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_
 void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                       vec3d *forces, const struct tl_particle_kernel *then);
 
-/* The same with the forces of bending alone. */
-void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
-                              const struct tl_particle_kernel *then);
+/* The same with the explicit forces of `preview`: prestress, and bending where it is a force. */
+void tl_energy_explicit_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
+                               const struct tl_particle_kernel *then);
+static inline bool tl_energy_has_explicit_forces(const struct tl_energy *energy)
+{
+    return energy->bending_is_force || energy->is_prestressed;
+}
 
 /* Bending stiffness of the components L_uu, L_vv and sqrt(2) L_uv, N m. */
 void tl_bend_stiffness(const struct tl_cloth_fabric *fabric, double out[3]);

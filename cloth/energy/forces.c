@@ -162,22 +162,22 @@ TL_INLINE void add_along(const struct tl_pair_forces *pairs, size_t vertex, cons
     }
 }
 
-/* All of bending, in two independent sums, so that one addition need not wait for the other. */
+/* The explicit forces, in two independent sums, so that one addition need not wait for the other. */
 TL_INLINE struct tl_wide_force add_packs(const struct tl_pair_forces *pairs, size_t vertex)
 {
     const double *positions = pairs->positions, *at = &positions[4 * vertex];
     const struct tl_pair_pack *end = &pairs->packs[pairs->packs_first[vertex + 1]];
     struct tl_wide_force even = {0}, odd = {0};
     for (const struct tl_pair_pack *pack = &pairs->packs[pairs->packs_first[vertex]]; pack < end; pack++) {
-        add_pull(at, &positions[pack->from[0]], pack->bending[0], &even);
-        add_pull(at, &positions[pack->from[1]], pack->bending[1], &odd);
-        add_pull(at, &positions[pack->from[2]], pack->bending[2], &even);
-        add_pull(at, &positions[pack->from[3]], pack->bending[3], &odd);
+        add_pull(at, &positions[pack->from[0]], pack->strengths[0], &even);
+        add_pull(at, &positions[pack->from[1]], pack->strengths[1], &odd);
+        add_pull(at, &positions[pack->from[2]], pack->strengths[2], &even);
+        add_pull(at, &positions[pack->from[3]], pack->strengths[3], &odd);
     }
     return (struct tl_wide_force){even.x + odd.x, even.y + odd.y, even.z + odd.z, even.unused + odd.unused};
 }
 
-/* `strengths` [edge_count] of all that acts along edges; NULL: bending alone. */
+/* `strengths` [edge_count] of all that acts along edges; NULL: the explicit forces. */
 TL_INLINE void add_block(const struct tl_pair_forces *pairs, struct tl_range block, const double *strengths,
                          vec3d *forces)
 {
@@ -219,8 +219,8 @@ TL_CLONES static void add_forces(const struct tl_pair_forces *pairs, struct tl_r
     add_range(pairs, pairs->edge_strengths, range, forces, then);
 }
 
-TL_CLONES static void add_bending(const struct tl_pair_forces *pairs, struct tl_range range, vec3d *forces,
-                                  const struct tl_particle_kernel *then)
+TL_CLONES static void add_explicit(const struct tl_pair_forces *pairs, struct tl_range range, vec3d *forces,
+                                   const struct tl_particle_kernel *then)
 {
     add_range(pairs, NULL, range, forces, then);
 }
@@ -233,7 +233,9 @@ TL_CLONES static double bending_energy(const struct tl_pair_forces *pairs, struc
     const double *origin = pairs->positions;
     for (size_t i = range.from; i < range.to; i++) {
         const double *at = &pairs->positions[4 * i];
-        struct tl_wide_force sum = add_packs(pairs, i);
+        struct tl_wide_force sum = {0};
+        add_along(pairs, i, pairs->edge_bending, &sum);
+        add_others(pairs, i, &sum);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
     }
@@ -260,13 +262,12 @@ struct evaluation {
                      pairs->parts */
 };
 
-/* Runs all passes. */
-static void evaluate(void *context)
+/* The passes up to those of the triangles. */
+static void evaluate_triangles(void *context)
 {
-    struct evaluation *to = context;
+    const struct evaluation *to = context;
     const struct tl_pair_forces *pairs = &to->energy->pairs;
     const struct stretching k = {to->fabric->stretch_weft, to->fabric->stretch_warp, to->fabric->shear};
-    tl_pair_forces_load_positions(pairs, to->x, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK));
     square_lengths(to->x, (const uint32_t(*)[2])pairs->edges, tl_team_range(pairs->edge_count, TL_BATCH),
                    pairs->squared);
     tl_team_barrier();
@@ -276,6 +277,15 @@ static void evaluate(void *context)
     else
         differentiate_all(pairs, k, triangles);
     tl_team_barrier();
+}
+
+/* Runs all passes. */
+static void evaluate(void *context)
+{
+    struct evaluation *to = context;
+    const struct tl_pair_forces *pairs = &to->energy->pairs;
+    tl_pair_forces_load_positions(pairs, to->x, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK));
+    evaluate_triangles(to);
     add_shares(pairs, tl_team_range(pairs->edge_count, TL_BATCH));
     tl_team_barrier();
     if (pairs->excess_count + to->energy->link_count > 0) {
@@ -295,21 +305,28 @@ void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabr
     tl_team_run(energy->pairs.vertex_count, evaluate, &to);
 }
 
-static void evaluate_bending(void *context)
+void tl_pair_forces_stretch(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                            const vec3d *x)
+{
+    struct evaluation to = {.energy = energy, .fabric = fabric, .x = x};
+    tl_team_run(energy->pairs.vertex_count, evaluate_triangles, &to);
+}
+
+static void evaluate_explicit(void *context)
 {
     const struct evaluation *to = context;
     const struct tl_pair_forces *pairs = &to->energy->pairs;
     struct tl_range mine = tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK);
     tl_pair_forces_load_positions(pairs, to->x, mine);
     tl_team_barrier();
-    add_bending(pairs, mine, to->forces, to->then);
+    add_explicit(pairs, mine, to->forces, to->then);
 }
 
-void tl_energy_bending_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
-                              const struct tl_particle_kernel *then)
+void tl_energy_explicit_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
+                               const struct tl_particle_kernel *then)
 {
     struct evaluation to = {.energy = energy, .x = x, .forces = forces, .then = then};
-    tl_team_run(energy->pairs.vertex_count, evaluate_bending, &to);
+    tl_team_run(energy->pairs.vertex_count, evaluate_explicit, &to);
 }
 
 double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,

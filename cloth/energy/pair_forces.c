@@ -193,11 +193,13 @@ static uint32_t other_end(const struct tl_pair_forces *pairs, uint32_t vertex, u
                         : pairs->others[pairs->others_first[vertex] + k - incident];
 }
 
-static double other_bending(const struct tl_pair_forces *pairs, uint32_t vertex, uint32_t k)
+static double other_strength(const struct tl_pair_forces *pairs, uint32_t vertex, uint32_t k, bool bends)
 {
-    uint32_t incident = pairs->incident_first[vertex + 1] - pairs->incident_first[vertex];
-    return k < incident ? pairs->edge_bending[pairs->incident[pairs->incident_first[vertex] + k].edge]
-                        : pairs->bending[pairs->others_first[vertex] + k - incident];
+    const uint32_t incident = pairs->incident_first[vertex + 1] - pairs->incident_first[vertex];
+    if (k >= incident)
+        return bends ? pairs->bending[pairs->others_first[vertex] + k - incident] : 0;
+    const uint32_t edge = pairs->incident[pairs->incident_first[vertex] + k].edge;
+    return pairs->prestress[edge] + (bends ? pairs->edge_bending[edge] : 0);
 }
 
 static uint32_t count_pairs(const struct tl_pair_forces *pairs, uint32_t vertex)
@@ -215,7 +217,7 @@ static void build_packs(struct tl_pair_forces *pairs)
     pairs->packs = TL_NEW_ARRAY(struct tl_pair_pack, pairs->packs_first[pairs->vertex_count]);
 }
 
-static void set_packs(struct tl_pair_forces *pairs)
+void tl_pair_forces_set_packs(struct tl_pair_forces *pairs, bool bends)
 {
     for (uint32_t i = 0; i < pairs->vertex_count; i++) {
         uint32_t count = count_pairs(pairs, i), first = pairs->packs_first[i];
@@ -223,7 +225,7 @@ static void set_packs(struct tl_pair_forces *pairs)
         for (uint32_t k = 0; k < end; k++) {
             struct tl_pair_pack *pack = &pairs->packs[first + k / TL_PAIR_PACK];
             pack->from[k % TL_PAIR_PACK] = 4 * (k < count ? other_end(pairs, i, k) : i);
-            pack->bending[k % TL_PAIR_PACK] = k < count ? other_bending(pairs, i, k) : 0;
+            pack->strengths[k % TL_PAIR_PACK] = k < count ? other_strength(pairs, i, k, bends) : 0;
         }
     }
 }
@@ -275,7 +277,6 @@ void tl_pair_forces_set(struct tl_pair_forces *pairs, const struct tl_energy *en
     }
     free(entries);
     release_stencils(&stencils);
-    set_packs(pairs);
 }
 
 /* ---- The whole ---- */
@@ -299,6 +300,7 @@ struct tl_pair_forces tl_pair_forces_build(const struct tl_topology *topology, c
 
     size_t blocks = (pairs.vertex_count + TL_PAIR_BLOCK - 1) / TL_PAIR_BLOCK;
     pairs.edge_bending = TL_NEW_ARRAY(double, pairs.edge_count);
+    pairs.prestress = TL_NEW_ARRAY(double, pairs.edge_count);
     pairs.positions = tl_alloc_lines(4 * (pairs.vertex_count + 1), sizeof *pairs.positions);
     pairs.squared = TL_NEW_ARRAY(double, pairs.edge_count);
     pairs.shares = TL_NEW_ARRAY(double, pairs.metric_count * 3 * TL_BATCH + 1);
@@ -316,6 +318,7 @@ void tl_pair_forces_release(struct tl_pair_forces *pairs)
     free(pairs->excess);
     free(pairs->link_edges);
     free(pairs->edge_bending);
+    free(pairs->prestress);
     free(pairs->incident_first);
     free(pairs->others_first);
     free(pairs->incident);

@@ -24,6 +24,7 @@
 #include <stdint.h>
 
 struct tl_energy;
+struct tl_cloth_fabric;
 
 /* Triangles as functions of their edges' squared lengths; edge i faces corner i. Empty lanes have area 0. */
 struct tl_metric {
@@ -44,12 +45,12 @@ struct tl_incident_edge {
     uint32_t other, edge;
 };
 
-/* Bending forces on one vertex, as many as are in flight at once. A row that does not fill its last pack ends
- * with pairs of strength 0 with itself. */
+/* Explicit forces on one vertex, as many as are in flight at once. A row that does not fill its last pack
+ * ends with pairs of strength 0 with itself. */
 #define TL_PAIR_PACK 4
 struct tl_pair_pack {
-    double bending[TL_PAIR_PACK]; /* -K_ij, N/m */
-    uint32_t from[TL_PAIR_PACK];  /* the other end's first number in `places` */
+    double strengths[TL_PAIR_PACK]; /* N/m */
+    uint32_t from[TL_PAIR_PACK];    /* the other end's first number in `places` */
 };
 
 struct tl_pair_forces {
@@ -60,6 +61,7 @@ struct tl_pair_forces {
     uint32_t (*excess)[2]; /* [excess_count] edge, entry: third and further triangles at an edge */
     uint32_t *link_edges;  /* [link_count] */
     double *edge_bending;  /* [edge_count] -K_ij of its ends, N/m */
+    double *prestress;     /* [edge_count] N/m, see tl_energy_set_prestress */
 
     /* Rows by vertex i: incident[incident_first[i]] and on are its edges, others[others_first[i]] and on the
      * pairs that only bending connects. */
@@ -68,7 +70,7 @@ struct tl_pair_forces {
     uint32_t *others; /* the vertex at the other end */
     double *bending;  /* [entries of others] -K_ij, N/m */
 
-    /* All of bending, along edges or not: packs[packs_first[i]] and on. */
+    /* The explicit forces of `preview`, along edges or not: packs[packs_first[i]] and on. */
     uint32_t *packs_first; /* [vertex_count + 1] */
     struct tl_pair_pack *packs;
 
@@ -86,9 +88,17 @@ struct tl_pair_forces tl_pair_forces_build(const struct tl_topology *topology,
                                            const struct tl_energy *energy);
 void tl_pair_forces_release(struct tl_pair_forces *pairs);
 
-/* Sets the bending stiffness of L_uu, L_vv and sqrt(2) L_uv, N m. */
+/* Sets the bending stiffness of L_uu, L_vv and sqrt(2) L_uv, N m. tl_pair_forces_set_packs must follow. */
 void tl_pair_forces_set(struct tl_pair_forces *pairs, const struct tl_energy *energy,
                         const double stiffness[3]);
+
+/* Sets the explicit forces: prestress, and bending if `bends`. */
+void tl_pair_forces_set_packs(struct tl_pair_forces *pairs, bool bends);
+
+/* Writes the strengths (N/m) with which the membranes at positions `x` [vertex_count] pull on their edges to
+ * `shares`. */
+void tl_pair_forces_stretch(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric,
+                            const vec3d *x);
 
 /* Copies a range of the positions into the padded scratch array. */
 void tl_pair_forces_load_positions(const struct tl_pair_forces *pairs, const vec3d *x, struct tl_range range);

@@ -132,13 +132,6 @@ TL_INLINE double stretch_push(double squared, double factor, double rest)
            (1 - (1 + rest) / sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH));
 }
 
-/* The strain whose tension the row exerts: of C, what the correction leaves. */
-TL_INLINE double stretch_applied(double squared, double factor, double weight, double rest)
-{
-    double length = sqrt(squared > NO_LENGTH * NO_LENGTH ? squared : NO_LENGTH * NO_LENGTH);
-    return (length - 1 - rest) * (1 + factor * weight);
-}
-
 /* The correction is push F_u: F_u becomes (1 + cc push) F_u, and F_v gains cd push F_u. */
 TL_INLINE double solve_weft(const struct tl_preview_membrane *m, int lane, struct deformation *f)
 {
@@ -170,32 +163,21 @@ TL_INLINE double solve_warp(const struct tl_preview_membrane *m, int lane, struc
  *     c_i (v a - u g) / (a sqrt(p)) + d_i (u b - v g) / (b sqrt(p)),
  * whose weighted square is (p - g^2) (cc b - 2 cd g + dd a) / p^2. Multiplier times gradient then needs one
  * division. Returns the common factor: row c receives p F_v - b g F_u times it, row d p F_u - a g F_v. */
-TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f,
-                             double *applied)
+TL_INLINE double solve_shear(const struct tl_preview_membrane *m, int lane, const struct deformation *f)
 {
     double p = f->a * f->b, root = sqrt(p > NO_LENGTH * NO_LENGTH ? p : NO_LENGTH * NO_LENGTH);
     double square = (p - f->g * f->g) * (m->cc[lane] * f->b - 2 * m->cd[lane] * f->g + m->dd[lane] * f->a);
-    double resist = m->shear[lane] * p * p, sum = resist + square;
-    double off = f->g - m->rest_strain[2][lane] * root;
-    if (applied)
-        *applied = sum > 0 ? off / root * (resist / sum) : 0;
-    return sum > 0 ? -off / sum : 0;
+    double sum = m->shear[lane] * p * p + square;
+    return sum > 0 ? -(f->g - m->rest_strain[2][lane] * root) / sum : 0;
 }
 
-/* `applied`: of weft, warp and shear; NULL: not wanted. */
-TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membrane_work *work,
-                     double (*applied)[TL_BATCH])
+TL_INLINE void solve(const struct tl_preview_membrane *m, int lane, struct membrane_work *work)
 {
     struct deformation f = {
         .u_u = 1, .v_v = 1, .a = work->uu[lane], .b = work->vv[lane], .g = work->uv[lane]};
-    if (applied)
-        applied[0][lane] = stretch_applied(f.a, m->weft[lane], m->cc[lane], m->rest_strain[0][lane]);
     double weft = solve_weft(m, lane, &f);
     double lean = f.v_u; /* the warp's push is along v + lean u */
-    if (applied)
-        applied[1][lane] = stretch_applied(f.b, m->warp[lane], m->dd[lane], m->rest_strain[1][lane]);
-    double warp = solve_warp(m, lane, &f);
-    double shear = solve_shear(m, lane, &f, applied ? &applied[2][lane] : NULL);
+    double warp = solve_warp(m, lane, &f), shear = solve_shear(m, lane, &f);
     double across = shear * (f.a * f.b), along_c = shear * f.b * f.g, along_d = shear * f.a * f.g;
     work->c_u[lane] = weft + (across * f.v_u - along_c * f.u_u);
     work->c_v[lane] = across * f.v_v - along_c * f.u_v;
@@ -266,8 +248,8 @@ TL_INLINE void scatter(const struct group *group, size_t k, const struct rows *r
 
 /* Software pipeline: while a group waits for roots and divisions, the group before it is scattered and the
  * next one gathered. That is safe since the batches of a run share no vertex. */
-TL_INLINE void solve_batches(const struct tl_preview_membrane *membranes, size_t count, double max,
-                             double *positions, bool (*seen)[TL_BATCH], double (*applied)[3][TL_BATCH])
+TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double max,
+                                double *positions, bool (*seen)[TL_BATCH])
 {
     struct membrane_work work[GROUP];
     struct corners corners;
@@ -287,7 +269,7 @@ TL_INLINE void solve_batches(const struct tl_preview_membrane *membranes, size_t
                 seen[first + k][lane] = stretches(&work[k], lane, max);
         for (size_t k = 0; k < GROUP; k++) {
             for (int lane = 0; lane < TL_BATCH && k < now.count; lane++)
-                solve(&m[k], lane, &work[k], applied ? applied[first + k] : NULL);
+                solve(&m[k], lane, &work[k]);
             scatter(&before, k, &out, positions);
             gather(&next, k, positions, &in);
         }
@@ -302,19 +284,6 @@ TL_INLINE void solve_batches(const struct tl_preview_membrane *membranes, size_t
         scatter(&before, k, &out, positions);
 }
 
-TL_CLONES static void solve_run(const struct tl_preview_membrane *membranes, size_t count, double max,
-                                double *positions, bool (*seen)[TL_BATCH])
-{
-    solve_batches(membranes, count, max, positions, seen, NULL);
-}
-
-/* The same, and what each row applies. */
-TL_CLONES static void record_run(const struct tl_preview_membrane *membranes, size_t count, double max,
-                                 double *positions, bool (*seen)[TL_BATCH], double (*applied)[3][TL_BATCH])
-{
-    solve_batches(membranes, count, max, positions, seen, applied);
-}
-
 /* Copies positions back from the padded array. */
 TL_CLONES static void read_positions(const double *positions, struct tl_range range, vec3d *x)
 {
@@ -323,8 +292,7 @@ TL_CLONES static void read_positions(const double *positions, struct tl_range ra
 }
 
 /* Called by all threads of a team: batches of a run in any order, runs one after the other. */
-static void solve_membranes(const struct tl_energy *energy, const struct tl_stretch_watch *watch,
-                            double (*applied)[3][TL_BATCH], vec3d *x)
+static void solve_membranes(const struct tl_energy *energy, const struct tl_stretch_watch *watch, vec3d *x)
 {
     double *positions = energy->pairs.positions;
     struct tl_range mine = tl_team_range(energy->pairs.vertex_count, TL_PAIR_BLOCK);
@@ -335,14 +303,8 @@ static void solve_membranes(const struct tl_energy *energy, const struct tl_stre
     for (size_t run = 0; run < energy->membrane_run_count; run++) {
         size_t end = energy->membrane_run_ends[run];
         struct tl_range part = tl_team_range(end - from, 1);
-        const struct tl_preview_membrane *membranes = energy->previewed + from + part.from;
-        const size_t count = part.to - part.from;
-        const double max = watch ? watch->max : 0;
-        bool(*seen)[TL_BATCH] = watch ? watch->seen + from + part.from : NULL;
-        if (applied)
-            record_run(membranes, count, max, positions, seen, applied + from + part.from);
-        else
-            solve_run(membranes, count, max, positions, seen);
+        solve_run(energy->previewed + from + part.from, part.to - part.from, watch ? watch->max : 0,
+                  positions, watch ? watch->seen + from + part.from : NULL);
         from = end;
         tl_team_barrier();
     }
@@ -407,23 +369,21 @@ void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particl
 struct forward_sweep {
     const struct tl_energy *energy;
     const struct tl_stretch_watch *watch;
-    double (*applied)[3][TL_BATCH];
     vec3d *x;
 };
 
 static void solve_on_team(void *context)
 {
     const struct forward_sweep *sweep = context;
-    solve_membranes(sweep->energy, sweep->watch, sweep->applied, sweep->x);
+    solve_membranes(sweep->energy, sweep->watch, sweep->x);
     if (!sweep->energy->bending_is_force)
         solve_bends(sweep->energy, sweep->x);
 }
 
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
-                   const struct tl_stretch_watch *watch, double (*applied)[3][TL_BATCH])
+                   const struct tl_stretch_watch *watch)
 {
-    tl_team_run(particles->count, solve_on_team,
-                &(struct forward_sweep){energy, watch, applied, particles->x});
+    tl_team_run(particles->count, solve_on_team, &(struct forward_sweep){energy, watch, particles->x});
     for (size_t i = 0; i < energy->link_count; i++)
         tl_xpbd_solve_link(&energy->links[i], particles);
 }

@@ -7,8 +7,8 @@
  * at a third of the cost. Otherwise it is a constraint of three rows like the others.
  *
  * The cost is bounded, and the state stays finite for any stiffness and step. The price: cloth at rest is
- * stretched as if it were softer, by a share that shrinks with the substep, unless its rest strains are
- * calibrated (tl_xpbd_shift_rest), and stiff motion is damped.
+ * stretched as if it were softer, by a share that shrinks with the substep, unless it is prestressed
+ * (tl_energy_set_prestress), and stiff motion is damped.
  * Gauss-Seidel over batches whose elements share no vertex, colour by colour: the result depends neither on
  * the number of threads nor on the width of the registers.
  *
@@ -29,24 +29,11 @@ struct tl_stretch_watch {
     bool (*seen)[TL_BATCH]; /* [membrane_count] batches */
 };
 
-/* Solves every membrane, bend and link once; `watch`, if not NULL, receives what the strain limit needs, and
- * `applied` [membrane_count] the strains whose tensions the rows weft, warp and shear have exerted. */
+/* Solves every membrane, bend and link once; `watch`, if not NULL, receives what the strain limit needs. */
 void tl_xpbd_solve(const struct tl_energy *energy, struct tl_particles *particles,
-                   const struct tl_stretch_watch *watch, double (*applied)[3][TL_BATCH]);
-/* The same in the opposite order, at five times the cost: the second half of a symmetric sweep. What its rows
- * have exerted is averaged with `applied`, if that is not NULL. */
-void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles,
-                            double (*applied)[3][TL_BATCH]);
-
-/* Calibration of rest strains. A row that is solved once a substep exerts the tension of (C - rest) alpha /
- * (W + alpha), with W the mobility of its vertices and alpha its compliance over h^2: too little, and the
- * rows after it change C again. With rest strains r for which the strain that it applies in a substep from
- * rest equals C at the positions `x`, cloth that is in balance at `x` stays there. Moves each r by `gain` of
- * what is missing, and keeps it within `max`. */
-void tl_xpbd_shift_rest(struct tl_energy *energy, const vec3d *x, const double (*applied)[3][TL_BATCH],
-                        double gain, double max);
-/* Takes all shifts back. */
-void tl_xpbd_reset_rest(struct tl_energy *energy);
+                   const struct tl_stretch_watch *watch);
+/* The same in the opposite order, at five times the cost: the second half of a symmetric sweep. */
+void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles);
 
 /* The step (s) that tl_energy_set_preview must be given for substeps of h seconds.
  *

@@ -22,17 +22,15 @@ TL_INLINE void push(const struct tl_preview_membrane *m, int lane, vec3d c, vec3
 }
 
 /* The same formula as solve_shear in xpbd.c. */
-TL_INLINE double push_shear(const struct tl_preview_membrane *m, int lane, struct membrane_state *state)
+TL_INLINE void push_shear(const struct tl_preview_membrane *m, int lane, struct membrane_state *state)
 {
     vec3d u = state->u, v = state->v;
     double a = vec3d_dot(u, u), b = vec3d_dot(v, v), g = vec3d_dot(u, v), p = a * b;
     double square = (p - g * g) * (m->cc[lane] * b - 2 * m->cd[lane] * g + m->dd[lane] * a);
-    double resist = m->shear[lane] * p * p, sum = resist + square,
-           root = sqrt(fmax(p, NO_LENGTH * NO_LENGTH));
+    double sum = m->shear[lane] * p * p + square, root = sqrt(fmax(p, NO_LENGTH * NO_LENGTH));
     double off = g - m->rest_strain[2][lane] * root, multiplier = sum > 0 ? -off / sum : 0;
     push(m, lane, vec3d_scale(vec3d_muladd(vec3d_scale(v, p), u, -b * g), multiplier),
          vec3d_scale(vec3d_muladd(vec3d_scale(u, p), v, -a * g), multiplier), state);
-    return sum > 0 ? off / root * (resist / sum) : 0;
 }
 
 TL_INLINE vec3d stretch_push(vec3d f, double factor, double rest)
@@ -40,27 +38,17 @@ TL_INLINE vec3d stretch_push(vec3d f, double factor, double rest)
     return vec3d_scale(f, factor * (1 - (1 + rest) / fmax(vec3d_norm(f), NO_LENGTH)));
 }
 
-/* Repeats stretch_applied of xpbd.c for vectors. */
-TL_INLINE double stretch_applied(vec3d f, double factor, double weight, double rest)
-{
-    return (fmax(vec3d_norm(f), NO_LENGTH) - 1 - rest) * (1 + factor * weight);
-}
-
-TL_INLINE void solve_membrane(const struct tl_preview_membrane *m, int lane, vec3d corners[3][TL_BATCH],
-                              double out[3])
+TL_INLINE void solve_membrane(const struct tl_preview_membrane *m, int lane, vec3d corners[3][TL_BATCH])
 {
     struct membrane_state state = {0};
-    const double rest[2] = {m->rest_strain[0][lane], m->rest_strain[1][lane]};
     for (int i = 1; i < 3; i++) {
         vec3d side = vec3d_sub(corners[i][lane], corners[0][lane]);
         state.u = vec3d_muladd(state.u, side, m->c[i - 1][lane]);
         state.v = vec3d_muladd(state.v, side, m->d[i - 1][lane]);
     }
-    out[2] = push_shear(m, lane, &state);
-    out[1] = stretch_applied(state.v, m->warp[lane], m->dd[lane], rest[1]);
-    push(m, lane, (vec3d){0}, stretch_push(state.v, m->warp[lane], rest[1]), &state);
-    out[0] = stretch_applied(state.u, m->weft[lane], m->cc[lane], rest[0]);
-    push(m, lane, stretch_push(state.u, m->weft[lane], rest[0]), (vec3d){0}, &state);
+    push_shear(m, lane, &state);
+    push(m, lane, (vec3d){0}, stretch_push(state.v, m->warp[lane], m->rest_strain[1][lane]), &state);
+    push(m, lane, stretch_push(state.u, m->weft[lane], m->rest_strain[0][lane]), (vec3d){0}, &state);
     vec3d ways[3];
     for (int i = 1; i < 3; i++)
         ways[i] = vec3d_muladd(vec3d_scale(state.push_c, m->c[i - 1][lane]), state.push_d, m->d[i - 1][lane]);
@@ -70,20 +58,15 @@ TL_INLINE void solve_membrane(const struct tl_preview_membrane *m, int lane, vec
 }
 
 TL_CLONES static void solve_membranes(const struct tl_preview_membrane *membranes, struct tl_range range,
-                                      double (*applied)[3][TL_BATCH], vec3d *x)
+                                      vec3d *x)
 {
-    for (size_t at = range.from; at < range.to; at++) {
-        const struct tl_preview_membrane *m = &membranes[at];
+    for (const struct tl_preview_membrane *m = membranes + range.from; m < membranes + range.to; m++) {
         vec3d corners[3][TL_BATCH];
         for (int i = 0; i < 3; i++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 corners[i][lane] = x[m->from[i][lane] / 4];
-        for (int lane = 0; lane < TL_BATCH; lane++) {
-            double now[3];
-            solve_membrane(m, lane, corners, now);
-            for (int row = 0; row < 3 && applied; row++)
-                applied[at][row][lane] = 0.5 * (applied[at][row][lane] + now[row]);
-        }
+        for (int lane = 0; lane < TL_BATCH; lane++)
+            solve_membrane(m, lane, corners);
         for (int i = 0; i < 3; i++)
             for (int lane = 0; lane < TL_BATCH; lane++)
                 x[m->from[i][lane] / 4] = corners[i][lane];
@@ -114,7 +97,6 @@ static struct tl_range part_of_run(const size_t *ends, size_t run)
 
 struct backward_sweep {
     const struct tl_energy *energy;
-    double (*applied)[3][TL_BATCH];
     vec3d *x;
 };
 
@@ -130,15 +112,14 @@ static void solve_on_team(void *context)
         tl_team_barrier();
     }
     for (size_t run = energy->membrane_run_count; run-- > 0;) {
-        solve_membranes(energy->previewed, part_of_run(energy->membrane_run_ends, run), sweep->applied, x);
+        solve_membranes(energy->previewed, part_of_run(energy->membrane_run_ends, run), x);
         tl_team_barrier();
     }
 }
 
-void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles,
-                            double (*applied)[3][TL_BATCH])
+void tl_xpbd_solve_backward(const struct tl_energy *energy, struct tl_particles *particles)
 {
     for (size_t i = energy->link_count; i-- > 0;)
         tl_xpbd_solve_link(&energy->links[i], particles);
-    tl_team_run(particles->count, solve_on_team, &(struct backward_sweep){energy, applied, particles->x});
+    tl_team_run(particles->count, solve_on_team, &(struct backward_sweep){energy, particles->x});
 }

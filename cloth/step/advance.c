@@ -33,7 +33,6 @@ struct tl_substep {
     bool continues_previous; /* follows a substep directly: a solver may have merged that one's end with this
                                 one's start */
     bool continues_next;     /* is followed directly by another */
-    double (*applied)[3][TL_BATCH]; /* preview: receives what rows exert, see xpbd.h; NULL: not wanted */
 };
 
 /* Whether the chosen solver can simulate this fabric within its budget of substeps. */
@@ -111,39 +110,27 @@ static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep,
  * contact comes last, so that no substep ends inside the avatar. */
 static void advance_preview(tl_cloth *cloth, const struct tl_substep *substep)
 {
-    bool bends = cloth->energy.bending_is_force;
+    const bool pushes = tl_energy_has_explicit_forces(&cloth->energy);
     struct tl_prediction prediction =
-        tl_prediction_make(bends ? cloth->forces : NULL, substep->gravity, substep->drag, substep->h);
+        tl_prediction_make(pushes ? cloth->forces : NULL, substep->gravity, substep->drag, substep->h);
     prediction.velocity_from_positions = substep->continues_previous;
     const struct tl_particle_kernel predict = tl_prediction_kernel(&cloth->particles, &prediction);
-    if (bends)
-        tl_energy_bending_forces(&cloth->energy, cloth->particles.x, cloth->forces, &predict);
+    if (pushes)
+        tl_energy_explicit_forces(&cloth->energy, cloth->particles.x, cloth->forces, &predict);
     else
         tl_particles_run(&predict);
     tl_pins_place(cloth->pins, cloth->pin_count, substep->collider, substep->phase, &cloth->particles);
     bool limited = cloth->params.strain_limit > 0, seams_last = seams_come_last(cloth);
     if (!seams_last)
         draw_seams(cloth, substep);
-    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL, substep->applied);
+    tl_xpbd_solve(&cloth->energy, &cloth->particles, limited ? &cloth->limits.watch : NULL);
     if (tl_cloth_uses_symmetric_sweep(cloth))
-        tl_xpbd_solve_backward(&cloth->energy, &cloth->particles, substep->applied);
+        tl_xpbd_solve_backward(&cloth->energy, &cloth->particles);
     if (limited)
         tl_strain_limits_solve(&cloth->limits, &cloth->energy, substep->h, &cloth->particles);
     apply_constraints(cloth, substep, seams_last);
     if (!substep->continues_next)
         tl_particles_finish(&cloth->particles, substep->h);
-}
-
-void tl_cloth_preview_substep(tl_cloth *cloth, const tl_collider *collider, double (*applied)[3][TL_BATCH])
-{
-    const struct tl_substep substep = {.h = tl_cloth_substep(cloth),
-                                       .gravity = cloth->params.gravity,
-                                       .phase_before = 1,
-                                       .phase = 1,
-                                       .collider = collider,
-                                       .applied = applied};
-    tl_cloth_renew_contact(cloth, substep.h, 1, false);
-    advance_preview(cloth, &substep);
 }
 
 static void compute_forces(tl_cloth *cloth, const struct tl_particle_kernel *then)

@@ -16,9 +16,12 @@ struct tl_advance_params {
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
                       tl_error *error);
 
-/* One substep of `preview` against a collider that stands where its motion ends; `applied` receives what the
- * rows exert (cloth/solvers/xpbd.h). */
-void tl_cloth_preview_substep(tl_cloth *cloth, const tl_collider *collider, double (*applied)[3][TL_BATCH]);
+/* Whether tl_cloth_step moves the cloth by a cage, unless none can be made (caged.c). */
+bool tl_cloth_is_caged(const tl_cloth *cloth);
+
+/* Advances under drag until no vertex moves, or for three seconds; velocities are 0 then. Errors: as
+ * tl_cloth_advance. */
+bool tl_cloth_come_to_rest(tl_cloth *cloth, const tl_collider *collider, tl_error *error);
 
 /* Fails with TL_UNSTABLE where the state is not finite or is strained by more than TL_CLOTH_MAX_STRAIN. */
 bool tl_cloth_check_state(const tl_cloth *cloth, tl_error *error);

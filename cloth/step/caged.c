@@ -16,7 +16,7 @@
 /* The number of the first dress, which two cores move in 20 ms a frame. */
 #define CAGE_VERTICES 3000
 
-static bool is_heavy(const tl_cloth *cloth)
+bool tl_cloth_is_caged(const tl_cloth *cloth)
 {
     const int above = cloth->params.caged_above;
     return above > 0 && cloth->topology.vertex_count > (size_t)above && !cloth->has_no_cage &&
@@ -38,15 +38,28 @@ static void make_cage(tl_cloth *cloth)
                 cloth->topology.vertex_count, cloth->caged_cloth->topology.vertex_count);
 }
 
-/* False when no cage can be made. */
-static bool prepare(tl_cloth *cloth)
+static bool stands_still(const struct tl_particles *particles)
 {
-    if (!cloth->cage)
-        make_cage(cloth);
-    if (cloth->cage && !cloth->cage_is_current)
-        tl_coarser_restart(cloth->cage, cloth);
-    cloth->cage_is_current = cloth->cage != NULL;
-    return cloth->cage != NULL;
+    for (size_t i = 0; i < particles->count; i++)
+        if (vec3d_dot(particles->v[i], particles->v[i]) > 0)
+            return false;
+    return true;
+}
+
+/* A cage is only nearly in balance where the cloth is. It comes to rest by itself, and the cloth follows
+ * it from there on. */
+static bool restart_cage(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
+{
+    tl_cloth *cage = tl_coarser_cloth(cloth->cage);
+    tl_coarser_restart(cloth->cage, cloth);
+    if (cloth->energy.is_prestressed && stands_still(&cloth->particles)) {
+        if (!tl_cloth_come_to_rest(cage, collider, error))
+            return false;
+        tl_cloth_mark_start(cage);
+    }
+    tl_coarser_bind(cloth->cage, cloth);
+    cloth->cage_is_current = true;
+    return true;
 }
 
 /* A pull is one of the cage's nearest vertex, by the same way. */
@@ -70,6 +83,8 @@ static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
 {
     struct tl_particles *particles = &cloth->particles;
     const size_t count = particles->count;
+    if (!cloth->cage_is_current && !restart_cage(cloth, collider, error))
+        return false;
     pass_pull_on(cloth);
     if (collider)
         tl_pins_bind(cloth->pins, cloth->pin_count, collider, cloth->fabric.thickness_m);
@@ -90,7 +105,9 @@ static bool advance_caged(tl_cloth *cloth, const tl_collider *collider,
 bool tl_cloth_step(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
 {
     const struct tl_advance_params advance = {.clock = true};
-    if (is_heavy(cloth) && prepare(cloth))
+    if (tl_cloth_is_caged(cloth) && !cloth->cage)
+        make_cage(cloth);
+    if (tl_cloth_is_caged(cloth))
         return advance_caged(cloth, collider, &advance, error);
     if (cloth->was_caged)
         tl_cloth_set_constants(cloth); /* forgets contacts, which are those of where it was before */

@@ -22,22 +22,18 @@ struct stage {
 /* In the first stage the cloth falls into place, as it would in the air: under ten times the drag friction
  * holds a dress where it is 10 mm wide at the neck, and after a start with a hundred times the drag 2 mm
  * short of that. In the second one folds come to rest. */
-static const struct stage whole_stages[] = {{0.6, 6.7}, {0.225, 27}};
+static const struct stage whole_stages[] = {{0.6, 6.7}, {0.15, 27}};
 
 /* Applies to cloth with edges of CARRIED_EDGE_M that comes from a coarser one; for finer cloth times and
  * drags are scaled, so that the steps are as many: long waves have come to rest on the coarser one. */
 static const struct stage carried_stages[] = {{0.435, 13.3}};
 #define CARRIED_EDGE_M 0.02
 
-/* The last steps of the last stage are a round, after which the cloth is looked at. If it is not at rest it
- * goes on in rounds under the drag of the first stage, which long waves need, until this many in succession
- * have not made the residual less. */
+/* The last steps of the last stage are a round, after which the cloth is looked at. If it is not in balance
+ * it goes on in rounds until this many in succession have not made the residual less. */
 #define ROUND_STEPS 500
-#define VAIN_ROUNDS 2
-#define LESS_SHARE  0.95
-/* Cloth is at rest if it is in balance, and if in its last round it moved by less than this, rms: a long fold
- * may swing far under a small force. */
-#define STILL_M 1e-3
+#define VAIN_ROUNDS 3
+#define LESS_SHARE  0.98
 
 /* Steps between moves outside of the avatar, as between those of a step of motion. */
 #define BLOCK 60
@@ -178,38 +174,20 @@ static struct tl_residual measure(const struct relaxing *relaxing)
     return residual;
 }
 
-/* Root mean square of the distances from `from`. */
-static double moved_from(const struct tl_particles *particles, const vec3d *from)
+/* Rounds until the cloth is in balance, as far as it comes. */
+static bool run_rounds(struct relaxing *relaxing, double keep, struct tl_progress *progress,
+                       struct tl_residual *residual, tl_error *error)
 {
-    double squares = 0;
-    for (size_t i = 0; i < particles->count; i++) {
-        vec3d way = vec3d_sub(particles->x[i], from[i]);
-        squares += vec3d_dot(way, way);
-    }
-    return sqrt(squares / (double)particles->count);
-}
-
-/* Rounds until the cloth is at rest, as far as it comes. */
-static bool run_rounds(struct relaxing *relaxing, double first_keep, double keep,
-                       struct tl_progress *progress, struct tl_residual *residual, tl_error *error)
-{
-    const struct tl_particles *particles = &relaxing->cloth->particles;
-    vec3d *from = TL_NEW_ARRAY(vec3d, particles->count);
     double lowest = HUGE_VAL;
-    bool good = true, first = true;
-    for (int vain = 0; good && vain < VAIN_ROUNDS && has_time(relaxing);) {
-        memcpy(from, particles->x, particles->count * sizeof *from);
+    bool good = true;
+    int vain = 0;
+    do {
         renew_planes(relaxing);
-        good = run(relaxing, ROUND_STEPS, first ? first_keep : keep, progress, error);
-        first = false;
+        good = run(relaxing, ROUND_STEPS, keep, progress, error);
         *residual = measure(relaxing);
-        const double moved = moved_from(particles, from);
-        if (tl_residual_is_balance(residual) && moved < STILL_M)
-            break;
         vain = residual->bounded_rms < LESS_SHARE * lowest ? 0 : vain + 1;
         lowest = fmin(lowest, residual->bounded_rms);
-    }
-    free(from);
+    } while (good && !tl_residual_is_balance(residual) && vain < VAIN_ROUNDS && has_time(relaxing));
     return good;
 }
 
@@ -242,8 +220,8 @@ bool tl_cloth_relax(tl_cloth *cloth, const tl_collider *collider, bool carried, 
     const double step_s = fmin(cloth->wave_step_s, whole_stages[0].time_s);
     struct tl_progress progress = tl_progress_begin("settling the cloth");
     bool good = run_stages(&relaxing, stages, stage_count, scale, step_s, &progress, error);
-    good = good && run_rounds(&relaxing, exp(-stages[stage_count - 1].drag / scale * step_s),
-                              exp(-stages[0].drag / scale * step_s), &progress, residual, error);
+    good = good && run_rounds(&relaxing, exp(-stages[stage_count - 1].drag / scale * step_s), &progress,
+                              residual, error);
     tl_progress_end(&progress);
     if (!good && !tl_interrupted())
         memcpy(cloth->particles.x, relaxing.start, cloth->particles.count * sizeof *relaxing.start);

@@ -8,12 +8,11 @@
 
 /* Followed by the arrays in the order of `visit`. */
 struct head {
-    size_t render_count, particle_count, pin_count, seam_count, membrane_count;
-    struct tl_implicit_tally tally;
-    double seams_elapsed_s, seams_firm_s, seams_welded_s, unsettled_speed;
-    struct tl_residual residual;
+    size_t render_count, particle_count, pin_count, seam_count, membrane_count, edge_count;
+    double seams_elapsed_s, seams_firm_s, seams_welded_s;
+    struct tl_balance balance;
     uint64_t jump_followed, collider_revision;
-    bool settled;
+    bool settled, is_prestressed;
 };
 
 /* The saved arrays, of a cloth or of memory that is to become part of one. */
@@ -24,9 +23,10 @@ struct arrays {
     struct tl_pin *pins;                 /* [pin_count] */
     struct tl_link *links;               /* [seam_count] */
     double (*rest_strains)[3][TL_BATCH]; /* [membrane_count] */
+    double *prestress;                   /* [edge_count] */
 };
 
-enum { ARRAYS = 9 };
+enum { ARRAYS = 10 };
 struct span {
     void *bytes;
     size_t size;
@@ -46,6 +46,7 @@ static void list_spans(const struct head *head, const struct arrays *arrays, str
         {arrays->pins, head->pin_count * sizeof *arrays->pins},
         {arrays->links, head->seam_count * sizeof *arrays->links},
         {arrays->rest_strains, head->membrane_count * sizeof *arrays->rest_strains},
+        {arrays->prestress, head->edge_count * sizeof *arrays->prestress},
     };
     memcpy(out, spans, sizeof spans);
 }
@@ -69,20 +70,22 @@ bool tl_cloth_save(const tl_cloth *cloth, void **data, size_t *size)
     head.pin_count = cloth->pin_count;
     head.seam_count = cloth->seams.pair_count;
     head.membrane_count = cloth->energy.membrane_count;
+    head.edge_count = cloth->energy.pairs.edge_count;
     head.seams_elapsed_s = cloth->seams.elapsed_s;
     head.seams_firm_s = cloth->seams.firm_s;
     head.seams_welded_s = cloth->seams.welded_s;
-    head.unsettled_speed = cloth->unsettled_speed;
-    head.residual = cloth->residual;
+    head.balance = cloth->balance;
     head.jump_followed = cloth->jump_followed;
     head.collider_revision = cloth->collider_revision;
     head.settled = cloth->settled;
+    head.is_prestressed = cloth->energy.is_prestressed;
     const struct arrays arrays = {.weld = cloth->topology.weld,
                                   .particles = cloth->particles,
                                   .pinched = cloth->contacts.pinched,
                                   .pins = cloth->pins,
                                   .links = cloth->seams.links,
-                                  .rest_strains = tl_alloc(head.membrane_count, sizeof *arrays.rest_strains)};
+                                  .rest_strains = tl_alloc(head.membrane_count, sizeof *arrays.rest_strains),
+                                  .prestress = cloth->energy.pairs.prestress};
     for (size_t i = 0; i < head.membrane_count; i++)
         memcpy(arrays.rest_strains[i], cloth->energy.previewed[i].rest_strain, sizeof *arrays.rest_strains);
     struct span spans[ARRAYS];
@@ -107,7 +110,8 @@ static struct arrays make_arrays(const struct head *head)
                            .pinched = TL_NEW_ARRAY(bool, head->particle_count),
                            .pins = TL_NEW_ARRAY(struct tl_pin, head->pin_count),
                            .links = TL_NEW_ARRAY(struct tl_link, head->seam_count),
-                           .rest_strains = tl_alloc(head->membrane_count, sizeof(double[3][TL_BATCH]))};
+                           .rest_strains = tl_alloc(head->membrane_count, sizeof(double[3][TL_BATCH])),
+                           .prestress = TL_NEW_ARRAY(double, head->edge_count)};
 }
 
 static void release_arrays(struct arrays *arrays)
@@ -118,6 +122,7 @@ static void release_arrays(struct arrays *arrays)
     free(arrays->pins);
     free(arrays->links);
     free(arrays->rest_strains);
+    free(arrays->prestress);
 }
 
 /* Sizes are bounded by the garment's before anything is allocated by them. */
@@ -126,7 +131,8 @@ static bool is_plausible(const struct head *head, const tl_cloth *cloth, size_t 
     size_t count = cloth->topology.render_count;
     if (head->render_count != count || head->particle_count > cloth->particles.count ||
         head->particle_count == 0 || head->pin_count > count + cloth->pin_count ||
-        head->seam_count > cloth->seams.pair_count || head->membrane_count > cloth->topology.triangle_count)
+        head->seam_count > cloth->seams.pair_count || head->membrane_count > cloth->topology.triangle_count ||
+        head->edge_count > 3 * cloth->topology.triangle_count)
         return false;
     const struct arrays none = {0};
     struct span spans[ARRAYS];
@@ -154,6 +160,17 @@ static bool are_indices_valid(const struct head *head, const struct arrays *arra
     return valid && used_count == count;
 }
 
+static void take_prestress(struct tl_energy *energy, const struct head *head, const struct arrays *arrays)
+{
+    struct tl_pair_forces *pairs = &energy->pairs;
+    if (head->membrane_count != energy->membrane_count || head->edge_count != pairs->edge_count)
+        return;
+    for (size_t i = 0; i < head->membrane_count; i++)
+        memcpy(energy->previewed[i].rest_strain, arrays->rest_strains[i], sizeof *arrays->rest_strains);
+    memcpy(pairs->prestress, arrays->prestress, head->edge_count * sizeof *arrays->prestress);
+    tl_pair_forces_set_packs(pairs, energy->bending_is_force);
+}
+
 /* In the order of tl_cloth_build_state: the mesh, particles, seams, pins, and then what follows from them.
  * The constants come before the particles' last values, because they do not depend on them but reset
  * contacts. */
@@ -172,12 +189,12 @@ static void take_arrays(tl_cloth *cloth, const struct head *head, struct arrays 
     free(cloth->pins);
     cloth->pins = arrays->pins;
     cloth->pin_count = head->pin_count;
+    cloth->energy.is_prestressed = head->is_prestressed;
     arrays->links = NULL;
     arrays->pins = NULL;
     tl_cloth_set_constants(cloth);
     memcpy(cloth->contacts.pinched, arrays->pinched, head->particle_count * sizeof(bool));
-    for (size_t i = 0; i < head->membrane_count && head->membrane_count == cloth->energy.membrane_count; i++)
-        memcpy(cloth->energy.previewed[i].rest_strain, arrays->rest_strains[i], sizeof *arrays->rest_strains);
+    take_prestress(&cloth->energy, head, arrays);
 }
 
 bool tl_cloth_restore(tl_cloth *cloth, const void *data, size_t size)
@@ -198,14 +215,12 @@ bool tl_cloth_restore(tl_cloth *cloth, const void *data, size_t size)
     bool valid = are_indices_valid(&head, &arrays);
     if (valid) {
         take_arrays(cloth, &head, &arrays);
-        cloth->tally = head.tally;
-        cloth->unsettled_speed = head.unsettled_speed;
-        cloth->residual = head.residual;
+        cloth->balance = head.balance;
         cloth->jump_followed = head.jump_followed;
         cloth->collider_revision = head.collider_revision;
         cloth->settled = head.settled;
         tl_cloth_mark_start(cloth);
-        if (cloth->unsettled_speed > 0 || (!cloth->settled && cloth->residual.rms > 0))
+        if (!cloth->settled && cloth->balance.residual.rms > 0)
             tl_cloth_log_unsettled(cloth);
     }
     release_arrays(&arrays);

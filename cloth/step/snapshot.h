@@ -2,7 +2,7 @@
  * bit.
  *
  * The bytes hold a marked start (tl_cloth_mark_start): positions, velocities, closed seams, the links of open
- * seams, pins with their attachments, caught vertices, and calibrated rest strains. The garment, the fabric
+ * seams, pins with their attachments, caught vertices, and prestress. The garment, the fabric
  * and the params are not saved and must be the same on restoring. The program must be the same too: the bytes
  * are its structs. Contacts, warm starts and strain limits are not saved, because a marked start resets them.
  * Threads: one at a time per cloth. */

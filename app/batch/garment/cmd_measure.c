@@ -99,13 +99,13 @@ static void print_cloth(const tl_session *session)
     printf("cloth, %s: %zu vertices, %zu triangles\n",
            tl_garment_state_names[tl_session_garment_state(session)], report.vertex_count,
            report.triangle_count);
-    const struct tl_residual residual = tl_session_residual(session);
-    printf("  out of balance by %.3g of its weight rms, %.3g for 99 %% of the vertices, %.3g at most%s\n",
-           residual.rms, residual.high, residual.largest,
-           tl_session_garment_state(session) == TL_GARMENT_AT_REST && !tl_residual_is_balance(&residual) &&
-                   tl_session_settings(session)->cloth.settling == TL_SETTLING_MOTION
-               ? ": --set cloth.settling=balance drapes it in balance"
-               : "");
+    const struct tl_balance balance = tl_session_balance(session);
+    char moved[80] = "";
+    if (balance.moved_m > 0)
+        snprintf(moved, sizeof moved, "; then its folds swung by %.1f mm rms to rest", MM * balance.moved_m);
+    if (balance.residual.rms > 0)
+        printf("  out of balance by %.3g of its weight rms, %.3g for 99 %% of the vertices, %.3g at most%s\n",
+               balance.residual.rms, balance.residual.high, balance.residual.largest, moved);
     printf("  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
            "the ground, %.1f mm deep; %zu pairs of triangles cross\n\n",
            PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,
@@ -216,10 +216,13 @@ static void add_cloth(cJSON *object, const tl_session *session)
     cJSON_AddNumberToObject(item, "inside", (double)report.inside_count);
     cJSON_AddNumberToObject(item, "deepest_mm", MM * report.deepest_m);
     cJSON_AddNumberToObject(item, "crossings", (double)report.crossing_count);
-    const struct tl_residual residual = tl_session_residual(session);
-    cJSON_AddNumberToObject(item, "unbalanced_rms", residual.rms);
-    cJSON_AddNumberToObject(item, "unbalanced_p99", residual.high);
-    cJSON_AddNumberToObject(item, "unbalanced_max", residual.largest);
+    const struct tl_balance balance = tl_session_balance(session);
+    if (balance.residual.rms > 0) {
+        cJSON_AddNumberToObject(item, "unbalanced_rms", balance.residual.rms);
+        cJSON_AddNumberToObject(item, "unbalanced_p99", balance.residual.high);
+        cJSON_AddNumberToObject(item, "unbalanced_max", balance.residual.largest);
+        cJSON_AddNumberToObject(item, "swung_mm", MM * balance.moved_m);
+    }
     cJSON_AddNumberToObject(item, "rms_strain_percent", PERCENT * report.rms_strain);
     cJSON_AddNumberToObject(item, "max_strain_percent", PERCENT * report.max_strain);
 }

@@ -26,17 +26,16 @@ for row in rows:
     for key in ("cpu_ms_per_s", "rms_error_m", "rms_total_error_m", "rest_cpu_ms", "rest_rms_error_m"):
         assert math.isfinite(float(row[key])) and float(row[key]) >= 0, (key, row)
 sides = {row["side"] for row in rows}
-assert len(sides) == 2 and {"preview", "settle", "reference"} == {row["solver"] for row in rows}
+assert len(sides) == 2 and {"preview", "reference"} == {row["solver"] for row in rows}
 for side in sides:
     error = {row["name"]: float(row["rms_error_m"]) for row in rows if row["side"] == side}
     assert error["preview 16"] < 0.5 * error["preview 4"]
-    assert error["settle 240 Hz"] < 0.5 * error["settle 60 Hz"]
-    assert error["reference"] < 0.01 * min(error["preview 16"], error["settle 240 Hz"])
+    assert error["reference"] < 0.01 * error["preview 16"]
 PYTHON
 check "what settings do to a fit: few substeps stretch, and the hem hangs lower" python3 - <<'PYTHON'
 import csv
 rows = {row["name"]: row for row in csv.DictReader(open("measured/fit.csv"))}
-assert rows.keys() == {"reference", "default", "preview 8", "settle 60 Hz"}, rows.keys()
+assert rows.keys() == {"reference", "default", "preview 8"}, rows.keys()
 off = {name: {key[:-7]: float(row[key]) for key in row if key.endswith("_off_mm") and row[key]} for name, row in rows.items()}
 for name, row in rows.items():
     assert None not in row and None not in row.values() and row["garment"] == "dress" and row["waist_mm"] == "", row
@@ -44,7 +43,7 @@ for name, row in rows.items():
     assert 300 < float(row["hem_height_mm"]) < 900 and 500 < float(row["neck_mm"]) < 800, row
     assert 0 < float(row["waist_ease_mm"]) < float(row["hip_ease_mm"]), row
 assert not any(off["reference"].values()), off
-assert abs(off["settle 60 Hz"]["hem_height"]) < 5 < -off["preview 8"]["hem_height"] < 100, off
+assert abs(off["default"]["hem_height"]) < 5 and abs(off["default"]["neck"]) < 3, off
 assert float(rows["preview 8"]["rms_strain"]) > 1.5 * float(rows["reference"]["rms_strain"])
 PYTHON
 check_report measured/report.html 5
@@ -52,7 +51,7 @@ check "bench --json" sh -c "$TOILE bench cloth --quick --quiet --json | python3 
 import json, math, sys
 bench = json.load(sys.stdin)
 names = [solver[\"name\"] for solver in bench[\"solvers\"]]
-assert names == [\"preview\", \"settle\", \"reference\", \"plain loop\"], names
+assert names == [\"preview\", \"reference\", \"plain loop\"], names
 for solver in bench[\"solvers\"]:
     assert math.isfinite(solver[\"steps_per_s_core\"]) and solver[\"steps_per_s_core\"] > 0
     assert math.isfinite(solver[\"ratio\"]) and solver[\"ratio\"] > 0 and solver[\"runs\"]
@@ -61,8 +60,8 @@ check "extremes: never NaN, never silent" python3 - <<'PYTHON'
 import json
 found = json.load(open("extremes.json"))
 outcomes = ("exact", "bounded", "refused", "silent", "nan")
-assert sum(found[key] for key in outcomes) == found["cells"] == len(found["rows"]) and found["cells"] > 200
-assert found["nan"] == 0 and found["refused"] >= 30 and found["exact"] >= 100
+assert sum(found[key] for key in outcomes) == found["cells"] == len(found["rows"]) and found["cells"] > 150
+assert found["nan"] == 0 and found["refused"] >= 30 and found["exact"] >= 70
 for row in found["rows"]:
     assert row["outcome"] != "SILENT", row
     assert row["outcome"] != "refused" or row["why"], row

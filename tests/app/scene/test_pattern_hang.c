@@ -13,8 +13,9 @@ static void the_front_of_a_shirt_hangs(void **state)
 {
     (void)state;
     const float belly_z = 0.135f; /* mean_all.obj between 1.05 and 1.15 m */
-    const float hem_z =
-        0.05f; /* free cloth before it, at most: twice the fall of the bust before the belly */
+    /* Free cloth before it, at most: twice the fall of the bust before the belly, and as much for the ridge
+     * of its triangles of 14 mm, which are as stiff in their plane as the fabric is. */
+    const float hem_z = 0.1f;
     char *garment = tl_format("scene.garment=%s", test_data("patterns/shirt_mean_specification.json"));
     char *avatar = tl_format("scene.avatar=%s", test_data("avatars/mean_all.obj"));
     const char *const assignments[] = {garment, avatar, "scene.environment=white"};

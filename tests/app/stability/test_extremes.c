@@ -1,24 +1,12 @@
 /* The rules of `toile stability`: nothing above the stated share is called bounded, and wide bounds name
- * remedies. And an extreme of cloth that `toile stability cloth --quick` leaves out because it is slow. */
-#include "cloth/cloth.h"
+ * remedies. */
 #include "config/base/log.h"
 #include "config/base/memory.h"
-#include "tests/app/stability/extremes_cloth.h"
 #include "tests/app/stability/extremes_light.h"
 #include "tests/app/stability/outcome.h"
 #include "tests/testing.h"
 
 #include <math.h>
-#include <string.h>
-
-static size_t extreme_named(const char *name)
-{
-    for (size_t i = 0; i < tl_cloth_extreme_count; i++)
-        if (strcmp(tl_cloth_extreme_name(i), name) == 0)
-            return i;
-    fail_msg("no extreme is named %s", name);
-    return 0;
-}
 
 static void test_outcomes(void **state)
 {
@@ -77,8 +65,8 @@ static void test_remedies(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rest), cmocka_unit_test(test_outcomes),
-                                       cmocka_unit_test(test_counts), cmocka_unit_test(test_remedies)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_outcomes), cmocka_unit_test(test_counts),
+                                       cmocka_unit_test(test_remedies)};
     tl_log_set_level(TL_LOG_WARN);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

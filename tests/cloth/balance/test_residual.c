@@ -1,5 +1,6 @@
 /* The residual of states whose imbalance is known: a strip that hangs stretched by its weight, one that is
  * not stretched, sheets on a slope and on each other. */
+#include "cloth/build.h"
 #include "tests/cloth/bodies.h"
 #include "tests/cloth/sheets.h"
 #include "tests/cloth/solvers.h"
@@ -77,6 +78,43 @@ static void test_hanging(void **state)
     assert_true(residual.rms > TL_RESIDUAL_RMS);
     tl_cloth_destroy(&cloth);
     sheet_free(&garment);
+}
+
+/* The farthest that a vertex of the stretched strip has gone after a second of `preview`. */
+static double go_from_balance(int substeps, bool is_prestressed)
+{
+    tl_garment garment;
+    tl_error error = {0};
+    tl_cloth *cloth = hang(&garment);
+    struct tl_cloth_params params = cloth->params;
+    params.substeps = substeps;
+    cloth->params = params;
+    stretch(cloth);
+    for (size_t i = 0; i < cloth->pin_count; i++)
+        cloth->pins[i].at = cloth->particles.x[cloth->pins[i].particle];
+    tl_cloth_set_prestress(cloth, is_prestressed);
+    vec3d *from = TL_NEW_ARRAY(vec3d, cloth->particles.count);
+    memcpy(from, cloth->particles.x, cloth->particles.count * sizeof *from);
+    for (int frame = 0; frame < 30; frame++)
+        assert_ok(tl_cloth_step(cloth, NULL, &error), error);
+    double farthest = 0;
+    for (size_t i = 0; i < cloth->particles.count; i++)
+        farthest = fmax(farthest, vec3d_distance(cloth->particles.x[i], from[i]));
+    print_message("%d substeps, %s: goes by %.3g mm\n", substeps, is_prestressed ? "prestressed" : "not",
+                  1e3 * farthest);
+    free(from);
+    tl_cloth_destroy(&cloth);
+    sheet_free(&garment);
+    return farthest;
+}
+
+/* Prestressed cloth stays where it is in balance, in substeps of any length. */
+static void test_prestress(void **state)
+{
+    (void)state;
+    assert_true(go_from_balance(10, false) > 1e-3);
+    assert_true(go_from_balance(10, true) < 1e-6);
+    assert_true(go_from_balance(2, true) < 1e-6);
 }
 
 /* ---- Lying ---- */
@@ -175,6 +213,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hanging),
+        cmocka_unit_test(test_prestress),
         cmocka_unit_test(test_slope),
         cmocka_unit_test(test_stack),
     };
