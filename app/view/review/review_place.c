@@ -22,10 +22,11 @@ static struct tl_placing placing_of(const struct tl_scene_params *scene)
                                .move_m = {{scene->move_m[0], scene->move_m[1], scene->move_m[2]}}};
 }
 
-/* In steps that are smaller than a pixel, so that the options stay short. */
+/* In steps that are smaller than a pixel, so that the options stay short; + 0 makes a 0 of -0, which would
+ * print its sign. */
 static float in_steps(float value, float steps_per_unit)
 {
-    return roundf(value * steps_per_unit) / steps_per_unit;
+    return roundf(value * steps_per_unit) / steps_per_unit + 0.0f;
 }
 
 static void set_placing(struct tl_review *review, const struct tl_placing *placing)
