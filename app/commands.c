@@ -73,10 +73,11 @@ static const struct tl_command commands[] = {
      "as .png, for "
      "detail.normals, or its heights in metres as .exr, for detail.heights.",
      TL_FLAGS_OUTPUT | TL_FLAGS_BAKE, tl_command_bake},
-    {"measure", "measure [SCENE] [-o OUT.csv] [--frame N] [--json] [OPTIONS]",
+    {"measure", "measure [SCENE] [-o OUT.csv] [--frame N] [--interval] [--json] [OPTIONS]",
      "Measures a garment as it is worn: strain (warp, weft, shear) and area of each panel, its openings, and "
      "its girths beside its body's; -o writes the same as CSV.",
-     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_JSON, tl_command_measure},
+     TL_FLAGS_SCENE | TL_FLAGS_OUTPUT | TL_FLAGS_FRAME | TL_FLAGS_JSON | TL_FLAGS_MEASURE,
+     tl_command_measure},
     {"env",
      "env IN -o OUT.exr --layout cube|sphere|paraboloid|latlong|octahedral [--from LAYOUT] [--size N]\n"
      "       toile env [SCENE] --capture -o OUT.exr --layout LAYOUT [--size N] [OPTIONS]",

@@ -214,6 +214,15 @@ bool tl_cloth_is_settled(const tl_cloth *cloth)
     return cloth->settled;
 }
 
+void tl_cloth_start_at(tl_cloth *cloth, const vec3s *positions)
+{
+    for (size_t i = 0; i < cloth->topology.render_count; i++) {
+        const uint32_t particle = cloth->topology.weld[i];
+        if (cloth->particles.w[particle] > 0)
+            cloth->particles.x[particle] = vec3d_from(positions[i]);
+    }
+}
+
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out)
 {
     for (size_t i = 0; i < cloth->topology.render_count; i++)

@@ -150,6 +150,11 @@ void tl_cloth_pin(tl_cloth *cloth, uint32_t render_vertex);
 /* Removes all pins that tl_cloth_pin has made; returns how many there were. */
 size_t tl_cloth_unpin(tl_cloth *cloth);
 
+/* Moves the render vertices of a cloth that is about to be settled to `positions` [mesh.vertex_count],
+ * metres: another start. Its rest shape stays that of the garment, and pinned vertices stay where they are.
+ */
+void tl_cloth_start_at(tl_cloth *cloth, const vec3s *positions);
+
 /* Writes the present position of every render vertex to `out` [mesh.vertex_count], metres. */
 void tl_cloth_positions(const tl_cloth *cloth, vec3s *out);
 

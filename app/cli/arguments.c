@@ -159,6 +159,9 @@ static const struct flag flags_known[] = {
      "record every image's hash, for a replay to compare"},
     {"--shard", TL_FLAGS_SHARD, FLAG_SHARD, 0, NULL, "I/N",
      "do part I of N, from 0: N runs, on as many machines as there are, make what one makes (docs/farm.md)"},
+    {"--interval", TL_FLAGS_MEASURE, FLAG_SWITCH, AT(interval), NULL, NULL,
+     "also settle from four other starts (lifted, lowered, twisted either way), and print the smallest "
+     "and the largest of each girth, opening and height: the interval that friction leaves"},
     {"--clear", TL_FLAGS_CLEAR, FLAG_SWITCH, AT(clear), NULL, NULL, "remove all of them"},
     {"--strict", TL_FLAGS_STRICT, FLAG_SWITCH, AT(strict), NULL, NULL,
      "exit with 1 if a finding is an error; warnings alone exit with 0"},

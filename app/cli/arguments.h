@@ -36,6 +36,7 @@ enum tl_flag_set {
     TL_FLAGS_STRICT = 1 << 20,  /* --strict */
     TL_FLAGS_BAKE = 1 << 21,    /* --size N --reach-mm MM */
     TL_FLAGS_PLAN = 1 << 22,    /* --calibrate */
+    TL_FLAGS_MEASURE = 1 << 23, /* --interval */
 };
 
 struct tl_arguments {
@@ -68,7 +69,7 @@ struct tl_arguments {
     bool frames_given; /* --frames rather than --frame */
     bool json, quiet, verbose, help;
     bool fresh, quick, full, clamp, capture, furnace, still, aovs, hash, same_drape, no_cache, clear;
-    bool allow_outside, force, strict;
+    bool allow_outside, force, strict, interval;
     char **command_line; /* the command's name and what follows it, as given; NULL-terminated; borrowed */
 };
 

@@ -1,6 +1,7 @@
 /* toile measure: prints strains and areas of a garment's panels, its openings and its girths, and writes them
  * as CSV. Lengths in mm, areas in cm^2, strains in percent. */
 #include "app/batch/commands.h"
+#include "app/batch/garment/interval.h"
 #include "app/cli/json.h"
 #include "app/fit/measures.h"
 #include "app/scene/headless.h"
@@ -26,6 +27,8 @@ static bool check_output(const struct tl_arguments *arguments, tl_error *error)
     struct tl_writer writer;
     if (!output)
         return true;
+    if (arguments->interval)
+        return tl_fail(error, TL_USAGE, "--interval: is printed, as text or with --json: leave -o out");
     if (!tl_path_has_extension(output, "csv"))
         return tl_fail(error, TL_USAGE, "%s: unknown kind of file: end the name in .csv", output);
     if (!tl_writer_begin(&writer, output, error))
@@ -227,7 +230,8 @@ static void add_cloth(cJSON *object, const tl_session *session)
     cJSON_AddNumberToObject(item, "max_strain_percent", PERCENT * report.max_strain);
 }
 
-static cJSON *describe(const tl_session *session, const struct tl_measures *measures)
+static cJSON *describe(const tl_session *session, const struct tl_measures *measures,
+                       const struct tl_interval *interval)
 {
     cJSON *object = cJSON_CreateObject();
     add_cloth(object, session);
@@ -255,6 +259,8 @@ static cJSON *describe(const tl_session *session, const struct tl_measures *meas
             cJSON_AddNumberToObject(item, "worn", MM * girth->worn_m);
         }
     }
+    if (interval)
+        cJSON_AddItemToObject(object, "interval_mm", tl_interval_json(interval));
     return object;
 }
 
@@ -291,16 +297,19 @@ static struct tl_measures measure(tl_session *session)
     return measures;
 }
 
+/* `interval` may be NULL. */
 static bool report(const tl_session *session, const struct tl_measures *measures,
-                   const struct tl_arguments *arguments, tl_error *error)
+                   const struct tl_interval *interval, const struct tl_arguments *arguments, tl_error *error)
 {
     if (arguments->output && !write_file(arguments->output, measures, error))
         return false;
     if (arguments->json) {
-        tl_json_print(describe(session, measures));
+        tl_json_print(describe(session, measures, interval));
     } else {
         print_cloth(session);
         print_tables(measures);
+        if (interval)
+            tl_interval_print(interval);
     }
     return true;
 }
@@ -319,7 +328,10 @@ bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
         done = tl_session_go_to(session, arguments->first_frame, error);
     if (done) {
         struct tl_measures measures = measure(session);
-        done = report(session, &measures, arguments, error);
+        struct tl_interval interval = {0};
+        done = !arguments->interval || tl_interval_take(session, &measures, &interval, error);
+        done = done && report(session, &measures, arguments->interval ? &interval : NULL, arguments, error);
+        tl_interval_release(&interval);
         tl_measures_release(&measures);
     }
     tl_session_destroy(&session);

@@ -42,6 +42,22 @@ check "JSON is one object" sh -c "$TOILE measure dress.obj --json --quiet | pyth
 import json, sys
 measures = json.load(sys.stdin)
 assert len(measures[\"panels\"]) == 5 and measures[\"openings_mm\"][\"hem\"][\"rest\"] > 2000, measures'"
+# A fault that let each start be the garment's own would leave no interval.
+check "the interval of friction" sh -c "$TOILE measure --garment dress $quick --no-cache --interval --json | python3 -c '
+import json, sys
+told = json.load(sys.stdin)
+interval = told[\"interval_mm\"]
+assert len(interval[\"starts\"]) == 5, interval
+for kind, of, key in ((\"openings\", \"openings_mm\", \"worn\"), (\"heights\", \"openings_mm\", \"height\"), (\"girths\", \"girths_mm\", \"worn\")):
+    assert len(interval[kind]) == len(told[of]), kind
+    for name, item in interval[kind].items():
+        assert abs(item[\"own\"] - told[of][name][key]) < 1e-9, name
+        assert item[\"min\"] <= item[\"own\"] <= item[\"max\"] < item[\"min\"] + 60, (name, item)
+neck = interval[\"openings\"][\"neck\"]
+assert neck[\"max\"] > neck[\"min\"] + 0.01, neck'"
+refuse "an interval of a garment as authored" '^toile: --interval: the garment is as authored: add --set scene.drape=settle' measure dress.obj --interval
+refuse "an interval in motion" 'leave --frame out' measure --garment dress $quick --interval --frame 1
+refuse "an interval as CSV" 'leave -o out' measure dress.obj --interval -o interval.csv
 check "a later frame is measured too" sh -c "$TOILE measure dress.obj --frame 2 --quiet | grep -q '^hem '"
 
 pattern=$data/patterns/shirt_mean_specification.json
