@@ -616,8 +616,8 @@ bool tl_session_pick(const tl_session *session, vec3s origin, vec3s direction, u
     return session->garment && tl_moving_pick(&session->dress, origin, direction, vertex, distance_m);
 }
 
-const char *const tl_garment_state_names[] = {"", "as authored", "sewn, not draped", "at rest",
-                                              "moved, not at rest"};
+const char *const tl_garment_state_names[] = {"",        "as authored",           "sewn, not draped",
+                                              "at rest", "still, not in balance", "moved, not at rest"};
 
 enum tl_garment_state tl_session_garment_state(const tl_session *session)
 {
@@ -627,9 +627,23 @@ enum tl_garment_state tl_session_garment_state(const tl_session *session)
         return TL_GARMENT_AUTHORED;
     if (session->frame == 0 && session->only_sewn)
         return TL_GARMENT_SEWN;
-    bool rests = session->frame == 0 ? !session->authored && tl_cloth_is_settled(session->cloth)
-                                     : tl_cloth_is_still(session->cloth);
-    return rests ? TL_GARMENT_AT_REST : TL_GARMENT_MOVED;
+    const bool balances = !session->authored && tl_cloth_is_settled(session->cloth);
+    if (session->frame > 0 && !tl_cloth_is_still(session->cloth))
+        return TL_GARMENT_MOVED;
+    if (balances)
+        return TL_GARMENT_AT_REST;
+    return session->frame > 0 ? TL_GARMENT_STILL : TL_GARMENT_MOVED;
+}
+
+void tl_session_describe_state(const tl_session *session, char *out, size_t size)
+{
+    const bool settled = session->cloth && session->frame == 0 && !tl_session_is_undraped(session);
+    const struct tl_balance balance = settled ? tl_cloth_balance(session->cloth) : (struct tl_balance){0};
+    const char *state = tl_garment_state_names[tl_session_garment_state(session)];
+    if (balance.residual.bounded_rms > 0)
+        snprintf(out, size, "%s, out of balance by %.2g of its weight", state, balance.residual.bounded_rms);
+    else
+        snprintf(out, size, "%s", state);
 }
 
 bool tl_session_show_placed(tl_session *session, const struct tl_placing *placing)

@@ -195,13 +195,18 @@ enum tl_garment_state {
     TL_GARMENT_AUTHORED,
     TL_GARMENT_SEWN, /* and not draped: nobody wears it */
     TL_GARMENT_AT_REST,
+    TL_GARMENT_STILL, /* stands still, and its forces have not been in balance */
     TL_GARMENT_MOVED, /* not at rest */
 };
 extern const char *const tl_garment_state_names[]; /* "", "as authored", ... */
 
-/* At rest: settled, or tl_cloth_is_still. Errors: none. Threads: the
+/* At rest: settled in balance, and tl_cloth_is_still where it has moved since. Errors: none. Threads: the
  * session's. */
 enum tl_garment_state tl_session_garment_state(const tl_session *session);
+
+/* Writes the state in words, and by how much a drape was out of balance when it had settled: "at rest, out of
+ * balance by 0.06 of its weight". Errors: none. Threads: the session's. */
+void tl_session_describe_state(const tl_session *session, char *out, size_t size);
 
 /* True for cloth that starts as its file has it (scene.drape). Errors: none. Threads: the session's. */
 bool tl_session_is_authored(const tl_session *session);

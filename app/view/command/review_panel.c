@@ -175,16 +175,18 @@ static void describe_status(const struct tl_review *review, char *status, size_t
 {
     const struct tl_review_path *path = &review->path;
     enum tl_garment_state state = tl_session_garment_state(review->session);
+    char words[96];
     const char *stop = status + size;
     char *end = status;
     *end = '\0';
+    tl_session_describe_state(review->session, words, sizeof words);
     bool undraped = state == TL_GARMENT_AUTHORED || state == TL_GARMENT_SEWN;
     bool drapes = review->load.loader &&
                   (review->load.drapes_again || (undraped && review->wanted.scene.drape == TL_DRAPE_SETTLE));
     if (drapes)
         end = append(end, stop, "draping  ");
     else if (state != TL_GARMENT_IS_NOT_CLOTH)
-        end = append(end, stop, "%s%s  ", tl_garment_state_names[state],
+        end = append(end, stop, "%s%s  ", words,
                      !undraped         ? ""
                      : is_worn(review) ? " (D drapes it)"
                                        : " on nobody (drop a body, D drapes it)");

@@ -304,6 +304,35 @@ static void strains_are_told_when_they_are_looked_at(void **state)
 }
 
 /* Lowest and highest place of a surface in the picture, in half heights of it from the middle. */
+static void only_balance_is_called_rest(void **state)
+{
+    (void)state;
+    char words[96];
+    tl_error error = {0};
+    tl_session *session = quick_session(NULL); /* 0.3 s are too short */
+    tl_session_describe_state(session, words, sizeof words);
+    print_message("settled for 0.3 s: %s\n", words);
+    assert_non_null(strstr(words, "not at rest, out of balance by "));
+    for (int frame = 0; frame < 600 && !(frame > 0 && tl_cloth_is_still(tl_session_cloth(session))); frame++)
+        assert_ok(tl_session_advance(session, &error), error);
+    tl_session_describe_state(session, words, sizeof words);
+    print_message("after frame %d: %s\n", tl_session_frame_number(session), words);
+    assert_int_equal(tl_session_garment_state(session), TL_GARMENT_STILL);
+    tl_session_destroy(&session);
+
+    struct tl_settings settings = quick_settings(NULL);
+    settings.scene.garment = "sheet";
+    settings.scene.avatar = "ball";
+    settings.cloth.settle_s = 10;
+    settings.cloth.substeps = 0;
+    session = tl_session_create(&settings, &error);
+    assert_ok(session != NULL, error);
+    tl_session_describe_state(session, words, sizeof words);
+    print_message("settled: %s\n", words);
+    assert_int_equal(strncmp(words, "at rest, out of balance by 0.0", 30), 0);
+    tl_session_destroy(&session);
+}
+
 static void find_extent(const tl_surface *surface, const struct tl_camera *camera, float *lowest,
                         float *highest)
 {
@@ -364,6 +393,7 @@ int main(void)
         cmocka_unit_test(picking_finds_the_front),
         cmocka_unit_test(the_pattern_hangs_beside_the_garment),
         cmocka_unit_test(strains_are_told_when_they_are_looked_at),
+        cmocka_unit_test(only_balance_is_called_rest),
         cmocka_unit_test(the_garment_fills_three_quarters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
