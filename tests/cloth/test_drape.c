@@ -51,7 +51,8 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
     struct drape drape = {100 * tl_cusick_coefficient(&shadow), tl_cusick_folds(&garment, positions)};
     tl_image_release(&shadow);
     free(positions);
-    printf("    seed %d: DC %.1f %%, %d folds\n", seed, drape.coefficient, drape.folds);
+    printf("    seed %d: DC %.1f %%, %d folds, out of balance by %.2f of its weight\n", seed,
+           drape.coefficient, drape.folds, tl_cloth_balance(cloth).residual.bounded_rms);
     tl_cloth_destroy(&cloth);
     tl_garment_release(&garment);
     return drape;
