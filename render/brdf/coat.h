@@ -1,5 +1,5 @@
 /* The clear coat of a material: a film of index 1.5 over everything else, Lo = F Lm + (1 - F) Lbase [Heidrich
- * and Seidel 1999, section 4.3]. Pure; threads: any. */
+ * and Seidel 1999, 4.4]. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_COAT_H
 #define TOILE_RENDER_BRDF_COAT_H
 

@@ -1,5 +1,5 @@
 /* Normals and heights of a finer mesh as maps of a coarser one of the same garment [Heidrich and Seidel 1999,
- * section 5]. From each texel's point of the coarse mesh a ray goes along the interpolated normal, both ways;
+ * 5]. From each texel's point of the coarse mesh a ray goes along the interpolated normal, both ways;
  * the nearer hit that faces the same way gives the finer normal, in the coarse tangent space, and the height.
  *
  * The UVs of the coarse mesh must lie in the unit square. A texel that lies in several of its triangles

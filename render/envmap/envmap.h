@@ -1,6 +1,6 @@
 /* Classic environment mapping: the environment convolved with lobes, resampled to textures in one of the
  * layouts (env/layout.h), and a pass that looks it up for every sample of the G-buffer [Heidrich and Seidel
- * 1999, section 4]. Light is unshadowed:
+ * 1999, 4]. Light is unshadowed:
  *
  *     SURFACE       kd E(n, 1) + F ks E(r, s)
  *     MIRROR        L(r)

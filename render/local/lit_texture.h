@@ -1,4 +1,4 @@
-/* A normal map lit in texture space [Heidrich and Seidel 1999, section 5.1]: the normals of all texels over
+/* A normal map lit in texture space [Heidrich and Seidel 1999, 5.1]: the normals of all texels over
  * the UVs of a part are multiplied by one matrix, which yields their cosines with light, viewer and halfway
  * vector, and tables of these cosines give the light. What is lit is a texture that is then mapped to the
  * part as any other, so that its mip levels average light and not normals. The texels' normals are in world

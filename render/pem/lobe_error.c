@@ -99,12 +99,19 @@ static void make_quadrature(const struct tl_lobe_source *source, float s, struct
 static struct tl_lobe_error compare(const struct quadrature *quadrature, const double response[SAMPLES])
 {
     struct tl_lobe_error result = {0};
-    for (int i = 0; i < SAMPLES; i++)
-        result.energy += quadrature->shares[i] * response[i];
+    double exact_solid = 0, shown_solid = 0;
     for (int i = 0; i < SAMPLES; i++) {
         double share = quadrature->shares[i], exact = quadrature->exact[i];
+        result.energy += share * response[i];
+        exact_solid += share * exact * exact * exact;
+        shown_solid += share * response[i] * response[i] * response[i];
+    }
+    for (int i = 0; i < SAMPLES; i++) {
+        double share = quadrature->shares[i], exact = quadrature->exact[i];
+        double shown = response[i] * response[i] * response[i] / shown_solid;
         result.error += share * fabs(response[i] - exact);
         result.same_volume += share * fabs(response[i] / result.energy - exact);
+        result.radial += share * fabs(shown - exact * exact * exact / exact_solid);
     }
     return result;
 }
@@ -310,6 +317,7 @@ void tl_lobe_curve(const struct tl_lobe_curves *curves, int method, struct tl_lo
             point.worst = fmax(point.worst, error->error);
             point.same_volume_mean += error->same_volume / (double)directions;
             point.same_volume_worst = fmax(point.same_volume_worst, error->same_volume);
+            point.radial_mean += error->radial / (double)directions;
             point.energy_low = fmin(point.energy_low, error->energy);
             point.energy_high = fmax(point.energy_high, error->energy);
         }

@@ -8,18 +8,19 @@
  *     error       = integral |E - K| dd / integral K dd             over the whole sphere
  *     energy      = integral E dd / integral K dd
  *     same volume = integral |E / energy - K| dd / integral K dd
+ *     radial      = integral |c E^3 - K^3| dd / integral K^3 dd     with c so that both have one volume
  *
- * The paper compares lobes of the same volume, seen from one fixed pixel, and does not state how it samples
- * them. `error` measures the light of a pixel. `same volume` measures the shape alone, which is as close to
- * the paper as its text allows. */
+ * `error` measures the light of a pixel, `same volume` the shape alone. The paper compares lobes of the same
+ * volume, of which it plots sections of "3D radial plots", and does not state whether the volume is that of
+ * the light or that of the plotted solid, r^3 / 3 over directions: `radial` is the latter. */
 #ifndef TOILE_RENDER_PEM_LOBE_ERROR_H
 #define TOILE_RENDER_PEM_LOBE_ERROR_H
 
 #include "render/env/cube.h"
 
-/* The three integrals above. */
+/* The four integrals above. */
 struct tl_lobe_error {
-    double error, energy, same_volume;
+    double error, energy, same_volume, radial;
 };
 
 /* A texel of a cube as a source, with directions and weights that represent its area. */
@@ -56,7 +57,7 @@ struct tl_lobe_curves {
     const float *exponents;
 };
 struct tl_lobe_curve_point {
-    double mean, worst, same_volume_mean, same_volume_worst, energy_low, energy_high;
+    double mean, worst, same_volume_mean, same_volume_worst, radial_mean, energy_low, energy_high;
 };
 /* Fills `out` [exponent_count]. */
 void tl_lobe_curve(const struct tl_lobe_curves *curves, int method, struct tl_lobe_curve_point *out);

@@ -1,5 +1,6 @@
-/* Every citation resolves: an author and a year stand in brackets and are a key of docs/references.md, every
- * key is cited, and every page of docs/ that a text names exists. */
+/* Every citation resolves: an author and a year stand in brackets and are a key of docs/references.md, the
+ * four sources have the sections, figures and equations that are cited, every key is cited, and every page of
+ * docs/ that a text names exists. */
 #include "tests/hygiene/sources.h"
 
 #include "config/base/file.h"
@@ -51,6 +52,65 @@ static struct key *find_key(const char *text, size_t end)
         if (length < end && strncmp(text + end - length, keys[i].name, length) == 0 &&
             strchr("[ ", text[end - length - 1]))
             return &keys[i];
+    }
+    return NULL;
+}
+
+/* ---- Sections of the four sources ---- */
+
+static const struct {
+    const char *key;
+    const char *sections; /* each between bars */
+    int figures, equations;
+} parts[] = {
+    {"Heidrich and Seidel 1999", "|1|2|3|3.1|3.2|4|4.1|4.2|4.3|4.4|4.5|5|5.1|5.2|6|7|", 10, 9},
+    {"Schroecker 2002",
+     "|1|2|2.1|2.2|3|3.1|3.2|3.3|4|4.1|4.2|4.2.1|4.2.2|4.2.3|4.3|4.4|4.5|5|5.1|5.2|5.3|5.4|6|", 12, 7},
+    {"Knuth et al. 2014", "|1|2|3|3.1|3.2|3.3|3.4|4|5|6|", 8, 5},
+    {"Wimmer n.d.", /* titles of slides */
+     "|Cube Maps for Env Mapping|Sphere Mapping|Dual Paraboloid Mapping|Reflective Environment Mapping|"
+     "Refractive Environment Mapping|Specular Environment Mapping|Irradiance Environment Mapping|"
+     "Normal Mapping|Parallax normal mapping|Offset limited Parallax normal mapping|Mathematics|"
+     "Cylinder Example|Basic Algorithm (Eye Space)|Fast Algorithm (Tangent Space)|Square Patch Assumption|"
+     "Offset Bump Maps|Creating Tangent Space|EMNM|Horizon Mapping|Relief Mapping|Advanced Methods|",
+     0, 0}};
+
+/* One part of a citation: "3.2", "figure 5", "eq. 3", or a slide's title. */
+static bool has_part(size_t source, const char *part, size_t length)
+{
+    static const char *const numbered[] = {"figures ", "figure ", "eq. "};
+    for (size_t i = 0; i < TL_COUNT(numbered); i++)
+        if (strncmp(part, numbered[i], strlen(numbered[i])) == 0) {
+            int number = atoi(part + strlen(numbered[i]));
+            return number > 0 && number <= (i < 2 ? parts[source].figures : parts[source].equations);
+        }
+    char *barred = tl_format("|%.*s|", (int)length, part);
+    bool has = strstr(parts[source].sections, barred) != NULL;
+    free(barred);
+    return has;
+}
+
+/* The first part behind the key which the source lacks; NULL: it has all, up to a bracket or semicolon. A key
+ * without parts stands for the whole. */
+static const char *absent_part(const char *key, const char *behind)
+{
+    size_t source = 0;
+    while (source < TL_COUNT(parts) && strcmp(parts[source].key, key) != 0)
+        source++;
+    if (source == TL_COUNT(parts) || behind[0] != ',')
+        return NULL;
+    bool counts = false; /* figures or equations: the word stands before the first number alone */
+    for (const char *at = behind + 2; *at && !strchr("];", *at);) {
+        size_t length = strcspn(at, ",];");
+        const char *joint = strstr(at, " and ");
+        if (joint && (size_t)(joint - at) < length)
+            length = (size_t)(joint - at);
+        counts = strncmp(at, "fig", 3) == 0 || strncmp(at, "eq.", 3) == 0 ||
+                 (counts && isdigit((unsigned char)at[0]));
+        if (!(counts && isdigit((unsigned char)at[0])) && !has_part(source, at, length))
+            return at;
+        at += length;
+        at += strncmp(at, " and ", 5) == 0 ? 5 : *at == ',' ? 2 : 0;
     }
     return NULL;
 }
@@ -115,7 +175,10 @@ static const char *check_year(const char *text, size_t at, struct key **key)
     *key = find_key(text, end);
     if (!is_in_brackets(text, at))
         return "cites outside of brackets: write [Author Year, section]";
-    return *key ? NULL : "is no key of " REFERENCES;
+    if (!*key)
+        return "is no key of " REFERENCES;
+    return absent_part((*key)->name, text + end) ? "cites a section, figure or equation that the source lacks"
+                                                 : NULL;
 }
 
 static void every_citation_is_a_key(void **state)
@@ -201,12 +264,22 @@ static void the_rules_tell_good_from_bad(void **state)
         {"a lobe\n * [Knuth et\n * al. 2014].", true, true},
         {"\"a lobe [Knuth \"\n    \"et al. 2014]\"", true, true},
         {"[Wimmer n.d.]", true, true},
+        {"[Wimmer n.d., Horizon Mapping]", true, true},
+        {"[Wimmer n.d., Horizon Maps]", true, false},
+        {"[Heidrich and Seidel 1999, 3.1, figure 2 and eq. 2 and 3; Schroecker 2002, 4.2]", true, true},
+        {"[Heidrich and Seidel 1999, 4.6]", true, false},
+        {"[Knuth et al. 2014, figure 9]", true, false},
+        {"[Knuth et al. 2014, 3.1 and eq. 6]", true, false},
         {"(Blinn 1978)", true, false},
         {"Knuth et al. 2014 have", true, false},
         {"[Blinn 1979]", true, false},
         {"[Nobody and Blinn, 1978]", true, false},
-        {"of [" "004] and", true, false},
-        {"of [" "000, 3.1] and", true, false},
+        {"of ["
+         "004] and",
+         true, false},
+        {"of ["
+         "000, 3.1] and",
+         true, false},
         {"The 2014 algorithm, and CIE 1976, VERTICES 2048, Rec. 2020", false, true},
         {"2000 vertices, [2000]", false, true},
     };

@@ -172,6 +172,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c1",
      .scene = "gallery",
      .title = "C1, C2  Heights as normals",
+     .source = "[Wimmer n.d., Mathematics, Cylinder Example, Square Patch Assumption]",
      .text = "A weave of yarns 8 mm apart. A normal map by finite differences assumes square patches.",
      .exact_text = "Blinn's perturbed normal at every sample (C2), which follows the stretch of the "
                    "parametrisation; its own oracle is a cylinder in closed form (test cylinder)",
@@ -184,6 +185,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c3",
      .scene = "gallery",
      .title = "C3, E4  Frames rebuilt every frame",
+     .source = "[Wimmer n.d., Creating Tangent Space]",
      .text = "A highlight that follows the threads, on meshes of three sizes. In the strip the sheet "
              "falls.",
      .exact_text = "the same mesh ray traced",
@@ -200,12 +202,14 @@ static const struct tl_experiment experiments[] = {
      .name = "c4",
      .scene = "gallery",
      .title = "C4  Parallax",
+     .source = "[Wimmer n.d., Parallax normal mapping, Offset limited Parallax normal mapping]",
      .text = "Parallax mapping reads the maps where the view ray meets the mean height, so that bumps "
              "shift with the viewer; a limit on the shift is meant to reduce its errors at grazing "
              "views.",
      .exact_text = MARCHED,
-     .claims = {{"offset-limited parallax", "parallax", "[Wimmer n.d.]"},
-                {"parallax", "normal map alone", "[Wimmer n.d.]"}},
+     .claims = {{"offset-limited parallax", "parallax",
+                 "[Wimmer n.d., Offset limited Parallax normal mapping]"},
+                {"parallax", "normal map alone", "[Wimmer n.d., Parallax normal mapping]"}},
      .solid = "torus",
      .base = {LAMPLIT, COARSE, "weave.texels_per_yarn=16"},
      .reference = {.assignments = {"light.method=reference", "detail.mode=relief"}},
@@ -216,6 +220,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c5",
      .scene = "gallery",
      .title = "C5  Shadows of bumps",
+     .source = "[Wimmer n.d., Horizon Mapping]",
      .text = "Horizon angles are stored for several directions a texel, on both sides of the cloth. "
              "Between two directions the slope of a horizon is linear, which is exact for a straight "
              "yarn.",
@@ -234,6 +239,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c6",
      .scene = "gallery",
      .title = "C6  Relief by number of steps",
+     .source = "[Wimmer n.d., Relief Mapping]",
      .text = "Each step goes to the end of a cone which is so wide that the ray crosses the height field "
              "at most once within it; the last step is then bisected.",
      .exact_text = MARCHED,
@@ -250,6 +256,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c7",
      .scene = "gallery",
      .title = "C7  Yarns that differ in gloss",
+     .source = "[Knuth et al. 2014, 6]",
      .text = "Glossiness varies from texel to texel.",
      .exact_text = "ray traced",
      .solid = "torus",
@@ -262,6 +269,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c8",
      .scene = "gallery",
      .title = "C8  A fine weave far away",
+     .source = "[Toksvig 2005; Olano and Baker 2010]",
      .text = "Yarns are 2.4 mm apart, about two pixels. Without its bumps the cloth would look like "
              "plastic; roughness is widened by the variance of their normals: by one, or by those "
              "along weft "
@@ -275,7 +283,7 @@ static const struct tl_experiment experiments[] = {
      .supersample = 1,
      .motion = TL_MOTION_CAMERA,
      .motion_step = 0.5f,
-     .claims = {{"LEAN", "Toksvig", "[LEAN mapping]"}, {"Toksvig", "no widening", "[Toksvig]"}},
+     .claims = {{"LEAN", "Toksvig", "[Olano and Baker 2010]"}, {"Toksvig", "no widening", "[Toksvig 2005]"}},
      .solid = "torus",
      .base = {LAMPLIT, "weave.pattern=plain", "weave.warp_pitch_mm=2.4", "weave.weft_pitch_mm=2.4",
               "weave.crimp_mm=0.6", "material.specular=[0.15, 0.15, 0.15]"},
@@ -286,6 +294,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c11",
      .scene = "gallery",
      .title = "C11  Maps baked of a finer mesh",
+     .source = "[Heidrich and Seidel 1999, 5]",
      .text = "Wrinkles of 4 mm are in a mesh of 150,000 and one of 130,000 triangles. Garments of "
              "1,536 and 256 triangles, which lie amid them, take their normals and heights from maps of 512 "
              "texels a side (toile bake). Outlines stay those of the coarse meshes.",
@@ -305,6 +314,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c12",
      .scene = "gallery",
      .title = "C12  Normal maps lit in texture space",
+     .source = "[Heidrich and Seidel 1999, 5.1 and figure 9]",
      .text =
          "Lamps light the texels over the UVs of the surface: a matrix makes cosines of their normals, a "
          "table powers of these, and the result is mapped to the surface as any texture [Heidrich and Seidel "
@@ -325,6 +335,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c13",
      .scene = "gallery",
      .title = "C13  Relief at outlines",
+     .source = "[Wimmer n.d., Advanced Methods]",
      .text =
          "View rays bend with the surface, by the turn of its normals within each triangle, and what they "
          "pass "

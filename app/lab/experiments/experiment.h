@@ -65,15 +65,19 @@ enum tl_picture_motion {
 };
 
 /* pictures: a paper expects that one technique is nearer to the exact picture than another. The page compares
- * the measured errors and reports whether they agree. */
+ * the measured errors and reports whether they agree; test `claims` knows where. */
 struct tl_experiment_claim {
     const char *nearer, *farther; /* names of techniques in pictures */
     const char *source;           /* "[Schroecker 2002, figure 9]" */
+    /* where it is not: "torus (edges of 4 cm), sheet", objects and appearances; NULL: it is everywhere */
+    const char *but;
 };
 
 struct tl_experiment {
-    const char *name, *title;  /* "a3"; heading */
-    const char *text;          /* what is seen; results are measured and never part of it */
+    const char *name, *title; /* "a3"; heading */
+    const char *text;         /* what is seen; results are measured and never part of it */
+    /* pictures: of the techniques, "[Knuth et al. 2014, 5 and figure 6]"; NULL: this program */
+    const char *source;
     const char *scene;         /* built-in */
     const char *solid;         /* pictures: garment of the first object, "sphere" or "torus" */
     const char *solid_only[6]; /* ... over all other settings of that object */

@@ -99,6 +99,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d1",
      .scene = "gallery",
      .title = "D1  Cutting the environment into regions",
+     .source = "[Knuth et al. 2014, 3.1, 4 and eq. 1]",
      .text = "The environment is cut into regions of about equal light, and each casts one shadow. Lobes are "
              "exact and shadow maps plain, so that the number of regions is what differs.",
      .exact_text = "ray traced",
@@ -115,6 +116,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d2",
      .scene = "gallery",
      .title = "D2  Filters between the levels of a PEM",
+     .source = "[Knuth et al. 2014, 3.2, 4 and figure 2]",
      .text =
          "Each level of a PEM is half as large as the one before and filtered across the borders of faces; "
          "what a lobe reads is the level of its width.",
@@ -133,6 +135,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d4",
      .scene = "gallery",
      .title = "D3, D4  The level of a glossiness, and exact lobes",
+     .source = "[Knuth et al. 2014, 3.2, eq. 3 and 4, figures 3 and 5]",
      .text =
          "A chain of levels is read at the one whose response to a texel has the volume of the material's "
          "lobe, s = 1 / (1 - g); or each region is convolved with the lobe itself. Gloss alone. The plots "
@@ -153,6 +156,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d5",
      .scene = "gallery",
      .title = "D5  Shadows from moments of depth",
+     .source = "[Knuth et al. 2014, 3.3 and 4]",
      .text =
          "Each region has a map of the mean of depth and of its square; Chebyshev's inequality bounds the "
          "visible share from the two. Moments in half precision take half the memory (D8). A blur as wide as "
@@ -175,6 +179,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d6",
      .scene = "gallery",
      .title = "D6  Adding the regions up",
+     .source = "[Knuth et al. 2014, 3.4, 5 and eq. 5]",
      .text =
          "The paper adds the shadowed light of all regions, twelve PEMs a pass. The same regions also give "
          "the share of the exact light that is hidden, or that is visible.",
@@ -191,6 +196,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d7",
      .scene = "gallery",
      .title = "D7  One lobe or two",
+     .source = "[Knuth et al. 2014, 3.2]",
      .text =
          "One look-up between normal and mirror direction by glossiness, or a diffuse and a glossy one. They "
          "are two materials: each is compared with its own.",
@@ -206,6 +212,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d8",
      .scene = "gallery",
      .title = "D8  Memory",
+     .source = "[Knuth et al. 2014, 5 and figure 8]",
      .text = "Twice the side of a PEM takes four times the memory; a narrow lobe shows what that gives. The "
              "table "
              "below has the bytes of all regions.",
@@ -224,6 +231,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d10",
      .scene = "gallery",
      .title = "D10  Time by regions and by size of shadow maps",
+     .source = "[Knuth et al. 2014, 5 and figure 7]",
      .text = "The 2014 algorithm, as in figure 7 of [Knuth et al. 2014]: the plot below has the time of a "
              "frame of "
              "each row, as measured in this run.",
@@ -240,6 +248,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d11",
      .scene = "gallery",
      .title = "D11  An environment that moves",
+     .source = "[Knuth et al. 2014, 5]",
      .text = "Each frame has an environment of its own, a file of a sequence: regions are cut and filtered "
              "again, or their rays sorted again. The pictures are of the first frame; in the strip the "
              "sequence plays.",
@@ -291,6 +300,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d14",
      .scene = "gallery",
      .title = "D14  Near mirrors",
+     .source = "[Knuth et al. 2014, 6]",
      .text =
          "A lobe of exponent 200 and more is one ray. In the paper what it hits is black; here it is lit.",
      .exact_text = "ray traced, what mirrors hit lit",
@@ -325,6 +335,7 @@ static const struct tl_experiment experiments[] = {
      .name = "d16",
      .scene = "gallery",
      .title = "D16  PEMs as cropped paraboloid maps",
+     .source = "[Knuth et al. 2014, 5]",
      .text =
          "A PEM is black but for its region and what the filters spread its light over. Each level is stored "
          "as parts of paraboloid maps, cropped to that, twice as dense as the cube. The table below has the "

@@ -101,6 +101,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b1",
      .scene = "gallery",
      .title = "B1  Layouts of environment maps",
+     .source = "[Heidrich and Seidel 1999, 4.1, figures 4, 5 and 6]",
      .text =
          "A mirror shows the map itself. The sphere map compresses the directions behind it into its rim, "
          "and has to be rebuilt when the view turns; paraboloids and the cube map do not. In the strip "
@@ -123,6 +124,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b3",
      .scene = "gallery",
      .title = "B3  Levels that keep the light",
+     .source = "[Heidrich and Seidel 1999, 4.2 and eq. 6]",
      .text = "Texels are weighted by their solid angle when a map is reduced [Heidrich and Seidel 1999, eq. "
              "6], so that "
              "even a few texels hold the diffuse light.",
@@ -137,6 +139,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b4",
      .scene = "gallery",
      .title = "B4  Two look-ups of a paraboloid",
+     .source = "[Heidrich and Seidel 1999, 4.1 and eq. 7]",
      .text = "Reflection vectors are computed directly; or by the texture matrix P S M^-1 and a "
              "projective look-up, where the alpha of the first map selects the half.",
      .exact = TL_EXACT_INTEGRAL,
@@ -150,6 +153,8 @@ static const struct tl_experiment experiments[] = {
      .name = "b5",
      .scene = "gallery",
      .title = "B5  Terms that a map can hold",
+     .source =
+         "[Heidrich and Seidel 1999, 4.3, 4.5 and figure 8; Wimmer n.d., Refractive Environment Mapping]",
      .text = "Each picture shows one term alone: prefiltered for a diffuse or a glossy lobe, and looked "
              "up along the reflected ray, the refracted ray, or straight through.",
      .exact = TL_EXACT_INTEGRAL,
@@ -166,6 +171,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b2",
      .scene = "gallery",
      .title = "B2  The scene in its own map",
+     .source = "[Wimmer n.d., Cube Maps for Env Mapping]",
      .text = "The environment map is captured from the middle of the scene, so that the reflections "
              "include the ground, as it is seen from there. A map knows no shadows, and no mirror in a "
              "mirror: the exact picture has both. In the strip the camera turns.",
@@ -185,13 +191,15 @@ static const struct tl_experiment experiments[] = {
      .name = "b6",
      .scene = "gallery",
      .title = "B6  Fresnel's term from a table of one row",
-     .text = "The indices of refraction are those of the paper's figure 7. Reflection that is added to "
-             "the light of the base creates energy at grazing angles; a coat transmits only the rest.",
+     .source = "[Heidrich and Seidel 1999, 4.4 and figure 7]",
+     .text = "A mirror over a diffuse base, with the indices of refraction of the paper's figure 7. "
+             "Reflection that is added to the light of the base creates energy at grazing angles; a coat "
+             "transmits only the rest.",
      .exact = TL_EXACT_INTEGRAL,
      .exact_text = "the environment summed over all directions at every sample, without a map",
      .side = 384,
      .solid = "torus",
-     .base = {UNSEWN, "light.method=maps", "maps.size=128", "material.fresnel=dielectric",
+     .base = {UNSEWN, "light.method=maps", "maps.mode=mirror", "maps.size=128", "material.fresnel=dielectric",
               "material.specular=[1, 1, 1]"},
      .ids = {"B6"},
      METHODS(techniques)},
@@ -199,6 +207,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b7",
      .scene = "gallery",
      .title = "B7  Bumps under an environment",
+     .source = "[Heidrich and Seidel 1999, 5.2 and figure 10]",
      .text = "Normal maps in tangent frames that are rebuilt every frame; the environment is looked up "
              "in world space at every pixel.",
      .exact = TL_EXACT_INTEGRAL,
@@ -215,6 +224,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b8",
      .scene = "gallery",
      .title = "B8  A pass for each texture",
+     .source = "[Heidrich and Seidel 1999, 4.1 and 4.4]",
      .text = "Fresnel's term is drawn into the alpha of a target, then the mirror's map is added multiplied "
              "by it, and the diffuse map by what it leaves [Heidrich and Seidel 1999, 4.4]; a paraboloid's "
              "maps are added one half at a time [4.2]. A target of 8 bits has 255 steps up to a radiance of "
@@ -232,6 +242,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b8_vectors",
      .scene = "gallery",
      .title = "B8  Reflection vectors at vertices",
+     .source = "[Heidrich and Seidel 1999, 4.1; Wimmer n.d., Reflective Environment Mapping]",
      .text = "Reflection vectors are computed at vertices and interpolated, as OpenGL generates texture "
              "coordinates. They come shorter than 1, which a cube map ignores; spheres and paraboloids take "
              "them for unit vectors.",
@@ -248,6 +259,7 @@ static const struct tl_experiment experiments[] = {
      .name = "b8_light_maps",
      .scene = "gallery",
      .title = "B8  Light maps",
+     .source = "[Heidrich and Seidel 1999, 4.3]",
      .text =
          "Where neither light nor surfaces move, diffuse light with its shadows is baked into a texture over "
          "each surface's UVs, and multiplied by the material's colour [Wimmer n.d.].",

@@ -83,6 +83,7 @@ static const struct tl_experiment experiments[] = {
      .name = "c10",
      .scene = "gallery",
      .title = "C10  Threads, fuzz, knits",
+     .source = "[Sadeghi et al. 2013]",
      .text = "Light that has been inside a thread is a coloured band under the white light of its surface; "
              "in shot "
              "silk warps and wefts have bands of different colours. Under an environment a few lobes stand "
@@ -120,6 +121,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a13",
      .scene = "gallery",
      .title = "A13  Tables factored out of samples",
+     .source = "[Heidrich and Seidel 1999, 6; McCool et al. 2001]",
      .text =
          "Samples of each model, 12 for each texel along and across, are factored numerically into four "
          "tables: of "

@@ -201,9 +201,11 @@ static const struct tl_experiment experiments[] = {
      .name = "a1",
      .scene = "gallery",
      .title = "A1  Torrance-Sparrow from two tables",
+     .source = "[Heidrich and Seidel 1999, 3.1, eq. 1 and figure 2]",
      .text =
          "F D and G / (pi cos b) are stored in one table each and multiplied at every pixel "
-         "[Heidrich and Seidel 1999, section 3.1]. A table holds one f0, glossiness and width: what hems "
+         "[Heidrich and Seidel 1999, 3.1 and figure 2]. A table holds one f0, glossiness and width: what "
+         "hems "
          "and stitches change of them from pixel to pixel it leaves out, the formula does not. The torus has "
          "neither.",
      .exact_text = "the formula itself, evaluated in float at every sample",
@@ -218,6 +220,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a2",
      .scene = "gallery",
      .title = "A2  The unbounded factor",
+     .source = "[Heidrich and Seidel 1999, 3.1]",
      .text = "G / (pi cos b) grows without bound towards grazing views. Fixed-point hardware clamps it "
              "to 1, which darkens these views. Dividing the table by its maximum, and multiplying by it "
              "again in the shader, avoids that, but leaves fewer bits for all other views. The lamp is "
@@ -236,6 +239,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a3",
      .scene = "gallery",
      .title = "A3  Phong, Blinn-Phong and cosine lobe",
+     .source = "[Heidrich and Seidel 1999, 3.1]",
      .text = "Each model is read from one table.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",
@@ -247,6 +251,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a4",
      .scene = "gallery",
      .title = "A4  Ward's elliptical Gaussian",
+     .source = "[Heidrich and Seidel 1999, 3.2]",
      .text = "The facets have different slopes along weft and warp; the highlight is elongated along the "
              "direction of "
              "the larger slopes. All are read from tables.",
@@ -260,6 +265,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a5",
      .scene = "gallery",
      .title = "A5  Banks's threads",
+     .source = "[Heidrich and Seidel 1999, 3.2, eq. 4 and figure 3]",
      .text = "A thread has a circle of normals; the normal in the plane of thread and lamp is used. "
              "All are read from a table.",
      .exact_text = "the formula itself, evaluated in float at every sample",
@@ -272,6 +278,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a6",
      .scene = "gallery",
      .title = "A6  Coordinates of the tables",
+     .source = "[Heidrich and Seidel 1999, 3.1, eq. 2 and 3]",
      .text =
          "The coordinates of a table are affine in the normal where lamp and viewer are at infinity: one "
          "texture matrix a table yields them at vertices [Heidrich and Seidel 1999, eq. 2 and 3], or at "
@@ -280,7 +287,7 @@ static const struct tl_experiment experiments[] = {
          "a local viewer; or at pixels.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .claims = {{"pixel", "vertex", "[Heidrich and Seidel 1999, 3.1]"},
-                {"vertex", "matrix", "[Heidrich and Seidel 1999, 3.1]"}},
+                {"vertex", "matrix", "[Heidrich and Seidel 1999, 3.1]", "sheet (far lamp)"}},
      .solid = "torus",
      .base = {LAMPLIT, UNSEWN, "shading.reflectance=table", "material.model=blinn_phong", SPECULAR},
      .reference = {.assignments = {"shading.coordinates=pixel", "shading.reflectance=direct"}},
@@ -291,6 +298,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a7",
      .scene = "gallery",
      .title = "A7  Passes",
+     .source = "[Heidrich and Seidel 1999, 3.1]",
      .text = "Hardware with one texture a pass multiplies the factors by blending; values beyond the "
              "range or the precision of the target are lost.",
      .exact_text = "the formula itself, evaluated in float at every sample",
@@ -306,10 +314,13 @@ static const struct tl_experiment experiments[] = {
      .name = "a8",
      .scene = "gallery",
      .title = "A8  How often light is evaluated",
+     .source = "[Heidrich and Seidel 1999, 3.1; Schroecker 2002, 2.1]",
      .text = "Gouraud evaluates light at vertices and interpolates it; fast Phong interpolates vectors and "
              "does not normalise them again.",
      .exact_text = "vectors normalised at every sample of the same mesh (Phong shading)",
-     .claims = {{"fast Phong", "Gouraud", "[Heidrich and Seidel 1999, 3.1]"}},
+     .claims =
+         {{"fast Phong", "Gouraud", "[Heidrich and Seidel 1999, 3.1]",
+           "torus (edges of 4 cm), sheet (edges of 4 cm), sheet (edges of 2 cm), sheet (edges of 1 cm)"}},
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR},
      .reference = {.assignments = {"shading.frequency=phong"}},
@@ -320,13 +331,14 @@ static const struct tl_experiment experiments[] = {
      .name = "a9",
      .scene = "gallery",
      .title = "A9  Normalisation of interpolated vectors",
+     .source = "[Schroecker 2002, 4.2, 5.1 and figure 9]",
      .text = "Interpolated vectors are made unit by a cube map of 8 or 16 bits, by one step of Newton's "
              "method, or not at all, as in figure 9 of [Schroecker 2002]. Edges are 8 mm long. The plot "
              "below has the same "
              "errors over the angle between two neighbouring vertices.",
      .exact_text = "normalised in float",
-     .claims = {{"one Newton step", "8-bit cube map", "[Schroecker 2002, figure 9]"},
-                {"16-bit cube map", "one Newton step", "[Schroecker 2002, figure 9]"},
+     .claims = {{"one Newton step", "8-bit cube map", "[Schroecker 2002, figure 9]", "sheet"},
+                {"16-bit cube map", "one Newton step", "[Schroecker 2002, figure 9]", "torus"},
                 {"8-bit cube map", "none", "[Schroecker 2002, figure 9]"}},
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR, "cloth.edge_m=0.008"},
@@ -337,10 +349,11 @@ static const struct tl_experiment experiments[] = {
      .name = "a10",
      .scene = "gallery",
      .title = "A10  Powers at low precision",
+     .source = "[Schroecker 2002, 5.2 and figure 10]",
      .text = "Repeated squaring in fixed point, which knows powers of two alone, and a table with linear "
              "interpolation, as in figure 10 of [Schroecker 2002].",
      .exact_text = "the power in float",
-     .claims = {{"table", "squaring, 8+1 bit", "[Schroecker 2002, figure 10]"}},
+     .claims = {{"table", "squaring, 8+1 bit", "[Schroecker 2002, figure 10]", "sheet (n = 8)"}},
      .solid = "sphere",
      .base = {LAMPLIT, "material.specular=[0.2, 0.2, 0.2]"},
      .reference = {.assignments = {"shading.power=pow"}},
@@ -351,6 +364,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a11",
      .scene = "gallery",
      .title = "A11  The space of lighting",
+     .source = "[Schroecker 2002, 4.3]",
      .text = "Vectors are transformed into tangent space at vertices and interpolated, or light is "
              "evaluated in world space at every pixel: the results differ by how much the tangent frame "
              "turns within a triangle.",
@@ -365,6 +379,7 @@ static const struct tl_experiment experiments[] = {
      .name = "a12",
      .scene = "gallery",
      .title = "A12  A bumped surface's own shadow",
+     .source = "[Schroecker 2002, 4.5 and figure 8]",
      .text = "Light ends at the horizon of the smooth surface, by a step or by a steep ramp. The lamp is at "
              "the side; in the strip it moves.",
      .exact = TL_EXACT_NONE,

@@ -75,8 +75,8 @@ double tl_gallery_error_less_noise(double rel_rmse, double noise)
     return sqrt(fmax(rel_rmse * rel_rmse - noise * noise, unresolved * unresolved));
 }
 
-static bool measure_error(const struct tl_experiment *experiment, const struct tl_gallery_shot *tested,
-                          const struct tl_gallery_shot *exact, double *error_of, tl_error *error)
+bool tl_gallery_measure_error(const struct tl_experiment *experiment, const struct tl_gallery_shot *tested,
+                              const struct tl_gallery_shot *exact, double *error_of, tl_error *error)
 {
     struct tl_comparison result;
     if (!tl_image_compare(&tested->light, &exact->light, experiment->by_flip ? -1 : 0, 0, &result, error))
@@ -103,8 +103,9 @@ static bool draw_panels(struct gallery_drawing *drawing, struct tl_gallery_entry
     for (int i = 0; done && i < TL_PICTURE_OBJECTS; i++) {
         rows[i].tested = &tested[i];
         rows[i].exact = tl_shots_exact(&drawing->shots, &entry->picture, i, error);
-        done = rows[i].exact && tl_shots_draw(&drawing->shots, &entry->picture, i, &tested[i], error) &&
-               measure_error(experiment, &tested[i], rows[i].exact, &entry->figures.error[i], error);
+        done =
+            rows[i].exact && tl_shots_draw(&drawing->shots, &entry->picture, i, &tested[i], error) &&
+            tl_gallery_measure_error(experiment, &tested[i], rows[i].exact, &entry->figures.error[i], error);
         entry->figures.time_ms[i] = tested[i].time_ms;
     }
     if (done) {

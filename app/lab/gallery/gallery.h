@@ -8,6 +8,7 @@
 #define TOILE_APP_LAB_GALLERY_GALLERY_H
 
 #include "app/lab/experiments/picture.h"
+#include "app/lab/gallery/panels.h"
 
 #include <cjson/cJSON.h>
 
@@ -44,6 +45,11 @@ struct tl_gallery {
  * The two are independent, so that variances add. Less than a quarter of the noise is not resolved, and
  * counts as that. What errs more never gets the smaller figure. Pure. */
 double tl_gallery_error_less_noise(double rel_rmse, double noise);
+
+/* The error of a picture of an experiment by its metric: relative RMSE less the noise of a traced exact
+ * picture, or mean FLIP. */
+bool tl_gallery_measure_error(const struct tl_experiment *experiment, const struct tl_gallery_shot *tested,
+                              const struct tl_gallery_shot *exact, double *error_of, tl_error *error);
 
 /* The head above an experiment's exact pictures: "exact: ray traced". New string. */
 char *tl_gallery_exact_head(const struct tl_experiment *experiment);

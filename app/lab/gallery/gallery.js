@@ -77,7 +77,7 @@ paragraph("Errors are relative RMSE over covered pixels, or mean FLIP where edge
   "machines. Sentences that compare are made from the figures.");
 for (const section of data.sections) {
   heading(section.title);
-  paragraph(section.text);
+  paragraph(`${section.source}. ${section.text}`);
   paragraph(`${section.is_exact ? "Exact picture" : "No exact picture"}: ${section.exact_text}.`);
   for (const look of looksOf(section))
     for (let object = 0; object < OBJECTS; object++) {

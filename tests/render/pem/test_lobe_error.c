@@ -37,22 +37,30 @@ static void the_lobe_itself_has_no_error(void **state)
         assert_near(error.error, 0.5, 1e-6);
         assert_near(error.energy, 1.5, 1e-6);
         assert_near(error.same_volume, 0, 1e-6);
+        assert_near(error.radial, 0, 1e-6);
     }
 }
 
 /* L1 distance of K_a and K_b, a < b, about a point: (a + 1) c^a and (b + 1) c^b cross once, at c0 = ((a + 1)
- * / (b + 1))^(1 / (b - a)), so it is 2 (c0^(a + 1) - c0^(b + 1)). The texel is small against both. */
+ * / (b + 1))^(1 / (b - a)). */
+static double distance_of(double a, double b)
+{
+    double c0 = pow((a + 1) / (b + 1), 1 / (b - a));
+    return 2 * (pow(c0, a + 1) - pow(c0, b + 1));
+}
+
+/* The texel is small against all lobes. Cubes of lobes are lobes of three times the exponent. */
 static void the_distance_of_two_lobes_is_the_closed_form(void **state)
 {
     (void)state;
     const float pairs[][2] = {{1, 2}, {4, 5}, {20, 30}, {100, 400}};
     struct tl_lobe_source source = tl_lobe_source(1024, (vec3s){{0.3f, -0.5f, 0.7f}});
     for (int i = 0; i < 4; i++) {
-        double a = (double)pairs[i][0], b = (double)pairs[i][1], c0 = pow((a + 1) / (b + 1), 1 / (b - a));
-        double expected = 2 * (pow(c0, a + 1) - pow(c0, b + 1));
+        double a = (double)pairs[i][0], b = (double)pairs[i][1];
         struct fake fake = {&source, pairs[i][1], 1};
         struct tl_lobe_error error = tl_lobe_measure(&source, pairs[i][0], show_fake, &fake);
-        assert_near(error.error, expected, 0.002); /* 64 rings */
+        assert_near(error.error, distance_of(a, b), 0.002); /* 64 rings */
+        assert_near(error.radial, distance_of(3 * a, 3 * b), 0.005); /* of which a third is far out */
         assert_near(error.energy, 1, 0.001);
     }
 }
