@@ -287,7 +287,8 @@ static void test_paper_preset(void **state)
     tl_error error = {0};
     static const char *const paper[] = {"scene.preset=paper"};
     assert_ok(load(NULL, paper, 1, &error), error);
-    assert_int_equal(settings.light.lobe, TL_LOBE_SINGLE);
+    assert_int_equal(settings.light.lobe, TL_LOBE_DUAL);
+    assert_int_equal(settings.light.moments, TL_MOMENTS_HALF);
     assert_int_equal(settings.light.pems_per_pass, 12);
     assert_int_equal(settings.light.pem_size, 128);
     assert_true(settings.light.bleed_reduction == 0);

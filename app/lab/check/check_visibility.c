@@ -40,9 +40,17 @@ static double depth_deviation(const float *texel)
     return !isfinite(depth) ? INFINITY : depth < 0 ? -depth : depth > 1 ? depth - 1 : 0;
 }
 
+/* A map is drawn, blurred along rows and along columns. In half precision each rounds both moments by up to
+ * 2^-11 of themselves, which the square of the first has twice. */
+static double moments_bound(const struct tl_light_params *light)
+{
+    return light->visibility == TL_VISIBILITY_VSM && light->moments == TL_MOMENTS_HALF ? 9 * 0x1p-11 : 1e-5;
+}
+
 void tl_measure_moments(const struct tl_checked *checked, struct tl_finding *finding)
 {
     const struct tl_resources *inside = tl_renderer_frame_resources(checked->renderer);
+    finding->bound = moments_bound(&checked->settings->light);
     if (!has_facts(checked, TL_BIT(TL_SCENE_MAPS)))
         return;
     for (int i = 0; i < inside->regions.count; i++) {

@@ -35,12 +35,7 @@ static const struct tl_experiment_appearance cloths[] = {
 
 #define BUDGET(ms) .page = #ms " ms", .group = "budget", PRESET("review"), .budget_ms = ms
 static const struct tl_technique overall[] = {
-    {.page = "paper",
-     .group = "presets",
-     PRESET("paper", "light.lobe=dual"),
-     .quick = true,
-     .shown = true,
-     .once = true},
+    {.page = "paper", .group = "presets", PRESET("paper", NULL), .quick = true, .shown = true, .once = true},
     {.page = "draft", .group = "presets", PRESET("draft"), .quick = true, .shown = true},
     {.page = "review", .group = "presets", PRESET("review"), .quick = true, .shown = true},
     {.page = "unshadowed", .group = "presets", PRESET("review", "light.method=unshadowed"), .shown = true},

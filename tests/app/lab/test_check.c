@@ -129,7 +129,7 @@ static void take_down(struct stand **handle)
 }
 
 static const char *const paper[] = {"scene.preset=paper", "light.regions=24", "light.map_size=128",
-                                    "light.pem_size=32", "light.lobe=dual"};
+                                    "light.pem_size=32"};
 static const char *const slices[] = {
     "light.visibility=depth", "light.prefilter=slices", "light.composition=difference",
     "light.regions=24",       "light.pem_size=32",      "light.map_size=256",
@@ -148,9 +148,8 @@ static struct stand *by_chains(void)
 
 static struct stand *by_paraboloids(void)
 {
-    static const char *const settings[] = {"scene.preset=paper", "light.regions=24",
-                                           "light.map_size=128", "light.pem_size=32",
-                                           "light.lobe=dual",    "light.pem_layout=paraboloid"};
+    static const char *const settings[] = {"scene.preset=paper", "light.regions=24", "light.map_size=128",
+                                           "light.pem_size=32", "light.pem_layout=paraboloid"};
     return stand_up(settings, TL_COUNT(settings));
 }
 
@@ -547,7 +546,7 @@ static void moments_that_cannot_be_are_named(void **state)
     (void)state;
     struct stand *stand = by_chains();
     unsigned texture = tl_shadow_maps_texture(inside(stand->renderer)->maps, 0);
-    const float less[2] = {0.5f, 0.2499f}, none[2] = {NAN, 1};
+    const float less[2] = {0.5f, 0.245f}, none[2] = {NAN, 1};
     glTextureSubImage3D(texture, 0, 30, 20, 3, 1, 1, 1, GL_RG, GL_FLOAT, less);
     assert_breaks(&stand->checked, "maps.moments", "map of region 3, texel 30, 20");
     glTextureSubImage3D(texture, 0, 30, 20, 3, 1, 1, 1, GL_RG, GL_FLOAT, none);
