@@ -5,7 +5,8 @@
  * The order silk < cotton < denim must hold. The published bands (silk [Matsudaira and Yang 2003], plain
  * cotton [Gan et al. 1991], the usual class of denim) come from other samples than our measured fabrics, and
  * real cloth has several stable drapes, so only the mean over seeds is checked against them. The number of
- * folds is printed, not checked. With names of fabrics as arguments the program prints their drape.
+ * folds is printed, not checked. With names of fabrics as arguments the program prints their drape, of discs
+ * with edges of TOILE_EDGE_M metres; else 0.010.
  */
 #include "assets/specimen/cusick.h"
 #include "assets/specimen/specimen.h"
@@ -63,9 +64,11 @@ static double drape_coefficient(const char *name)
 {
     const int seeds = 3;
     struct tl_cloth_fabric fabric = fabric_read(name);
+    const char *wanted = getenv("TOILE_EDGE_M");
+    const double edge_m = wanted ? atof(wanted) : 0.010;
     double sum = 0;
     for (int seed = 0; seed < seeds; seed++)
-        sum += drape_once(&fabric, 0.010, seed).coefficient / seeds;
+        sum += drape_once(&fabric, edge_m, seed).coefficient / seeds;
     printf("%s: DC %.1f %%\n", name, sum);
     return sum;
 }
