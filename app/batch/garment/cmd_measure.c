@@ -21,14 +21,21 @@
 #define CM2     1e4
 #define PERCENT 100
 
+/* Before the garment is draped. */
+static bool check_interval(const struct tl_arguments *arguments, tl_error *error)
+{
+    if (arguments->interval && arguments->output)
+        return tl_fail(error, TL_USAGE, "--interval: is printed, as text or with --json: leave -o out");
+    return !(arguments->interval && arguments->first_frame > 0) ||
+           tl_fail(error, TL_USAGE, "--interval: is that of frame 0: leave --frame out");
+}
+
 static bool check_output(const struct tl_arguments *arguments, tl_error *error)
 {
     const char *output = arguments->output;
     struct tl_writer writer;
     if (!output)
         return true;
-    if (arguments->interval)
-        return tl_fail(error, TL_USAGE, "--interval: is printed, as text or with --json: leave -o out");
     if (!tl_path_has_extension(output, "csv"))
         return tl_fail(error, TL_USAGE, "%s: unknown kind of file: end the name in .csv", output);
     if (!tl_writer_begin(&writer, output, error))
@@ -317,7 +324,8 @@ static bool report(const tl_session *session, const struct tl_measures *measures
 bool tl_command_measure(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_settings settings;
-    if (!check_output(arguments, error) || !tl_settings_of_command(arguments, true, &settings, error))
+    if (!check_interval(arguments, error) || !check_output(arguments, error) ||
+        !tl_settings_of_command(arguments, true, &settings, error))
         return false;
     settings.scene.smooth = false; /* the cloth itself is measured */
     tl_session *session = tl_session_create(&settings, error);

@@ -28,13 +28,13 @@ static const struct start starts[TL_INTERVAL_STARTS] = {
 static bool check(const tl_session *session, tl_error *error)
 {
     const enum tl_garment_state state = tl_session_garment_state(session);
-    if (tl_session_frame_number(session) > 0)
-        return tl_fail(error, TL_USAGE, "--interval: is that of frame 0: leave --frame out");
     if (tl_session_plays_clip(session))
         return tl_fail(error, TL_USAGE,
                        "--interval: is that of a body that stands: add --set scene.clip=none");
     if (state == TL_GARMENT_IS_NOT_CLOTH)
         return tl_fail(error, TL_USAGE, "--interval: the garment is not simulated, and so does not settle");
+    if (!(tl_session_settings(session)->cloth.settle_s > 0))
+        return tl_fail(error, TL_USAGE, "--interval: cloth.settle_s=0 lets nothing settle: leave it out");
     if (tl_session_is_undraped(session))
         return tl_fail(error, TL_USAGE,
                        "--interval: the garment is %s: add --set scene.drape=settle to let it come to rest",

@@ -19,8 +19,9 @@ struct tl_interval {
     struct tl_residual residuals[TL_INTERVAL_STARTS];
 };
 
-/* Takes as long as four drapes; none is kept in the cache. `own`: the measures of the session's garment,
- * which must outlive the interval. On failure `out` is empty. Lifetime: the caller releases `out`. */
+/* The session is at frame 0. Takes as long as four drapes; none is kept in the cache. `own`: the measures of
+ * the session's garment, which must outlive the interval. On failure `out` is empty. Lifetime: the caller
+ * releases `out`. */
 bool tl_interval_take(tl_session *session, const struct tl_measures *own, struct tl_interval *out,
                       tl_error *error);
 void tl_interval_release(struct tl_interval *interval);

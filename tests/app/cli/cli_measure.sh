@@ -57,6 +57,7 @@ neck = interval[\"openings\"][\"neck\"]
 assert neck[\"max\"] > neck[\"min\"] + 0.01, neck'"
 refuse "an interval of a garment as authored" '^toile: --interval: the garment is as authored: add --set scene.drape=settle' measure dress.obj --interval
 refuse "an interval in motion" 'leave --frame out' measure --garment dress $quick --interval --frame 1
+refuse "an interval of what does not settle" "cloth.settle_s=0" measure --garment dress --set cloth.edge_m=0.08 --set cloth.settle_s=0 --interval
 refuse "an interval as CSV" 'leave -o out' measure dress.obj --interval -o interval.csv
 check "a later frame is measured too" sh -c "$TOILE measure dress.obj --frame 2 --quiet | grep -q '^hem '"
 
