@@ -179,9 +179,10 @@ static void test_lights(void **state)
     tl_environment_release(&environment);
 }
 
-/* A point of the ground at the foot of a wall that hides all that lies to the left. */
+/* A point of the ground at the foot of a wall that hides all that lies to the left: white cloth, or a white
+ * gloss of exponent 1 about the mirror direction, which leans to the left. */
 static vec3s draw_foot(tl_renderer *renderer, const tl_environment *environment,
-                       const struct tl_render_settings *settings)
+                       const struct tl_render_settings *settings, bool is_gloss)
 {
     struct test_shape shapes[2] = {
         test_square((vec3s){{0.5f, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 0.5f, 4),
@@ -189,8 +190,9 @@ static vec3s draw_foot(tl_renderer *renderer, const tl_environment *environment,
     };
     tl_surface surfaces[2];
     for (int i = 0; i < 2; i++) {
-        shapes[i].material.diffuse = (vec3s){{1, 1, 1}};
-        shapes[i].material.specular = (vec3s){{0, 0, 0}};
+        shapes[i].material.diffuse = is_gloss ? (vec3s){{0, 0, 0}} : (vec3s){{1, 1, 1}};
+        shapes[i].material.specular = is_gloss ? (vec3s){{1, 1, 1}} : (vec3s){{0, 0, 0}};
+        shapes[i].material.glossiness = 0;
         test_shape_refresh(&shapes[i]);
         surfaces[i] = shapes[i].surface;
     }
@@ -207,7 +209,8 @@ static vec3s draw_foot(tl_renderer *renderer, const tl_environment *environment,
 /* Half of the sky is hidden, and all of the red: PEMs and lights lose red alone; occlusion halves every
  * colour; occlusion by colour knows red from green. Unshadowed it is a half each. The regions that the wall's
  * plane cuts, and those at the horizon, are all or nothing: of 96 a few, a few hundredths of the light each.
- */
+ * Gloss about r has (1 - r.x) / 2 of its light from the left; occlusion takes as much of it as of the diffuse
+ * light. */
 static void test_methods_at_a_wall(void **state)
 {
     struct test_device *device = *state;
@@ -226,10 +229,16 @@ static void test_methods_at_a_wall(void **state)
         settings.light.cut = TL_CUT_SPHERE;
         settings.light.regions = 96;
         settings.light.map_size = 512;
-        vec3s actual = draw_foot(device->renderer, &environment, &settings);
+        vec3s actual = draw_foot(device->renderer, &environment, &settings, false);
         assert_near(actual.x, methods[i].red, 0.04);
         assert_near(actual.y, methods[i].green, 0.04);
         assert_near(actual.z, methods[i].blue, 0.04);
+        const float lean = 0.1f / sqrtf(1.01f); /* -r.x */
+        actual = draw_foot(device->renderer, &environment, &settings, true);
+        assert_near(actual.x, methods[i].red * (1 + lean), 0.04);
+        assert_near(actual.y, methods[i].green * (1 - lean), 0.04);
+        const bool sees_half = methods[i].method == TL_METHOD_PEM || methods[i].method == TL_METHOD_LIGHTS;
+        assert_near(actual.z, methods[i].blue * (sees_half ? 1 - lean : 1), 0.04);
     }
     tl_environment_release(&environment);
 }
@@ -252,6 +261,32 @@ static void test_sun_apart(void **state)
             vec3s apart = draw_square(device->renderer, &tilt, 0.5f, &environment, &settings);
             assert_colour(apart, together, 0.02f);
         }
+    tl_environment_release(&environment);
+}
+
+/* 2.1 degrees in radius. */
+static vec3s small_sun(vec3s d)
+{
+    bool sun = glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}})) > 0.9993f;
+    return sun ? (vec3s){{3000, 2700, 2400}} : (vec3s){{0.5f, 0.6f, 0.7f}};
+}
+
+/* A mirror lobe as narrow as the sun, along it: the share of K_s within the sun's radius R is 1 - cos^(s + 1)
+ * R. What stands for it, a lobe broadened by the sun's spread, R / sqrt 2, is 1.03 of that at this exponent;
+ * broadened by R it would be 0.82. */
+static void test_sun_in_a_narrow_lobe(void **state)
+{
+    struct test_device *device = *state;
+    tl_environment environment = test_environment(1024, 512, small_sun);
+    struct tl_render_settings settings =
+        settings_of(TL_METHOD_UNSHADOWED, TL_PREFILTER_CHAIN, TL_COMPOSE_RATIO);
+    settings.light.sun = true;
+    vec3s sun = glms_vec3_normalize((vec3s){{0.3f, 0.8f, 0.5f}});
+    struct tilt tilt = {{{0, 1, 0}}, {{1, 0, 0}}, {{-sun.x, sun.y, -sun.z}}};
+    vec3s light = draw_square(device->renderer, &tilt, 0.999f, &environment, &settings);
+    double share = (double)light.x / 3000, exact = 1 - pow(0.9993, 1001);
+    print_message("a sun in a lobe of exponent 1000: %.3f of its light, %.3f by integration\n", share, exact);
+    assert_near(share / exact, 1.03, 0.06); /* its texels are a twelfth of it wide */
     tl_environment_release(&environment);
 }
 
@@ -408,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_lights),
         cmocka_unit_test(test_methods_at_a_wall),
         cmocka_unit_test(test_sun_apart),
+        cmocka_unit_test(test_sun_in_a_narrow_lobe),
         cmocka_unit_test(test_sun_casts_a_shadow),
         cmocka_unit_test(test_average_restarts),
         cmocka_unit_test(test_threads_by_maps),

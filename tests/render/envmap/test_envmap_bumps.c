@@ -5,6 +5,7 @@
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "config/base/memory.h"
+#include "render/brdf/fresnel.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
 #include "render/env/lobes.h"
@@ -159,16 +160,31 @@ static vec3s bumped_normal(const struct scene *scene, const struct hit *hit)
     return glms_vec3_normalize(glms_vec3_muladds(hit->normal, bump.z, n));
 }
 
+static vec3s mirror_of(vec3s n, vec3s viewer)
+{
+    return glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(glms_vec3_dot(n, viewer), 0)), viewer);
+}
+
+/* A coat is smooth: its share and its mirror are about the normal without bumps. */
+static vec3s coated(const struct scene *scene, const struct tl_lobes *lobes, vec3s smooth, vec3s viewer,
+                    vec3s below)
+{
+    float share =
+        scene->sheet.material.coat * tl_fresnel_dielectric(1.5f, fmaxf(glms_vec3_dot(smooth, viewer), 0));
+    vec3s over = tl_lobes_fetch(lobes, mirror_of(smooth, viewer), tl_exponent_blend(tl_lobe_exponent(0.9f)));
+    return glms_vec3_lerp(below, over, share);
+}
+
 static vec3s expected_light(const struct scene *scene, const struct tl_lobes *lobes, const struct hit *hit,
                             vec3s viewer)
 {
-    vec3s n = bumped_normal(scene, hit);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(glms_vec3_dot(n, viewer), 0)), viewer);
+    vec3s n = bumped_normal(scene, hit), mirror = mirror_of(n, viewer);
     if (scene->settings.maps.mode == TL_MAPS_MIRROR)
         return lights(mirror);
     vec3s gloss = tl_lobes_fetch(lobes, mirror, tl_exponent_blend(tl_lobe_exponent(0.9f)));
     vec3s diffuse = tl_lobes_fetch(lobes, n, tl_exponent_blend(1));
-    return glms_vec3_add(gloss, glms_vec3_mul(scene->sheet.material.diffuse, diffuse));
+    vec3s light = glms_vec3_add(gloss, glms_vec3_mul(scene->sheet.material.diffuse, diffuse));
+    return coated(scene, lobes, glms_vec3_normalize(hit->normal), viewer, light);
 }
 
 /* Root mean square error over the pixels that see the sheet, of the brightest light; and the largest. */
@@ -213,17 +229,26 @@ static void mirrors_and_gloss_follow_the_sheet(void **state)
     tl_cube cube = tl_cube_from_environment(&scene.environment, 128);
     struct tl_lobes lobes = {0};
     tl_lobes_make(&lobes, &cube, tl_exponents_needed(0.9f, 0.9f));
-    for (int mode = TL_MAPS_SURFACE; mode <= TL_MAPS_MIRROR; mode++)
+    static const struct {
+        const char *name;
+        int mode;
+        float coat;
+    } kinds[] = {
+        {"surface", TL_MAPS_SURFACE, 0}, {"coat", TL_MAPS_SURFACE, 1}, {"mirror", TL_MAPS_MIRROR, 0}};
+    for (size_t kind = 0; kind < TL_COUNT(kinds); kind++)
         for (int moment = 0; moment < 3; moment++) {
             double worst;
-            scene.settings.maps.mode = mode;
+            scene.settings.maps.mode = kinds[kind].mode;
+            scene.sheet.material.coat = kinds[kind].coat;
+            scene.sheet.material.coat_glossiness = 0.9f;
             deform(&scene, 0.6f * (float)moment, true);
             double error = compare(&scene, device->renderer, &lobes, &worst);
             print_message("%s, moment %d: RMS error %.2f %% of the brightest, largest %.2f %%\n",
-                          mode == TL_MAPS_MIRROR ? "mirror" : "surface", moment, 100 * error, 100 * worst);
+                          kinds[kind].name, moment, 100 * error, 100 * worst);
             assert_true(error < 0.005);
             assert_true(worst < 0.025);
         }
+    scene.sheet.material.coat = 0;
     deform(&scene, 0, true);
     deform(&scene, 1.2f, false); /* positions alone */
     tl_image stale = test_draw(device->renderer, &scene.frame, &scene.settings);

@@ -138,12 +138,13 @@ static vec3s draw_square(tl_renderer *renderer, const struct orientation *o, con
     return colour;
 }
 
-/* With VIS = 1 the PEMs must add up to the undivided environment, filtered and looked up on the CPU. */
-static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), enum tl_cut cut, float glossiness,
-                      float tolerance)
+/* With VIS = 1 the PEMs must add up to the undivided environment, filtered and looked up on the CPU: about
+ * the normal and the mirror direction, or once, between the two by glossiness. */
+static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), enum tl_cut cut,
+                      enum tl_lobe lobes, float glossiness, float tolerance)
 {
     tl_environment environment = test_environment(128, 64, radiance);
-    struct tl_render_settings settings = unshadowed(1, 1, TL_LOBE_DUAL);
+    struct tl_render_settings settings = unshadowed(1, 1, lobes);
     settings.light.cut = (int)cut;
     tl_cube cube = tl_cube_from_environment(&environment, settings.light.pem_size);
     struct tl_chain chain = tl_chain_build(&cube, TL_CHAIN_SQRT_COSINE);
@@ -160,9 +161,12 @@ static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), enum
         vec3s r = glms_vec3_sub(glms_vec3_scale(o.normal, 2 * n_dot_v), o.view);
         vec3s diffuse = tl_chain_sample(&chain, o.normal, lobe->level[0]);
         vec3s gloss = tl_chain_sample(&chain, r, level);
+        vec3s one =
+            tl_chain_sample(&chain, glms_vec3_normalize(glms_vec3_lerp(o.normal, r, glossiness)), level);
         vec3s actual = draw_square(device->renderer, &o, &material, &environment, &settings);
         for (int c = 0; c < 3; c++) {
-            float expected = 0.5f * diffuse.raw[c] + gloss.raw[c];
+            float expected = lobes == TL_LOBE_DUAL ? 0.5f * diffuse.raw[c] + gloss.raw[c]
+                                                   : (0.5f + 0.5f * glossiness) * one.raw[c];
             assert_near(actual.raw[c], expected, tolerance + 4 * HALF_STEP * expected);
         }
     }
@@ -177,26 +181,28 @@ static void check_sum(struct test_device *device, vec3s (*radiance)(vec3s), enum
 static void test_sum_of_pems_smooth(void **state)
 {
     for (int step = 0; step <= 5; step++)
-        check_sum(*state, gradient, TL_CUT_FACES, (float)(step * 51) / 255, 1.3f * 3 * 8.5e-4f);
+        for (int lobes = TL_LOBE_SINGLE; lobes <= TL_LOBE_DUAL; lobes++)
+            check_sum(*state, gradient, TL_CUT_FACES, (enum tl_lobe)lobes, (float)(step * 51) / 255,
+                      1.3f * 3 * 8.5e-4f);
 }
 
 /* The same error is a fiftieth of a texel of 32 a side; neighbours differ by up to one. Faces, borders and
  * corners in a wrong place would show as differences of half. */
 static void test_sum_of_pems_noise(void **state)
 {
-    check_sum(*state, noise, TL_CUT_FACES, 1, 0.04f);
+    check_sum(*state, noise, TL_CUT_FACES, TL_LOBE_DUAL, 1, 0.04f);
 }
 
 /* Regions of the sphere lie on several faces. */
 static void test_sum_of_pems_of_the_sphere(void **state)
 {
-    check_sum(*state, gradient, TL_CUT_SPHERE, 0.6f, 1.3f * 3 * 8.5e-4f);
+    check_sum(*state, gradient, TL_CUT_SPHERE, TL_LOBE_DUAL, 0.6f, 1.3f * 3 * 8.5e-4f);
 }
 
 /* A sun of 1e6 does not fit a half float; it must come back as it was. */
 static void test_sum_of_pems_sun(void **state)
 {
-    check_sum(*state, sunny, TL_CUT_FACES, 0.6f, 1e6f * 2e-3f * HALF_STEP);
+    check_sum(*state, sunny, TL_CUT_FACES, TL_LOBE_DUAL, 0.6f, 1e6f * 2e-3f * HALF_STEP);
 }
 
 static double largest_difference(const tl_image *a, const tl_image *b)

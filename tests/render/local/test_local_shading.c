@@ -127,6 +127,38 @@ static void gouraud_loses_the_highlight_first(void **state)
     tl_image_release(&exact);
 }
 
+/* A8. A surface that turns its backs is one that is turned inside out: the same triangles, wound the other
+ * way with opposite normals, have the same picture, but for the order in which corners are interpolated. */
+static void backs_are_fronts_turned_inside_out(void **state)
+{
+    struct test_device *device = *state;
+    tl_image pictures[2];
+    for (int frequency = 0; frequency < 3; frequency++) {
+        for (int inside = 0; inside < 2; inside++) {
+            struct test_scene scene;
+            struct test_shape shape = shiny_sphere(24, 0.75f);
+            for (size_t i = 0; inside && i < shape.mesh.vertex_count; i++)
+                shape.mesh.normals[i] = glms_vec3_negate(shape.mesh.normals[i]);
+            for (size_t i = 0; inside && i < shape.mesh.index_count; i += 3) {
+                const uint32_t second = shape.mesh.indices[i + 1];
+                shape.mesh.indices[i + 1] = shape.mesh.indices[i + 2];
+                shape.mesh.indices[i + 2] = second;
+            }
+            test_scene_open_lamplit(&scene, shape, 96, 96);
+            scene.settings.shading.frequency = frequency;
+            pictures[inside] = test_scene_draw(&scene, device->renderer);
+            test_scene_close(&scene);
+        }
+        const struct test_difference off = test_compare(&pictures[1], &pictures[0]);
+        print_message("frequency %d: backs are off by %.1e of %zu pixels\n", frequency, off.rel_rmse,
+                      off.pixels);
+        assert_true(off.pixels > 1000);
+        assert_true(off.rel_rmse < 1e-5);
+        tl_image_release(&pictures[0]);
+        tl_image_release(&pictures[1]);
+    }
+}
+
 /* The hit of a pixel's ray and the vectors at the corners of its triangle. */
 struct hit {
     bool is_hit;
@@ -341,7 +373,8 @@ static void normalises_as_the_cpu_does(void **state)
 /* A10. */
 static void raises_as_the_cpu_does(void **state)
 {
-    static const float glossinesses[] = {0.5f, 0.75f, 0.9375f, 0.984375f}; /* exponents 8, 16, 64, 256 */
+    /* Exponents 8, 16, 64, 256; and 40 and 50, for which squaring takes 32 and 64. */
+    static const float glossinesses[] = {0.5f, 0.75f, 0.9375f, 0.984375f, 0.9f, 0.92f};
     struct test_device *device = *state;
     for (size_t g = 0; g < TL_COUNT(glossinesses); g++) {
         struct test_scene scene;
@@ -508,6 +541,7 @@ int main(void)
         cmocka_unit_test(coordinates_differ_close_by),
         cmocka_unit_test(a_texture_matrix_gives_the_coordinates),
         cmocka_unit_test(gouraud_loses_the_highlight_first),
+        cmocka_unit_test(backs_are_fronts_turned_inside_out),
         cmocka_unit_test(normalises_as_the_cpu_does),
         cmocka_unit_test(raises_as_the_cpu_does),
         cmocka_unit_test(tangent_space_differs_with_the_frames_turn),

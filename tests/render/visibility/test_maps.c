@@ -134,7 +134,9 @@ static void test_half_plane_penumbra(void **state)
     tl_environment_release(&environment);
 }
 
-/* The shadow of a ball on the ground lies where the light's direction puts it. */
+/* The shadow of a ball on the ground lies where the light's direction puts it, and is as large as the ball's
+ * disc seen aslant. The ground lies behind the map's sphere: it is kept there all the same, and is lit beside
+ * the shadow. */
 static void test_shadow_position(void **state)
 {
     struct test_device *device = *state;
@@ -148,7 +150,7 @@ static void test_shadow_position(void **state)
     tl_frame frame =
         test_frame((vec3s){{-1.5f, 3, -1}}, (vec3s){{-0.3f, 0, -0.2f}}, 20, &ball.surface, 1, &environment);
     tl_image visibility = visibility_image(device, &frame, settings);
-    double weight = 0, mean_x = 0, mean_z = 0;
+    double weight = 0, mean_x = 0, mean_z = 0, area = 0;
     for (int y = 0; y < settings.image.height; y++)
         for (int x = 0; x < settings.image.width; x++) {
             const float *pixel = test_pixel(&visibility, x, y);
@@ -157,6 +159,9 @@ static void test_shadow_position(void **state)
             if (pixel[3] < 1 || pixel[0] < 0 || hypotf(point.x + 0.3f, point.z + 0.2f) > 0.35f)
                 continue;
             double shadow = (double)(1 - pixel[0]);
+            vec3s right = glms_vec3_sub(ground_point(&frame.camera, &settings, x + 1, y), point);
+            vec3s down = glms_vec3_sub(ground_point(&frame.camera, &settings, x, y + 1), point);
+            area += shadow * (double)glms_vec3_norm(glms_vec3_cross(right, down));
             weight += shadow;
             mean_x += shadow * (double)point.x;
             mean_z += shadow * (double)point.z;
@@ -166,6 +171,10 @@ static void test_shadow_position(void **state)
     assert_true(weight > 50);
     assert_near(mean_x / weight, -0.3, 0.03);
     assert_near(mean_z / weight, -0.2, 0.03);
+    const double disc = M_PI * 0.15 * 0.15 / (double)patch_direction.y;
+    print_message("the shadow has %.4f m2, the disc %.4f\n", area, disc);
+    assert_near(area / disc, 1,
+                0.1); /* a texel of 256 around the rim has 0.02; all of the map's square, 1.27 */
     tl_image_release(&visibility);
     test_shape_release(&ball);
     tl_environment_release(&environment);
