@@ -6,7 +6,6 @@
 #include "app/cli/arguments.h"
 
 bool tl_bench_light(const struct tl_arguments *arguments, tl_error *error);
-bool tl_bench_cloth(const struct tl_arguments *arguments, tl_error *error);
 bool tl_bench_shading(const struct tl_arguments *arguments, tl_error *error);
 
 #endif

@@ -1,5 +1,6 @@
 /* toile bench: ratios measured side by side in one run. */
 #include "app/cli/topic.h"
+#include "app/lab/cloth/bench_cloth.h"
 #include "app/lab/trade/bench.h"
 #include "app/lab/trade/commands.h"
 

@@ -1,8 +1,8 @@
 /* toile trade: error against time along an axis, as CSV and as a report. */
+#include "app/lab/cloth/trade_cloth.h"
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/trade/commands.h"
 #include "app/lab/trade/trade.h"
-#include "app/lab/trade/trade_cloth.h"
 #include "app/report/folder.h"
 #include "config/base/file.h"
 

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-extern const struct tl_embedded tl_embedded_trade[]; /* trade.js, cloth.js */
+extern const struct tl_embedded tl_embedded_trade[]; /* trade.js */
 
 static const char *choice_name(const char *key, int index)
 {

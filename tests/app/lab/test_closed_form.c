@@ -1,8 +1,8 @@
 /* The oracles of cloth measurements: the tube's closed form compared with sums over its triangles, cells with
- * a known outcome, and the baseline's sag. */
+ * a known outcome, and the plain loop's sag. */
 #include "tests/testing.h"
 
-#include "app/lab/trade/baseline.h"
+#include "app/lab/cloth/plain_loop.h"
 #include "config/base/memory.h"
 #include "tests/app/stability/envelope.h"
 
@@ -107,18 +107,18 @@ static void known_cells(void **state)
 }
 
 /* Hung from rest it swings about its static stretch, density g / k at the top by twice that at most. */
-static void baseline_hangs(void **state)
+static void plain_loop_hangs(void **state)
 {
     (void)state;
-    tl_baseline *baseline = tl_baseline_create(17);
+    tl_plain_loop *loop = tl_plain_loop_create(17);
     double maximum = 0;
     for (int i = 0; i < 2000; i++) {
-        tl_baseline_step(baseline);
-        maximum = fmax(maximum, tl_baseline_stretch(baseline) - 1);
+        tl_plain_loop_step(loop);
+        maximum = fmax(maximum, tl_plain_loop_stretch(loop) - 1);
     }
     const double still = 0.2 * 9.81 / 1000; /* springs across and along diagonals carry a part of it */
     assert_true(maximum > 0.3 * still && maximum < 3 * still);
-    tl_baseline_destroy(&baseline);
+    tl_plain_loop_destroy(&loop);
 }
 
 /* The upper half of this tube consists of needle triangles, thirty times as wide as high. A single sweep
@@ -147,7 +147,7 @@ int main(void)
         cmocka_unit_test(scrambles_stay_in_reach),
         cmocka_unit_test(known_cells),
         cmocka_unit_test(needles_stay_in_place),
-        cmocka_unit_test(baseline_hangs),
+        cmocka_unit_test(plain_loop_hangs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "app/lab/trade/trade_cloth.h"
+#include "app/lab/cloth/trade_cloth.h"
 
 #include "app/lab/experiments/closed_form.h"
 #include "config/base/interrupt.h"

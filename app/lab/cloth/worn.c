@@ -1,4 +1,4 @@
-#include "app/lab/trade/worn.h"
+#include "app/lab/cloth/worn.h"
 
 bool tl_worn_settle(const tl_garment *garment, const struct tl_cloth_params *params, struct tl_worn *out,
                     tl_error *error)

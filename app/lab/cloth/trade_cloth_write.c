@@ -1,5 +1,5 @@
 /* trade.csv and report.html of the axis cloth; cloth.js shows the latter. */
-#include "app/lab/trade/trade_cloth.h"
+#include "app/lab/cloth/trade_cloth.h"
 #include "app/report/report.h"
 #include "cloth/cloth.h"
 #include "config/base/memory.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-extern const struct tl_embedded tl_embedded_trade[]; /* trade.js, cloth.js */
+extern const struct tl_embedded tl_embedded_cloth[]; /* cloth.js */
 
 /* Empty where nothing was measured. */
 static void print_field(FILE *out, double value)
@@ -55,5 +55,5 @@ bool tl_trade_cloth_write_report(const struct tl_trade_cloth *trade, const char 
     tl_report_add_text(data, "csv", trade, write_csv);
     tl_report_add_text(data, "fit", &trade->fit, write_fit);
     tl_report_add_texts(data, "refusals", trade->refusals, trade->refusal_count);
-    return tl_report_write(folder, "report.html", tl_embedded_trade[1].data, data, error);
+    return tl_report_write(folder, "report.html", tl_embedded_cloth[0].data, data, error);
 }

@@ -1,10 +1,10 @@
-/* How fast cloth is solved: particles times substeps per second of CPU, beside the baseline's in the same
+/* How fast cloth is solved: particles times substeps per second of CPU, beside the plain loop's in the same
  * run; normals and tangents; and the built-in dress coming to rest. */
+#include "app/lab/cloth/bench_cloth.h"
 #include "app/cli/json.h"
+#include "app/lab/cloth/plain_loop.h"
+#include "app/lab/cloth/worn.h"
 #include "app/lab/experiments/closed_form.h"
-#include "app/lab/trade/baseline.h"
-#include "app/lab/trade/bench.h"
-#include "app/lab/trade/worn.h"
 #include "app/measure/cost.h"
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
@@ -21,7 +21,7 @@
 #define SIDES_MAX      3
 #define THREADS_MAX    2
 #define DRESSES_MAX    2
-#define BASELINE       TL_CLOTH_SOLVER_COUNT /* measured after the solvers */
+#define PLAIN_LOOP     TL_CLOTH_SOLVER_COUNT /* measured after the solvers */
 #define RUN_COUNT      (TL_CLOTH_SOLVER_COUNT + 1)
 
 struct plan {
@@ -59,7 +59,7 @@ struct cloth_bench {
 
 static const char *run_name(int variant)
 {
-    return variant == BASELINE ? "plain loop" : tl_cloth_solver_names[variant];
+    return variant == PLAIN_LOOP ? "plain loop" : tl_cloth_solver_names[variant];
 }
 
 /* ---- Sheets ---- */
@@ -105,20 +105,20 @@ static bool run_cloth(tl_cloth *cloth, double turn_ms, struct rate *out, tl_erro
     return true;
 }
 
-static bool run_baseline(tl_baseline *baseline, int side, double turn_ms, struct rate *out, tl_error *error)
+static bool run_plain_loop(tl_plain_loop *loop, int side, double turn_ms, struct rate *out, tl_error *error)
 {
     double steps = 0;
     struct tl_stopwatch watch = tl_stopwatch_start();
     struct tl_taken taken;
     do {
         for (int i = 0; i < FRAME_SUBSTEPS; i++)
-            tl_baseline_step(baseline);
+            tl_plain_loop_step(loop);
         steps += FRAME_SUBSTEPS * (double)side * side;
         taken = tl_stopwatch_read(&watch);
     } while (taken.cpu_ms < turn_ms);
-    if (!(tl_baseline_stretch(baseline) < 2)) /* the result is used, so that the compiler keeps the loop */
+    if (!(tl_plain_loop_stretch(loop) < 2)) /* the result is used, so that the compiler keeps the loop */
         return tl_fail(error, TL_UNSTABLE, "bench: the plain loop stretched by %g",
-                       tl_baseline_stretch(baseline));
+                       tl_plain_loop_stretch(loop));
     out->cpu = fmax(out->cpu, 1e3 * steps / taken.cpu_ms);
     out->wall = fmax(out->wall, 1e3 * steps / taken.wall_ms);
     return true;
@@ -132,7 +132,7 @@ static bool run_sheet(struct cloth_bench *bench, int size, int threads, tl_error
     struct rate *rates = bench->rates[size][threads - 1];
     tl_garment sheet = tl_sheet_make(side, TL_SHEET_EDGE, false);
     tl_cloth *cloths[TL_CLOTH_SOLVER_COUNT] = {0};
-    tl_baseline *baseline = tl_baseline_create(side);
+    tl_plain_loop *loop = tl_plain_loop_create(side);
     bool done = true;
     omp_set_num_threads(threads);
     for (int s = 0; done && s < TL_CLOTH_SOLVER_COUNT; s++)
@@ -140,11 +140,11 @@ static bool run_sheet(struct cloth_bench *bench, int size, int threads, tl_error
     for (int round = 0; done && round < ROUNDS; round++) {
         for (int s = 0; done && s < TL_CLOTH_SOLVER_COUNT; s++)
             done = run_cloth(cloths[s], turn_ms, &rates[s], error);
-        done = done && run_baseline(baseline, side, turn_ms, &rates[BASELINE], error);
+        done = done && run_plain_loop(loop, side, turn_ms, &rates[PLAIN_LOOP], error);
     }
     for (int s = 0; s < TL_CLOTH_SOLVER_COUNT; s++)
         tl_cloth_destroy(&cloths[s]);
-    tl_baseline_destroy(&baseline);
+    tl_plain_loop_destroy(&loop);
     tl_garment_release(&sheet);
     return done;
 }
@@ -252,7 +252,7 @@ static void print_rates(const struct cloth_bench *bench)
             for (int c = 0; c < RUN_COUNT; c++) {
                 const struct rate *rate = &bench->rates[i][t][c];
                 printf("%-10d %8d %-12s %8.2f %8.2f %14.2f\n", bench->plan.sides[i] * bench->plan.sides[i],
-                       t + 1, run_name(c), 1e-6 * rate->cpu, rate->cpu / bench->rates[i][t][BASELINE].cpu,
+                       t + 1, run_name(c), 1e-6 * rate->cpu, rate->cpu / bench->rates[i][t][PLAIN_LOOP].cpu,
                        1e-6 * rate->wall);
             }
     printf("\nnormals and tangents on one core:\n");
@@ -285,7 +285,7 @@ static void add_runs(const struct cloth_bench *bench, int variant, cJSON *object
             cJSON_AddNumberToObject(run, "threads", t + 1);
             cJSON_AddNumberToObject(run, "steps_per_s_core", rate->cpu);
             cJSON_AddNumberToObject(run, "steps_per_s_wall", rate->wall);
-            cJSON_AddNumberToObject(run, "ratio", rate->cpu / bench->rates[i][t][BASELINE].cpu);
+            cJSON_AddNumberToObject(run, "ratio", rate->cpu / bench->rates[i][t][PLAIN_LOOP].cpu);
             cJSON_AddItemToArray(runs, run);
         }
 }
@@ -317,7 +317,7 @@ static void print_json(const struct cloth_bench *bench)
         cJSON *row = cJSON_CreateObject();
         cJSON_AddStringToObject(row, "name", run_name(c));
         cJSON_AddNumberToObject(row, "steps_per_s_core", rate->cpu);
-        cJSON_AddNumberToObject(row, "ratio", rate->cpu / bench->rates[middle][0][BASELINE].cpu);
+        cJSON_AddNumberToObject(row, "ratio", rate->cpu / bench->rates[middle][0][PLAIN_LOOP].cpu);
         add_runs(bench, c, row);
         cJSON_AddItemToArray(solvers, row);
     }

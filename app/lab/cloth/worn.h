@@ -1,7 +1,7 @@
 /* A garment of the default fabric at rest on the form, and what that took: of bench cloth and trade cloth.
  * Threads: one drape at a time each. */
-#ifndef TOILE_APP_LAB_TRADE_WORN_H
-#define TOILE_APP_LAB_TRADE_WORN_H
+#ifndef TOILE_APP_LAB_CLOTH_WORN_H
+#define TOILE_APP_LAB_CLOTH_WORN_H
 
 #include "app/measure/cost.h"
 #include "assets/avatar.h"

@@ -5,10 +5,10 @@
  * more, and with those of the finest such sheet, which shows what the mesh is worth. A sheet held by two
  * corners comes to rest; its energy, strain and shape are compared with the reference's calmest rest at its
  * size: a drape has a mirror image of equal energy, so the nearer of the two counts (docs/notes/cloth.md). */
-#ifndef TOILE_APP_LAB_TRADE_TRADE_CLOTH_H
-#define TOILE_APP_LAB_TRADE_TRADE_CLOTH_H
+#ifndef TOILE_APP_LAB_CLOTH_TRADE_CLOTH_H
+#define TOILE_APP_LAB_CLOTH_TRADE_CLOTH_H
 
-#include "app/lab/trade/trade_fit.h"
+#include "app/lab/cloth/trade_fit.h"
 #include "app/measure/cost.h"
 #include "config/base/error.h"
 

@@ -1,7 +1,7 @@
-#include "app/lab/trade/trade_fit.h"
+#include "app/lab/cloth/trade_fit.h"
 
 #include "app/fit/measures.h"
-#include "app/lab/trade/worn.h"
+#include "app/lab/cloth/worn.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
 

@@ -2,8 +2,8 @@
  * that differ from the default in one thing each. Heights, lengths and eases as `toile measure` has them are
  * compared with those of the same mesh solved by the reference. Equal drapes need not have equal folds: a fit
  * is compared, not the places of vertices. */
-#ifndef TOILE_APP_LAB_TRADE_TRADE_FIT_H
-#define TOILE_APP_LAB_TRADE_TRADE_FIT_H
+#ifndef TOILE_APP_LAB_CLOTH_TRADE_FIT_H
+#define TOILE_APP_LAB_CLOTH_TRADE_FIT_H
 
 #include "app/measure/cost.h"
 #include "config/base/error.h"
