@@ -137,7 +137,7 @@ static const char *const slices[] = {
 
 static struct stand *by_rays(void)
 {
-    static const char *const fewer[] = {"light.regions=96", "light.refresh=24"};
+    static const char *const fewer[] = {"light.regions=96", "light.refresh=24", "light.pem_size=32"};
     return stand_up(fewer, TL_COUNT(fewer));
 }
 

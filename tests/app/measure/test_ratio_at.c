@@ -15,9 +15,9 @@ struct garment_case {
 };
 
 static const struct garment_case cases[] = {
-    {"satin", "scene.fabric=satin", NULL, 0.0356, 0.159},
-    {"denim", "scene.fabric=denim", NULL, 0.0168, 0.0733},
-    {"casual suit", "scene.garment=", "garments/mh_male_casualsuit06.glb", 0.0393, 0.139},
+    {"satin", "scene.fabric=satin", NULL, 0.026, 0.125},
+    {"denim", "scene.fabric=denim", NULL, 0.0088, 0.048},
+    {"casual suit", "scene.garment=", "garments/mh_male_casualsuit06.glb", 0.027, 0.087},
 };
 
 static void draw(tl_renderer *renderer, const tl_frame *frame, struct tl_render_settings *settings, int at,
@@ -73,6 +73,7 @@ static void check_garment(tl_renderer *renderer, const struct garment_case *item
                                        "image.height=400",
                                        "image.supersample=1",
                                        "light.rounds=2",
+                                       "light.pem_size=32",
                                        "light.repair_rest=0"};
     const struct tl_settings_source source = {NULL, assignments, TL_COUNT(assignments)};
     struct tl_settings settings;

@@ -85,9 +85,30 @@ static void fill_surface(struct tl_extreme_scene *scene)
     scene->surface.topology_revision = scene->surface.motion_revision = revision;
 }
 
+static tl_image copy_image(const tl_image *image)
+{
+    tl_image copy = tl_image_create(image->width, image->height, image->channels, image->type);
+    size_t count = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    memcpy(tl_image_floats(&copy), tl_image_floats(image), count * sizeof(float));
+    return copy;
+}
+
+/* The studio, which is computed once: its texels take longer than a picture of them. */
+static tl_environment studio(void)
+{
+    static tl_environment made;
+    if (!made.name)
+        made = tl_environment_studio();
+    tl_environment copy = made;
+    copy.name = tl_copy_string(made.name);
+    copy.image = copy_image(&made.image);
+    copy.backdrop = copy_image(&made.backdrop);
+    return copy;
+}
+
 static void make_ordinary(struct tl_extreme_scene *out)
 {
-    *out = (struct tl_extreme_scene){.environment = tl_environment_studio(),
+    *out = (struct tl_extreme_scene){.environment = studio(),
                                      .material = tl_material_default("extreme"),
                                      .camera = {.eye = {{0.7f, 0.9f, 2.6f}},
                                                 .target = {{0, 0.45f, 0}},

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE       64 /* pixels of the images */
+#define SIDE       48 /* pixels of the images */
 #define EXACT_RMSE 0.001
 /* A reference with a larger standard error measures nothing. */
 #define NOISE_MAX 0.05

@@ -121,7 +121,7 @@ static tl_image read_truth(const char *scene)
 }
 
 #define RAYS                                                                                                 \
-    "--method", "reference", "--set", "reference.strata=32", "--set", "reference.replicates=2", "--set",     \
+    "--method", "reference", "--set", "reference.strata=16", "--set", "reference.replicates=2", "--set",     \
         "reference.bounce_samples=4"
 #define BOUNCE(choice) "--set", "light.bounce=" choice
 
