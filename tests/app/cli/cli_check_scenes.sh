@@ -18,7 +18,7 @@ for scene in "$folder"/scenes/*.yaml; do
     case $scene in # each solver has a scene
         trousers) solver="--set cloth.solver=reference" ;;
     esac
-    sound "scene $scene" "$scene" --set light.pem_size=32 --set detail.angles=8 $solver --frames 2 --every 2
+    sound "scene $scene" "$scene" --set light.pem_size=32 --set detail.angles=8 --set weave.texels_per_yarn=16 $solver --frames 2 --every 2
 done
 # With their own sizes of cubes: the bounds of light are tightest there.
 for preset in "$folder"/presets/*.yaml; do

@@ -40,7 +40,7 @@ for layout in cube sphere paraboloid latlong octahedral; do
 done
 # A scene reads what this command wrote: the same light in any layout. Octahedral maps have the shape of spheres, and
 # paraboloids that of lat-long maps: the file states which it is.
-ball="--garment none --avatar ball --preset draft --size 32x32 $cheap_light --quiet"
+ball="--garment none --avatar ball --preset draft --size 32x32 $cheap_light --set light.rounds=16 --quiet"
 for layout in latlong cube sphere paraboloid octahedral; do
     "$TOILE" env studio -o studio.exr --layout $layout --size 64 --quiet || fail "env studio --layout $layout"
     "$TOILE" info studio.exr | grep -q "layout  *${layout/latlong/lat-long}$" || fail "$layout: info names another layout"

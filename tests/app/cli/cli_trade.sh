@@ -3,14 +3,14 @@
 # Figures are not judged here (time never is; errors have their own tests), only that they are there and finite.
 set -eu
 . "$(dirname "$0")/cli.sh"
-small="--size 48x48 --set cloth.edge_m=0.08 --set light.pem_size=16 --set reference.replicates=2 --quiet"
+small="--size 48x48 --set cloth.edge_m=0.08 --set light.pem_size=16 --set weave.texels_per_yarn=16 --set reference.replicates=2"
 
 refuse "trade without a folder" "add -o FOLDER" trade --quick
 refuse "trade along nothing known" "expected overall, light" trade --axis wind -o measured
 refuse "bench of nothing" "expected a topic" bench
 refuse "stability of nothing known" "expected a topic" stability wind
 
-check "trade" $TOILE trade --axis light $small --quick -o measured
+check "trade" $TOILE trade --axis light $small --quiet --quick -o measured
 check "both files" test -s measured/trade.csv -a -s measured/report.html
 check "nothing else" test "$(ls measured | wc -l)" -eq 2
 if command -v python3 >/dev/null; then
@@ -27,7 +27,7 @@ assert {"moving", "rest"} == {row["state"] for row in rows}
 PYTHON
     check_report measured/report.html 3
     for axis in overall resolution detail levels; do # cli_shading measures shading
-        check "trade, $axis" $TOILE trade --axis $axis $small --quick -o "$axis"
+        check "trade, $axis" $TOILE trade --axis $axis $small --quiet --quick -o "$axis"
         check "finite numbers, $axis" python3 - "$axis/trade.csv" <<'PYTHON'
 import csv, math, sys
 rows = list(csv.DictReader(open(sys.argv[1])))
@@ -44,7 +44,7 @@ for row in rows:
 PYTHON
         check_report $axis/report.html 1
     done
-    check "bench --json" sh -c "$TOILE bench light $small --quick --json | python3 -c '
+    check "bench --json" sh -c "$TOILE bench light $small --quiet --quick --json | python3 -c '
 import json, math, sys
 bench = json.load(sys.stdin)
 for key in (\"time_ratio\", \"error_ratio\", \"flip_ratio\"):
@@ -61,6 +61,6 @@ fi
 
 # Ctrl-C once the first of some hundred choices of settings is measured: exit status 130, and what was measured
 # is there.
-interrupt 'measuring the trade of light: *\([2-9]\|[1-9][0-9]\) %' trade --axis light --size 32x32 --set cloth.edge_m=0.08 --set light.pem_size=16 --set reference.replicates=2 -o stopped
+interrupt 'measuring the trade of detail: *\([2-9]\|[1-9][0-9]\) %' trade --axis detail $small -o stopped
 check "interrupted: status 130" test $status -eq 130
 check "interrupted: what was measured is kept" test "$(wc -l <stopped/trade.csv)" -ge 2 -a -s stopped/report.html

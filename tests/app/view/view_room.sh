@@ -14,8 +14,8 @@ finish() {
 trap finish EXIT
 cd "$room"
 export XDG_STATE_HOME=$room/state # nothing of the user's is read, or written
-# Light for windows whose pictures are compared with one another only: on the CPU it is most of what they cost.
-cheap_light="--set light.regions=24 --set light.pem_size=16 --set light.rounds=4 --set light.bounce=off"
+# Light and surfaces for windows whose pictures are compared with one another only: on the CPU they are most of the cost.
+cheap_light="--set light.regions=24 --set light.pem_size=16 --set light.rounds=4 --set light.bounce=off --set scene.smooth=false"
 
 # first_size WIDTH HEIGHT: of the window, unless --fresh. The panel takes 380 pixels of the width.
 first_size() {
