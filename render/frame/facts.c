@@ -206,17 +206,36 @@ static bool fits_vertices(const tl_frame *frame, const struct tl_render_settings
            !has_mirrors(frame, light);
 }
 
-static tl_bits bounce_facts(const struct tl_light_params *light)
+static bool is_black(vec3s colour)
 {
-    bool bounces = light->bounce != TL_BOUNCE_OFF && light->method == TL_METHOD_PEM &&
-                   light->visibility == TL_VISIBILITY_RAYS;
+    return glms_vec3_max(colour) <= 0;
+}
+
+/* Whether light that meets the material is sent on: by colours that maps only darken, through holes, or of
+ * its own. */
+static bool sends_light(const tl_material *material)
+{
+    const struct tl_back *back = &material->back;
+    return !is_black(material->diffuse) || !is_black(material->specular) ||
+           tl_material_is_layered(material) || tl_material_emits(material) || material->thread_count > 0 ||
+           material->openness > 0 ||
+           (back->is_given && !(is_black(back->diffuse) && is_black(back->specular)));
+}
+
+static tl_bits bounce_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    const struct tl_light_params *light = &settings->light;
+    bool bounces =
+        light->bounce != TL_BOUNCE_OFF && light->method == TL_METHOD_PEM &&
+        light->visibility == TL_VISIBILITY_RAYS &&
+        (settings->image.ground || tl_materials_have(frame->surfaces, frame->surface_count, sends_light));
     return bounces ? TL_BIT(TL_SCENE_BOUNCE) : 0;
 }
 
-static tl_bits ratio_facts(const struct tl_light_params *light)
+static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     return TL_BIT(TL_SCENE_RATIOS) | TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS) |
-           TL_BIT(TL_SCENE_EXACT) | bounce_facts(light);
+           TL_BIT(TL_SCENE_EXACT) | bounce_facts(frame, settings);
 }
 
 /* Facts of a frame whose samples are lit. */
@@ -249,7 +268,7 @@ static tl_bits sample_facts(const tl_frame *frame, const struct tl_render_settin
         facts |= TL_BIT(TL_SCENE_MIRRORS);
     if (rays)
         facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_COMPOSED);
-    return facts | lamp_facts(frame, light) | bounce_facts(light);
+    return facts | lamp_facts(frame, light) | bounce_facts(frame, settings);
 }
 
 static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
@@ -257,7 +276,7 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
     if (!fits_vertices(frame, settings))
         return sample_facts(frame, settings);
     return TL_BIT(TL_SCENE_FITS_VERTICES) |
-           (settings->light.ratio_at == TL_RATIO_AT_VERTICES ? ratio_facts(&settings->light)
+           (settings->light.ratio_at == TL_RATIO_AT_VERTICES ? ratio_facts(frame, settings)
                                                              : sample_facts(frame, settings));
 }
 

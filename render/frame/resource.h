@@ -45,7 +45,7 @@
 #define TL_MADE_BITS(BIT)                                                                                    \
     BIT(TL_MADE_CUBE, "cube", other) /* and the suns taken from it */                                        \
     BIT(TL_MADE_REGIONS, "regions", other)                                                                   \
-    BIT(TL_MADE_LOBE, "lobe table", other)                                                                   \
+    BIT(TL_MADE_LOBE, "chain levels", other) /* of each glossiness */                                        \
     BIT(TL_MADE_PEMS, "PEMs", pems)                                                                          \
     BIT(TL_MADE_LOBES, "lobes", pems)                                                                        \
     BIT(TL_MADE_SLICES, "slices", pems)                                                                      \
@@ -84,7 +84,7 @@
     FACT(TL_SCENE_MAPS, "shadow maps") /* visibility comes from shadow maps */                               \
     FACT(TL_SCENE_RAYS, "rays") /* visibility comes from rays */                                             \
     /* rays; something is seen through, or is lit from behind */                                             \
-    FACT(TL_SCENE_TRANSPARENCY, "cloth that lets light through, by rays")                                    \
+    FACT(TL_SCENE_TRANSPARENCY, "samples seen through cloth")                                                \
     /* rays; something is so glossy that rays follow what it shows */                                        \
     FACT(TL_SCENE_MIRRORS, "near mirrors by rays")                                                           \
     FACT(TL_SCENE_PASSES, "light passes") /* passes on the GPU light the samples */                          \
@@ -92,7 +92,7 @@
     FACT(TL_SCENE_SLICES, "exact slices") /* the passes read exact slices */                                 \
     FACT(TL_SCENE_EXACT, "exact light") /* exact light of the whole environment is read */                   \
     FACT(TL_SCENE_BLUR, "variance maps") /* shadow maps are variance maps */                                 \
-    FACT(TL_SCENE_DETAIL, "fabric detail") /* a material's bumps need maps of their own */                   \
+    FACT(TL_SCENE_DETAIL, "samples that read detail maps") /* a material's bumps need maps of their own */   \
     FACT(TL_SCENE_REFERENCE, "reference")                                                                    \
     FACT(TL_SCENE_ENVMAP, "environment maps") /* environment maps light the image */                         \
     FACT(TL_SCENE_CAPTURE, "captured scene") /* environment maps show the scene */                           \

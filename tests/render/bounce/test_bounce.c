@@ -9,6 +9,8 @@
 
 #include "tests/testing.h"
 
+#include <string.h>
+
 #define SIZE   40
 #define CELLS  32 /* a side of the sheet: eight a wave and more */
 #define ROUNDS 16
@@ -324,12 +326,60 @@ static void test_ground(void **state)
     check(*state, scene, "ground", TL_BOUNCE_ALL, AT_BOTH, MATT);
 }
 
+static void make_black(tl_material *material)
+{
+    material->diffuse = material->specular = (vec3s){{0, 0, 0}};
+}
+
+static enum tl_job_action bounce_action(const tl_renderer *renderer)
+{
+    const tl_plan *plan = tl_renderer_last_plan(renderer);
+    int i = 0;
+    while (strcmp(plan->rows[i].name, "bounce") != 0)
+        i++;
+    return plan->rows[i].action;
+}
+
+/* Black cloth sends nothing on, and the job does not run. With the inside of the closed ball white it does,
+ * though nobody sees the inside and no ray meets it: its output changes no bit. Under a coat it runs as well.
+ */
+static void test_black_cloth(void **state)
+{
+    const struct test_device *device = *state;
+    struct test_scene *scene = TL_NEW(struct test_scene);
+    tl_image dropped, made;
+    test_scene_open(scene, test_environment(64, 32, test_daylight), (vec3s){{0.3f, 0.35f, 1.6f}},
+                    (vec3s){{0, 0.35f, 0}}, 25, SIZE, SIZE);
+    test_scene_use_rays(scene, 48, 1);
+    scene->settings.light.bounce = TL_BOUNCE_ALL;
+    tl_material *ball = test_scene_add(scene, test_sphere((vec3s){{0, 0.4f, 0}}, 0.3f, 32));
+    make_black(ball);
+    test_scene_refresh(scene);
+    dropped = test_scene_draw(scene, device->renderer);
+    assert_int_equal(bounce_action(device->renderer), TL_JOB_DROP);
+    ball->back = (struct tl_back){.is_given = true, .diffuse = {{1, 1, 1}}};
+    test_scene_refresh(scene);
+    made = test_scene_draw(scene, device->renderer);
+    assert_int_equal(bounce_action(device->renderer), TL_JOB_RUN);
+    assert_memory_equal(dropped.texels, made.texels, (size_t)SIZE * SIZE * 4 * sizeof(float));
+    tl_image_release(&dropped);
+    tl_image_release(&made);
+    ball->back.is_given = false;
+    ball->coat = 1;
+    test_scene_refresh(scene);
+    made = test_scene_draw(scene, device->renderer);
+    assert_int_equal(bounce_action(device->renderer), TL_JOB_RUN);
+    tl_image_release(&made);
+    test_scene_close(scene);
+    free(scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sky),   cmocka_unit_test(test_sheer),       cmocka_unit_test(test_shining_wall),
-        cmocka_unit_test(test_lamp),  cmocka_unit_test(test_buried_lamp), cmocka_unit_test(test_ground),
-        cmocka_unit_test(test_split), cmocka_unit_test(test_lag),
+        cmocka_unit_test(test_black_cloth),  cmocka_unit_test(test_sky),   cmocka_unit_test(test_sheer),
+        cmocka_unit_test(test_shining_wall), cmocka_unit_test(test_lamp),  cmocka_unit_test(test_buried_lamp),
+        cmocka_unit_test(test_ground),       cmocka_unit_test(test_split), cmocka_unit_test(test_lag),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
