@@ -316,12 +316,13 @@ void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_ren
                                           .value = tl_quality_value((enum tl_control)k, &at),
                                           .ms = (double)NAN,
                                           .error = (double)NAN};
-        if (now[k] == 0)
+        const int better = tl_quality_better((enum tl_control)k, &governor->choice.levels, &full);
+        if (better < 0)
             continue;
-        now[k]--;
+        now[k] = (uint8_t)better;
         out[k].ms = cost_of(&coming, now) - ms;
         out[k].error = error - error_of(&coming, now);
-        now[k]++;
+        now[k] = (uint8_t)out[k].level;
     }
 }
 

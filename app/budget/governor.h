@@ -67,7 +67,7 @@ void tl_quality_governor_learn(tl_quality_governor *governor, const tl_plan *pla
 struct tl_quality_step {
     int level, level_count;
     double value;     /* of the setting at this level: regions, steps, scale */
-    double ms, error; /* additional time, and error removed; NaN at level 0 */
+    double ms, error; /* additional time, and error removed (> 0); NaN where no level is better */
 };
 void tl_quality_governor_steps(const tl_quality_governor *governor, const tl_renderer *renderer,
                                const tl_frame *frame, const struct tl_settings *settings,

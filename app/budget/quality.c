@@ -213,3 +213,16 @@ double tl_quality_error(const struct tl_quality *levels, const struct tl_render_
         square += sampling_square(&at.image) + sampling_square(&full->image);
     return sqrt(square);
 }
+
+int tl_quality_better(enum tl_control control, const struct tl_quality *levels,
+                      const struct tl_render_settings *full)
+{
+    const double error = tl_quality_error(levels, full);
+    struct tl_quality better = *levels;
+    while (better.of[control] > 0) {
+        better.of[control]--;
+        if (tl_quality_error(&better, full) < error)
+            return better.of[control];
+    }
+    return -1;
+}

@@ -43,6 +43,11 @@ int tl_quality_count(enum tl_control control, const struct tl_render_settings *f
 /* The error that these levels add to that of the settings. */
 double tl_quality_error(const struct tl_quality *levels, const struct tl_render_settings *full);
 
+/* The next better level of a control: the nearest below its own at which the error is smaller; -1 where none
+ * is. More regions are worse where so few are renewed in a frame that all of them are old. */
+int tl_quality_better(enum tl_control control, const struct tl_quality *levels,
+                      const struct tl_render_settings *full);
+
 /* The value that a control sets: regions, regions renewed, steps, scale. */
 double tl_quality_value(enum tl_control control, const struct tl_render_settings *settings);
 

@@ -36,7 +36,8 @@ static void print_memory(const tl_renderer *renderer)
 
 /* ---- The budget ---- */
 
-/* The levels that a budget allows for the frame, and what one level better would change for each control. */
+/* The levels that a budget allows for the frame, and what the next better level would change for each
+ * control. */
 struct budgeted {
     double budget_ms; /* 0: none was given */
     struct tl_quality_choice choice;
@@ -52,15 +53,17 @@ static void print_budget(const struct budgeted *budgeted)
     else
         printf("nothing was measured yet (--frame N draws the frames before N), ");
     printf("%.2g %% of error\n%-8s %6s %8s  %s\n", 100 * choice->error, "control", "level", "setting",
-           "one level better");
+           "next better level");
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
         const struct tl_quality_step *step = &budgeted->steps[k];
         printf("%-8s %2d of %d %8.4g  ", tl_control_names[k], step->level, step->level_count - 1,
                step->value);
-        if (step->level > 0)
+        if (isfinite(step->error))
             printf("%+.1f ms, %+.2g of FLIP\n", step->ms, -step->error);
         else
-            printf("%s\n", step->level_count > 1 ? "as asked for" : "has no effect in this scene");
+            printf("%s\n", step->level > 0         ? "none alone: too few regions are renewed in a frame"
+                           : step->level_count > 1 ? "as asked for"
+                                                   : "has no effect in this scene");
     }
 }
 

@@ -118,6 +118,35 @@ static void what_is_asked_for_errs_least(void **state)
         }
 }
 
+/* What is offered as better errs less, from any levels; 192 regions of which 6 are renewed in a frame are
+ * older than 96 are, and no better. */
+static void better_levels_err_less(void **state)
+{
+    (void)state;
+    struct tl_settings full = full_settings();
+    full.light.regions = 192;
+    full.light.refresh = 0;
+    const struct tl_render_settings drawn = tl_settings_render(&full);
+    struct tl_quality levels = {{0}};
+    int none = 0, some = 0;
+    for (int r = 0; r < tl_quality_count(TL_CONTROL_REGIONS, &drawn); r++)
+        for (int f = 0; f < tl_quality_count(TL_CONTROL_REFRESH, &drawn); f++) {
+            levels.of[TL_CONTROL_REGIONS] = (uint8_t)r, levels.of[TL_CONTROL_REFRESH] = (uint8_t)f;
+            const int better = tl_quality_better(TL_CONTROL_REGIONS, &levels, &drawn);
+            struct tl_quality to = levels;
+            to.of[TL_CONTROL_REGIONS] = (uint8_t)(better < 0 ? 0 : better);
+            const double now = tl_quality_error(&levels, &drawn), then = tl_quality_error(&to, &drawn);
+            assert_true(better < 0 ? then >= now : then < now);
+            assert_true(better < r);
+            const struct tl_render_settings at = tl_quality_at(&levels, &drawn);
+            if (at.light.regions == 96 && at.light.refresh == 6)
+                assert_int_equal(better, -1);
+            none += better < 0 && r > 0;
+            some += better >= 0;
+        }
+    assert_true(none > 0 && some > 0);
+}
+
 /* ---- With a renderer, small enough to be quick ---- */
 
 struct device {
@@ -299,7 +328,7 @@ static void steps_tell_what_a_level_is_worth(void **state)
     bool saves = false;
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
         assert_in_range(steps[k].level, 0, steps[k].level_count - 1);
-        assert_true(steps[k].level == 0 ? isnan(steps[k].error) : steps[k].error > 0);
+        assert_true(isnan(steps[k].error) || (steps[k].level > 0 && steps[k].error > 0));
         saves |= k > TL_CONTROL_RATIO && steps[k].ms > 0;
     }
     assert_true(saves);
@@ -402,10 +431,15 @@ static void calibration_leaves_no_trace(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(level_0_is_what_was_asked_for), cmocka_unit_test(levels_change_their_own_setting),
-        cmocka_unit_test(levels_end_somewhere),          cmocka_unit_test(what_is_asked_for_errs_least),
-        cmocka_unit_test(budgets_are_kept_to),           cmocka_unit_test(rest_gives_everything_back),
-        cmocka_unit_test(regions_are_prepared_at_rest),  cmocka_unit_test(steps_tell_what_a_level_is_worth),
+        cmocka_unit_test(level_0_is_what_was_asked_for),
+        cmocka_unit_test(levels_change_their_own_setting),
+        cmocka_unit_test(levels_end_somewhere),
+        cmocka_unit_test(what_is_asked_for_errs_least),
+        cmocka_unit_test(better_levels_err_less),
+        cmocka_unit_test(budgets_are_kept_to),
+        cmocka_unit_test(rest_gives_everything_back),
+        cmocka_unit_test(regions_are_prepared_at_rest),
+        cmocka_unit_test(steps_tell_what_a_level_is_worth),
         cmocka_unit_test(calibration_leaves_no_trace),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
