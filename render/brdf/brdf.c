@@ -171,6 +171,24 @@ float tl_brdf_v_grooves(float cos_a, float cos_b, float cos_t, float cos_d)
     return fminf(1, 2 * cos_d * fminf(cos_a, cos_b) / cos_t);
 }
 
+float tl_brdf_schlick(const struct tl_brdf *brdf, float cos_a, float cos_b)
+{
+    float k = sqrtf(2 / PI) * brdf->gloss.width_weft;
+    return cos_a * cos_b / ((cos_a + k * (1 - cos_a)) * (cos_b + k * (1 - cos_b)));
+}
+
+float tl_brdf_masking(const struct tl_brdf *brdf, float cos_a, float cos_b, float cos_t, float cos_d)
+{
+    switch (brdf->gloss.masking) {
+    case TL_MASKING_V_GROOVES:
+        return tl_brdf_v_grooves(cos_a, cos_b, cos_t, cos_d);
+    case TL_MASKING_SCHLICK:
+        return tl_brdf_schlick(brdf, cos_a, cos_b);
+    default:
+        return tl_brdf_smith(brdf, cos_a, cos_b);
+    }
+}
+
 /* c(s) of BANKS by Gamma(z + 1/2) / Gamma(z), z = s/2 + 3/2, from the first terms of its asymptotic series.
  * The relative error is below 5e-4 for s >= 1. */
 static float thread_scale(float s)
@@ -198,9 +216,7 @@ float tl_brdf_lobe_scale(const struct tl_brdf *brdf)
 static float torrance_sparrow(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
 {
     float tangent_squared = (at->h.x * at->h.x + at->h.y * at->h.y) / (at->h.z * at->h.z);
-    float masking = brdf->gloss.masking == TL_MASKING_SMITH
-                        ? tl_brdf_smith(brdf, at->cos_a, at->cos_b)
-                        : tl_brdf_v_grooves(at->cos_a, at->cos_b, at->cos_t, at->h.z);
+    float masking = tl_brdf_masking(brdf, at->cos_a, at->cos_b, at->cos_t, at->h.z);
     return tl_brdf_facets(brdf, tangent_squared) * masking / (PI * at->cos_b);
 }
 

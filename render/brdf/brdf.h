@@ -19,7 +19,10 @@
  * 1 / (4 w^2 cos^4 d (1 + tan^2 d / w^2)^2) [Walter et al. 2007, eq. 33], whose w is
  * glTF's alpha, roughness squared. G is SMITH's, heights correlated: 1 / (1 + L(a) + L(b)), for Beckmann's
  * slopes L(x) = (exp(-k^2)/(k sqrt pi) - erfc k)/2, k = 1/(w tan x), for GGX L(x) = (sqrt(1 + w^2 tan^2 x) -
- * 1)/2 [Heitz 2014, eq. 72]; or of V_GROOVES: min(1, 2 cos d min(cos a, cos b)/cos t). Reciprocal.
+ * 1)/2 [Heitz 2014, eq. 72]; or of V_GROOVES: min(1, 2 cos d min(cos a, cos b)/cos t); or SCHLICK's, which
+ * [Heidrich and Seidel 1999, 3.1] refer to: g(a) g(b), g(x) = cos x / (cos x + k (1 - cos x)), k = w
+ * sqrt(2/pi) [Schlick 1994]. All are reciprocal. Schlick's own distribution, r / (1 + (r - 1) cos^2 d)^2, is
+ * that of GGX with r = w^2.
  *
  * BANKS is not a physical model. It follows [Heidrich and Seidel 1999, 3.2] but for two terms of equation 4:
  * the gloss is a Phong lobe in place of Blinn and Phong's n'.h, which has no table of two dimensions, and the
@@ -95,6 +98,10 @@ vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *fram
 float tl_brdf_facets(const struct tl_brdf *brdf, float tangent_squared);
 /* G of SMITH, from the cosines a and b. */
 float tl_brdf_smith(const struct tl_brdf *brdf, float cos_a, float cos_b);
+/* G of SCHLICK, from the cosines a and b. */
+float tl_brdf_schlick(const struct tl_brdf *brdf, float cos_a, float cos_b);
+/* G of the model's masking, from the cosines a, b, t and d. */
+float tl_brdf_masking(const struct tl_brdf *brdf, float cos_a, float cos_b, float cos_t, float cos_d);
 /* G of V_GROOVES, from the cosines a, b, t and d. */
 float tl_brdf_v_grooves(float cos_a, float cos_b, float cos_t, float cos_d);
 /* The normalisation of a lobe: (s + 1)/2pi for PHONG, (s + 2)/2pi for COSINE_LOBE, c(s) for BANKS. */

@@ -137,11 +137,11 @@ static int fit_turned(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
     return fit_facets(&straight, &own, v, minimum, maximum, lobes);
 }
 
-/* V-grooves mask light otherwise than the table's facets do. */
-static float masked_by_grooves(const struct tl_brdf *brdf, vec3s h, vec3s l, vec3s v)
+/* The share of light by the model's masking over that by the table's, which is Smith's. */
+static float masked_otherwise(const struct tl_brdf *brdf, vec3s h, vec3s l, vec3s v)
 {
     const float cos_a = fmaxf(l.z, 0.02f);
-    return tl_brdf_v_grooves(cos_a, v.z, fmaxf(glms_vec3_dot(h, v), 0.02f), h.z) /
+    return tl_brdf_masking(brdf, cos_a, v.z, fmaxf(glms_vec3_dot(h, v), 0.02f), h.z) /
            tl_brdf_smith(brdf, cos_a, v.z);
 }
 
@@ -156,14 +156,14 @@ static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame
     for (int k = 0; k < count; k++) {
         const float sine = sinf(found[k].facet);
         const vec3s h = {{x * sine, y * sine, cosf(found[k].facet)}}, l = mirrored(h, local);
-        const float grooves =
-            brdf->gloss.masking == TL_MASKING_V_GROOVES ? masked_by_grooves(brdf, h, l, local) : 1;
+        const float masked =
+            brdf->gloss.masking == TL_MASKING_SMITH ? 1 : masked_otherwise(brdf, h, l, local);
         vec3s direction = glms_vec3_scale(frame->tangent, l.x);
         direction = glms_vec3_muladds(frame->bitangent, l.y, direction);
         direction = glms_vec3_muladds(frame->normal, l.z, direction);
         lobes[k] = (struct tl_fitted_lobe){
             direction, found[k].exponent,
-            glms_vec3_scale(tl_brdf_fresnel(brdf, found[k].cosine), grooves * found[k].weight)};
+            glms_vec3_scale(tl_brdf_fresnel(brdf, found[k].cosine), masked * found[k].weight)};
     }
     return count;
 }

@@ -3,7 +3,7 @@
 static const char *const model_names[] = {"phong", "blinn_phong", "cosine_lobe", "torrance_sparrow",
                                           "ward",  "banks",       NULL};
 static const char *const facets_names[] = {"gaussian", "beckmann", "ggx", NULL};
-static const char *const masking_names[] = {"smith", "v_grooves", NULL};
+static const char *const masking_names[] = {"smith", "v_grooves", "schlick", NULL};
 static const char *const ward_names[] = {"published", "bounded", NULL};
 static const char *const on_print_names[] = {"replace", "tint", "keep", NULL};
 static const char *const fresnel_names[] = {"schlick", "dielectric", "conductor", NULL};
@@ -43,8 +43,10 @@ static const struct tl_option material_rows[] = {
         material_params, facets, AFFECTS, facets_names,
         "torrance_sparrow: distribution of the slopes of facets; ggx is that of glTF and U3M, with "
         "width_weft the square of their roughness"),
-    TL_OPTION_ENUM(material_params, masking, AFFECTS, masking_names,
-                   "torrance_sparrow: masking and shadowing of facets by one another"),
+    TL_OPTION_ENUM(
+        material_params, masking, AFFECTS, masking_names,
+        "torrance_sparrow: masking and shadowing of facets by one another; schlick: a quotient in place of "
+        "smith, darker"),
     TL_OPTION_ENUM(
         material_params, ward, AFFECTS, ward_names,
         "ward: as published, which grows without bound in the last degree of grazing views, or with a "

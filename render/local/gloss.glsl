@@ -13,7 +13,7 @@ layout(location = 90) uniform vec3 thread_ratios[THREADS]; // of their light to 
 const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
 const int GAUSSIAN = 0, BECKMANN = 1, GGX = 2;
 const int BOUNDED = 1;
-const int SMITH = 0, V_GROOVES = 1;
+const int SMITH = 0, V_GROOVES = 1, QUOTIENT = 2; // QUOTIENT: Schlick's
 const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
 
 const float PI = 3.14159265;
@@ -121,8 +121,15 @@ float smith_lambda(float width, float cosine)
 // G / (pi n.v): times D and F it is f_r cos a of a Torrance-Sparrow surface.
 float masked(Cosines c, float width)
 {
-    float g = MASKING == SMITH ? 1.0 / (1.0 + smith_lambda(width, c.a) + smith_lambda(width, c.b))
-                               : min(1.0, 2.0 * c.half_normal * min(c.a, c.b) / c.t);
+    float g;
+    if (MASKING == V_GROOVES) {
+        g = min(1.0, 2.0 * c.half_normal * min(c.a, c.b) / c.t);
+    } else if (MASKING == QUOTIENT) {
+        vec2 k = vec2(0.79788456 * width), cosines = vec2(c.a, c.b), seen = cosines / mix(k, vec2(1.0), cosines);
+        g = seen.x * seen.y;
+    } else {
+        g = 1.0 / (1.0 + smith_lambda(width, c.a) + smith_lambda(width, c.b));
+    }
     return g / (PI * c.b);
 }
 

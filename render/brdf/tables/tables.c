@@ -77,10 +77,10 @@ static void fresnel_alone(const struct factor *factor, float cosine, float none,
 
 /* Smith's term vanishes as fast as n.v, so the quotient has a limit at n.v = 0, which is evaluated at
  * 1e-5. */
-static void smith_over_cosine(const struct factor *factor, float n_dot_l, float n_dot_v, float out[3])
+static void each_over_cosine(const struct factor *factor, float n_dot_l, float n_dot_v, float out[3])
 {
     float b = fmaxf(n_dot_v, 1e-5f);
-    all_channels(n_dot_l > 0 ? tl_brdf_smith(factor->brdf, n_dot_l, b) / (PI * b) : 0, out);
+    all_channels(n_dot_l > 0 ? tl_brdf_masking(factor->brdf, n_dot_l, b, 1, 1) / (PI * b) : 0, out);
 }
 
 /* Quotients without a limit at n.v = 0 are evaluated half a texel away from it in the texels there. */
@@ -152,13 +152,13 @@ static int factors_of(const struct tl_brdf *brdf, const struct tl_brdf_table_par
     struct factor fresnel = {.value = fresnel_alone, .x = cosines(TL_AXIS_H_DOT_L), .channels = 3};
     switch (brdf->gloss.model) {
     case TL_REFLECT_TORRANCE_SPARROW: {
-        bool smith = brdf->gloss.masking == TL_MASKING_SMITH;
+        bool grooves = brdf->gloss.masking == TL_MASKING_V_GROOVES;
         out[0] = (struct factor){.value = fresnel_and_facets,
                                  .x = cosines(TL_AXIS_H_DOT_L),
                                  .y = facets_range(brdf),
                                  .channels = 3};
-        out[1] = (struct factor){.value = smith ? smith_over_cosine : grooves_over_cosine,
-                                 .x = cosines(smith ? TL_AXIS_N_DOT_L : TL_AXIS_GROOVES),
+        out[1] = (struct factor){.value = grooves ? grooves_over_cosine : each_over_cosine,
+                                 .x = cosines(grooves ? TL_AXIS_GROOVES : TL_AXIS_N_DOT_L),
                                  .y = cosines(TL_AXIS_N_DOT_V),
                                  .channels = 1,
                                  .singular = true};

@@ -70,14 +70,14 @@ static void near_mirrors_are_exact_up_to_the_stated_exponent(void **state)
     }
 }
 
-/* Every variant of the factored model, its two facets, two maskings and three Fresnel terms. */
+/* Every variant of the factored model, its two facets, three maskings and three Fresnel terms. */
 static void every_torrance_sparrow_holds(void **state)
 {
     (void)state;
-    for (int variant = 0; variant < 12; variant++) {
-        struct tl_brdf brdf = brdf_of(TL_REFLECT_TORRANCE_SPARROW, 0.9f, variant / 4);
+    for (int variant = 0; variant < 18; variant++) {
+        struct tl_brdf brdf = brdf_of(TL_REFLECT_TORRANCE_SPARROW, 0.9f, variant / 6);
         brdf.gloss.facets = variant & 1;
-        brdf.gloss.masking = variant >> 1 & 1;
+        brdf.gloss.masking = variant / 2 % 3;
         brdf.gloss.extinction = 3;
         assert_true(away_of(&brdf, 512, TL_PRECISION_FLOAT) <= 0.005);
     }

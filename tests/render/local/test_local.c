@@ -31,12 +31,14 @@ static void equals_the_cpu(void **state)
     scene.lamps[1] = test_lamp_at((vec3s){{0.8f, 0.3f, 1.5f}}, 1);
     scene.frame.lamp_count = 2;
     for (int model = TL_REFLECT_PHONG; model <= TL_REFLECT_BANKS; model++)
-        for (int variant = 0; variant < 4; variant++) {
+        for (int variant = 0; variant < 5; variant++) {
             gloss->model = model;
             gloss->facets = variant == 1  ? TL_FACETS_GGX
                             : variant & 1 ? TL_FACETS_BECKMANN
                                           : TL_FACETS_GAUSSIAN;
-            gloss->masking = variant & 2 ? TL_MASKING_V_GROOVES : TL_MASKING_SMITH;
+            gloss->masking = variant == 4  ? TL_MASKING_SCHLICK
+                             : variant & 2 ? TL_MASKING_V_GROOVES
+                                           : TL_MASKING_SMITH;
             gloss->ward = variant & 2 ? TL_WARD_BOUNDED : TL_WARD_PUBLISHED;
             gloss->fresnel = variant % 3;
             gloss->index = 1.5f;
