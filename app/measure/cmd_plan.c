@@ -51,7 +51,7 @@ static void print_budget(const struct budgeted *budgeted)
     if (isfinite(choice->predicted_ms))
         printf("predicted %.1f ms, cloth and drawing, ", choice->predicted_ms);
     else
-        printf("nothing was measured yet (--frame N draws the frames before N), ");
+        printf("nothing was measured yet: --frame 2 or more, ");
     printf("%.2g %% of error\n%-8s %6s %8s  %s\n", 100 * choice->error, "control", "level", "setting",
            "next better level");
     for (int k = 0; k < TL_CONTROL_COUNT; k++) {
@@ -274,8 +274,11 @@ static bool calibrate(struct tl_headless *headless, const struct tl_arguments *a
            tl_session_apply(headless->session, &headless->settings, error);
 }
 
+/* The frame that a budget is shown for when none is named: those before it are measured. */
+#define BUDGETED_FRAME 6
+
 /* Plans frame N as a part of an animation: draws the frame before it, so that its results can be reused and
- * its costs are known. Frame 0 is the first, for which everything is computed. */
+ * its costs are known. Frame 0 is the first, for which everything is computed; a budget needs costs. */
 bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
 {
     struct tl_headless headless;
@@ -284,7 +287,8 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
         return false;
     struct tl_back_end back_end = {0};
     bool done = calibrate(&headless, arguments, &back_end, error);
-    int frame = arguments->first_frame;
+    int frame =
+        arguments->first_frame == 0 && budgeted.budget_ms > 0 ? BUDGETED_FRAME : arguments->first_frame;
     if (done && budgeted.budget_ms > 0)
         done = choose_levels(&headless, frame, &budgeted, error);
     if (done && frame > 0)
