@@ -69,7 +69,7 @@ enum tl_picture_motion {
 struct tl_experiment_claim {
     const char *nearer, *farther; /* names of techniques in pictures */
     const char *source;           /* "[Schroecker 2002, figure 9]" */
-    /* where it is not: "torus (edges of 4 cm), sheet", objects and appearances; NULL: it is everywhere */
+    /* where on the solid it is not: "torus (edges of 4 cm)"; NULL: nowhere */
     const char *but;
 };
 

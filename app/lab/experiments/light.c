@@ -152,7 +152,7 @@ static const struct tl_experiment experiments[] = {
                 {"the 2014 algorithm, exact lobes", "ambient occlusion with colour",
                  "[Knuth et al. 2014, figure 6]"},
                 {"the 2014 algorithm", "lights instead of PEMs", "[Knuth et al. 2014, 3]",
-                 "torus (glossiness 0.95), sheet (glossiness 0.95)"}},
+                 "torus (glossiness 0.95)"}},
      .solid = "torus",
      .base = {"scene.preset=paper", "light.bounce=off"},
      .reference = {.assignments = {TRACED, FEW_SAMPLES}},

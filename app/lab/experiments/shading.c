@@ -290,7 +290,7 @@ static const struct tl_experiment experiments[] = {
          "a local viewer; or at pixels.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .claims = {{"pixel", "vertex", "[Heidrich and Seidel 1999, 3.1]"},
-                {"vertex", "matrix", "[Heidrich and Seidel 1999, 3.1]", "sheet (far lamp)"}},
+                {"vertex", "matrix", "[Heidrich and Seidel 1999, 3.1]"}},
      .solid = "torus",
      .base = {LAMPLIT, UNSEWN, "shading.reflectance=table", "material.model=blinn_phong", SPECULAR},
      .reference = {.assignments = {"shading.coordinates=pixel", "shading.reflectance=direct"}},
@@ -321,9 +321,7 @@ static const struct tl_experiment experiments[] = {
      .text = "Gouraud evaluates light at vertices and interpolates it; fast Phong interpolates vectors and "
              "does not normalise them again.",
      .exact_text = "vectors normalised at every sample of the same mesh (Phong shading)",
-     .claims =
-         {{"fast Phong", "Gouraud", "[Heidrich and Seidel 1999, 3.1]",
-           "torus (edges of 4 cm), sheet (edges of 4 cm), sheet (edges of 2 cm), sheet (edges of 1 cm)"}},
+     .claims = {{"fast Phong", "Gouraud", "[Heidrich and Seidel 1999, 3.1]", "torus (edges of 4 cm)"}},
      .solid = "torus",
      .base = {LAMPLIT, SPECULAR},
      .reference = {.assignments = {"shading.frequency=phong"}},
@@ -340,7 +338,7 @@ static const struct tl_experiment experiments[] = {
              "below has the same "
              "errors over the angle between two neighbouring vertices.",
      .exact_text = "normalised in float",
-     .claims = {{"one Newton step", "8-bit cube map", "[Schroecker 2002, figure 9]", "sheet"},
+     .claims = {{"one Newton step", "8-bit cube map", "[Schroecker 2002, figure 9]"},
                 {"16-bit cube map", "one Newton step", "[Schroecker 2002, figure 9]", "torus"},
                 {"8-bit cube map", "none", "[Schroecker 2002, figure 9]"}},
      .solid = "torus",
@@ -356,7 +354,7 @@ static const struct tl_experiment experiments[] = {
      .text = "Repeated squaring in fixed point, which knows powers of two alone, and a table with linear "
              "interpolation, as in figure 10 of [Schroecker 2002].",
      .exact_text = "the power in float",
-     .claims = {{"table", "squaring, 8+1 bit", "[Schroecker 2002, figure 10]", "sheet (n = 8)"}},
+     .claims = {{"table", "squaring, 8+1 bit", "[Schroecker 2002, figure 10]"}},
      .solid = "sphere",
      .base = {LAMPLIT, "material.specular=[0.2, 0.2, 0.2]"},
      .reference = {.assignments = {"shading.power=pow"}},
