@@ -190,7 +190,8 @@ static struct cone_bound bound_of(const struct cone *cone, const struct cells *c
     float across = outside((float)cone->column, (float)(left - 1), (float)(left + side));
     float down = outside((float)cone->row, (float)(top - 1), (float)(top + side));
     float high = level->high[(size_t)block.y * (size_t)level->width + (size_t)block.x];
-    return (struct cone_bound){hypotf(across, down), high - cone->apex};
+    float distance = (float)sqrt((double)across * (double)across + (double)down * (double)down);
+    return (struct cone_bound){distance, high - cone->apex};
 }
 
 static void narrow_by_repeat(struct cone *cone, const struct cells *cells, int shift_x, int shift_y)
