@@ -77,16 +77,16 @@ other_garment="--env white --avatar ball"
 other_avatar="--env white --garment none"
 for kind in garment avatar; do
     other=other_$kind other=${!other}
-    refuse "missing $kind" 'nowhere\.glb.*no such file' render -o a.png $other --$kind nowhere.glb
-    refuse "folder as $kind" 'folder\.glb.*folder' render -o a.png $other --$kind folder.glb
-    refuse "empty $kind" 'empty\.glb.*empty' render -o a.png $other --$kind empty.glb
-    refuse "text as $kind" 'text\.glb' render -o a.png $other --$kind text.glb
-    refuse "truncated $kind" 'truncated\.glb' render -o a.png $other --$kind truncated.glb
-    refuse "$kind whose length lies" 'huge\.glb' render -o a.png $other --$kind huge.glb
-    refuse "$kind whose counts lie" 'lies\.glb' render -o a.png $other --$kind lies.glb
-    refuse "$kind with an index out of range" 'index\.glb.*(index|vertex|range)' render -o a.png $other --$kind index.glb
-    refuse "$kind with NaN positions" 'nan\.glb.*(NaN|finite|number)' render -o a.png $other --$kind nan.glb
-    refuse "$kind without a mesh" 'nomesh\.glb.*(mesh|triangle)' render -o a.png $other --$kind nomesh.glb
+    refuse "missing $kind" 'nowhere\.glb.*no such file' export -o a.glb $other --$kind nowhere.glb
+    refuse "folder as $kind" 'folder\.glb.*folder' export -o a.glb $other --$kind folder.glb
+    refuse "empty $kind" 'empty\.glb.*empty' export -o a.glb $other --$kind empty.glb
+    refuse "text as $kind" 'text\.glb' export -o a.glb $other --$kind text.glb
+    refuse "truncated $kind" 'truncated\.glb' export -o a.glb $other --$kind truncated.glb
+    refuse "$kind whose length lies" 'huge\.glb' export -o a.glb $other --$kind huge.glb
+    refuse "$kind whose counts lie" 'lies\.glb' export -o a.glb $other --$kind lies.glb
+    refuse "$kind with an index out of range" 'index\.glb.*(index|vertex|range)' export -o a.glb $other --$kind index.glb
+    refuse "$kind with NaN positions" 'nan\.glb.*(NaN|finite|number)' export -o a.glb $other --$kind nan.glb
+    refuse "$kind without a mesh" 'nomesh\.glb.*(mesh|triangle)' export -o a.glb $other --$kind nomesh.glb
 done
 for kind in garment avatar; do
     other=other_$kind other=${!other}

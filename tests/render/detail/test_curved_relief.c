@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDE = 192, TEXELS = 256, AROUND = 20, SEGMENTS = 160, RINGS = 48 };
+enum { SIDE = 192, TEXELS = 128, AROUND = 20, SEGMENTS = 160, RINGS = 48 };
 static const double radius = 0.5, half_height = 1.2, depth = 0.04;
 static const vec3s lamp = {{0.8f, 0.4f, 0.5f}};
 static const double period = 2 * M_PI * 0.5 / AROUND; /* of heights, metres along both axes */
