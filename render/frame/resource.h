@@ -45,7 +45,7 @@
 #define TL_MADE_BITS(BIT)                                                                                    \
     BIT(TL_MADE_CUBE, "cube", other) /* and the suns taken from it */                                        \
     BIT(TL_MADE_REGIONS, "regions", other)                                                                   \
-    BIT(TL_MADE_LOBE, "chain levels", other) /* of each glossiness */                                        \
+    BIT(TL_MADE_LOBE, "levels of gloss", other) /* in chains, and among exponents */                         \
     BIT(TL_MADE_PEMS, "PEMs", pems)                                                                          \
     BIT(TL_MADE_LOBES, "lobes", pems)                                                                        \
     BIT(TL_MADE_SLICES, "slices", pems)                                                                      \
