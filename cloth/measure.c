@@ -1,5 +1,6 @@
 #include "cloth/measure.h"
 
+#include "cloth/contact/peaks.h"
 #include "cloth/contacts.h"
 #include "cloth/self_contact/crossings.h"
 #include "cloth/timestep.h"
@@ -103,6 +104,17 @@ static void measure_depths(const tl_cloth *cloth, const tl_collider *collider, s
     }
 }
 
+static void measure_skin(const tl_cloth *cloth, const tl_collider *collider, struct tl_cloth_report *report)
+{
+    struct tl_peak *peaks;
+    struct tl_skin_grid skin = tl_skin_grid_create(collider, 1, -1);
+    report->skin_count = tl_peaks_find(&skin, &cloth->topology, cloth->particles.x, NULL, 0, &peaks);
+    for (size_t i = 0; i < report->skin_count; i++)
+        report->skin_m = fmax(report->skin_m, peaks[i].beyond_m);
+    free(peaks);
+    tl_skin_grid_release(&skin);
+}
+
 struct tl_energies tl_cloth_energies(const tl_cloth *cloth)
 {
     struct tl_energies energies = {0};
@@ -152,8 +164,10 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
     uint32_t *pieces = TL_NEW_ARRAY(uint32_t, cloth->topology.vertex_count);
     report.piece_count = tl_layers_pieces(&cloth->topology, pieces);
     free(pieces);
-    if (collider)
+    if (collider) {
         measure_depths(cloth, collider, &report);
+        measure_skin(cloth, collider, &report);
+    }
     return report;
 }
 

@@ -57,7 +57,8 @@ static void add_body(const struct tl_residual_source *source, struct row_list *r
             }
             x = tl_contact_sample_position(sample, source->particles->x);
         }
-        if (!tl_contacts_height(body, i, x, 1, &height) || height.height_m > source->thickness_m + WITHIN_M)
+        if (!tl_contacts_height(body, i, x, 1, &height) ||
+            height.height_m > tl_contacts_share(body, i) * source->thickness_m + WITHIN_M)
             continue;
         row.normal = height.up;
         add_row(rows, row, source->particles->w);

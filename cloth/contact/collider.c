@@ -20,6 +20,7 @@ struct tl_collider {
     uint32_t *indices;   /* render vertices, three a triangle */
     uint32_t *corners;   /* the same, welded */
     struct tl_fans fans; /* triangles around each welded vertex */
+    size_t skin_count;   /* welded vertices */
     double travel;
     bool jumped;
     struct tl_rigid jump;
@@ -244,6 +245,39 @@ void tl_collider_path(const tl_collider *collider, uint32_t triangle, const doub
     memcpy(current, &point, sizeof point);
 }
 
+size_t tl_collider_skin_count(const tl_collider *collider)
+{
+    return collider->skin_count;
+}
+
+/* Each neighbour is met once by every triangle around the vertex on one side of it, and so equally often. */
+void tl_collider_skin(const tl_collider *collider, double phase, struct tl_skin_vertex *out)
+{
+    vec3d *sums = TL_NEW_ARRAY(vec3d, collider->skin_count + 1);
+    double *lengths = TL_NEW_ARRAY(double, collider->skin_count + 1);
+    for (size_t i = 0; i < collider->skin_count; i++)
+        out[i] = (struct tl_skin_vertex){0};
+    for (size_t i = 0; i < collider->triangle_count; i++) {
+        vec3d t[3];
+        triangle_at(collider, i, phase, t);
+        const vec3d area = area_vector(t);
+        for (size_t k = 0; k < 3; k++) {
+            const size_t at = collider->corners[3 * i + k];
+            const vec3d side = vec3d_sub(t[(k + 1) % 3], t[k]);
+            out[at].x = t[k];
+            out[at].normal = vec3d_add(out[at].normal, area);
+            sums[at] = vec3d_add(sums[at], side);
+            lengths[at] += vec3d_norm(side);
+        }
+    }
+    for (size_t i = 0; i < collider->skin_count; i++) {
+        out[i].normal = vec3d_unit_or(out[i].normal, (vec3d){0});
+        out[i].point = lengths[i] > 0 ? -vec3d_dot(sums[i], out[i].normal) / lengths[i] : 0;
+    }
+    free(sums);
+    free(lengths);
+}
+
 bool tl_collider_has_ground(const tl_collider *collider)
 {
     return collider->ground;
@@ -271,11 +305,11 @@ static void copy_mesh(tl_collider *collider, const tl_mesh *mesh)
     collider->indices = TL_NEW_ARRAY(uint32_t, corner_count);
     memcpy(collider->indices, mesh->indices, corner_count * sizeof(uint32_t));
     uint32_t *weld = TL_NEW_ARRAY(uint32_t, mesh->vertex_count);
-    size_t welded = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
+    collider->skin_count = tl_weld_positions(mesh->positions, mesh->vertex_count, weld);
     collider->corners = TL_NEW_ARRAY(uint32_t, corner_count);
     for (size_t i = 0; i < corner_count; i++)
         collider->corners[i] = weld[collider->indices[i]];
-    collider->fans = tl_fans_build(collider->corners, corner_count, welded);
+    collider->fans = tl_fans_build(collider->corners, corner_count, collider->skin_count);
     free(weld);
 }
 

@@ -8,6 +8,7 @@
 
 #include "assets/base/mesh.h"
 #include "cloth/mesh/rigid.h"
+#include "cloth/mesh/vec3d.h"
 #include "config/base/error.h"
 
 typedef struct tl_collider tl_collider;
@@ -46,6 +47,15 @@ double tl_collider_winding(const tl_collider *collider, const double point[3]);
 /* A point of a triangle in the previous and in the current pose. */
 void tl_collider_path(const tl_collider *collider, uint32_t triangle, const double barycentric[3],
                       double previous[3], double current[3]);
+
+/* The welded vertices of the surface, on the way from the previous pose to the current one: `out`
+ * [tl_collider_skin_count]. The normal is the mean of the faces', by their area. */
+struct tl_skin_vertex {
+    vec3d x, normal;
+    double point; /* height above the mean of its neighbours, as a share of their mean distance */
+};
+size_t tl_collider_skin_count(const tl_collider *collider);
+void tl_collider_skin(const tl_collider *collider, double phase, struct tl_skin_vertex *out);
 
 bool tl_collider_has_ground(const tl_collider *collider);
 

@@ -14,6 +14,7 @@
 #define TOILE_CLOTH_CONTACT_CONTACT_H
 
 #include "cloth/contact/collider.h"
+#include "cloth/contact/peaks.h"
 #include "cloth/contact/sample.h"
 #include "cloth/mesh/particles.h"
 #include "config/base/simd.h"
@@ -28,12 +29,16 @@ struct tl_contact_cache {
 };
 
 struct tl_contacts {
-    size_t particle_count, sample_count;
-    struct tl_contact_sample *samples;
-    struct tl_contact_cache *caches; /* [particle_count + sample_count] */
-    bool *caught;                    /* [particle_count] caught in this frame so far */
-    bool *pinched;                   /* [particle_count] caught in the last frame, or in the last one in which
-                                        the collider moved: one plane does not describe both parts */
+    const struct tl_topology *topology; /* borrowed */
+    size_t particle_count, probe_count;
+    size_t sample_count;               /* probes, and after them peaks: cloth in front of pointed skin */
+    struct tl_contact_sample *samples; /* [sample_count] */
+    struct tl_contact_cache *caches;   /* [particle_count + sample_count] */
+    struct tl_skin_grid skin;          /* of `revision`, at skin_phase */
+    double skin_phase;
+    bool *caught;          /* [particle_count] caught in this frame so far */
+    bool *pinched;         /* [particle_count] caught in the last frame, or in the last one in which
+                              the collider moved: one plane does not describe both parts */
     double *allowed_depth; /* [particle_count] m by which a particle may still be deeper than the thickness:
                         its initial penetration less the part removed so far; HUGE_VAL: not measured yet */
     bool *slipped; /* [particle_count] moved by cloth/contact/caught.h, which ignores the planes; cleared by
@@ -44,10 +49,17 @@ struct tl_contacts {
     const tl_collider *collider;
 };
 
-/* Allocates caches and probes. The `rest` shapes [triangle_count] decide which triangles are coarse enough to
- * need probes. End with tl_contacts_release. */
+/* Allocates caches and probes. Borrows the topology. The `rest` shapes [triangle_count] decide which
+ * triangles are coarse enough to need probes. End with tl_contacts_release. */
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_contacts_release(struct tl_contacts *contacts);
+
+/* The height that a particle or sample (index particle_count and more) keeps above the avatar, as a share of
+ * the thickness. Cloth in front of pointed skin keeps half: what it shows is the skin, not its own fold. */
+static inline double tl_contacts_share(const struct tl_contacts *contacts, size_t i)
+{
+    return i < contacts->particle_count + contacts->probe_count ? 1 : 0.5;
+}
 
 /* m/s. Removes 14 mm of penetration in 0.07 s, and adds no more energy than a fall from 2 mm: v^2 / 2g. */
 #define TL_PUSH_OUT_SPEED 0.2
@@ -66,8 +78,9 @@ void tl_contacts_begin(struct tl_contacts *contacts, const tl_collider *collider
 /* Invalidates all caches, for particles that were placed elsewhere. */
 void tl_contacts_forget(struct tl_contacts *contacts);
 
-/* Call once per step, at its start, with the positions `x`. Queries the collider for every invalid cache, and
- * also for the near ones while the collider moves, because a cached plane is translated but not rotated. */
+/* Call once per step, at its start, with the positions `x`. Searches for peaks of the skin, queries the
+ * collider for every invalid cache, and also for the near ones while the collider moves, because a cached
+ * plane is translated but not rotated. */
 void tl_contacts_update(struct tl_contacts *contacts, const vec3d *x, double thickness_m, double phase);
 
 /* Height of a particle above the nearer of avatar and ground, as far as the caches know: returns false if

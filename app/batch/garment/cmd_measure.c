@@ -116,10 +116,12 @@ static void print_cloth(const tl_session *session)
     if (balance.residual.rms > 0)
         printf("  out of balance by %.3g of its weight rms, %.3g for 99 %% of the vertices, %.3g at most%s\n",
                balance.residual.rms, balance.residual.high, balance.residual.largest, moved);
-    printf("  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
-           "the ground, %.1f mm deep; %zu pairs of triangles cross\n\n",
-           PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,
-           MM * report.deepest_m, report.crossing_count);
+    printf(
+        "  strain %.2f %% rms, %.0f %% at most; %zu open pairs of seams; %zu vertices inside the body or "
+        "the ground, %.1f mm deep; %zu points of the skin beyond the cloth, by up to %.1f mm; %zu pairs of "
+        "triangles cross\n\n",
+        PERCENT * report.rms_strain, PERCENT * report.max_strain, report.open_seams, report.inside_count,
+        MM * report.deepest_m, report.skin_count, MM * report.skin_m, report.crossing_count);
 }
 
 /* ---- CSV ---- */
@@ -225,6 +227,8 @@ static void add_cloth(cJSON *object, const tl_session *session)
     cJSON_AddNumberToObject(item, "open_seams", (double)report.open_seams);
     cJSON_AddNumberToObject(item, "inside", (double)report.inside_count);
     cJSON_AddNumberToObject(item, "deepest_mm", MM * report.deepest_m);
+    cJSON_AddNumberToObject(item, "skin_beyond", (double)report.skin_count);
+    cJSON_AddNumberToObject(item, "skin_beyond_mm", MM * report.skin_m);
     cJSON_AddNumberToObject(item, "crossings", (double)report.crossing_count);
     const struct tl_balance balance = tl_session_balance(session);
     if (balance.residual.rms > 0) {
