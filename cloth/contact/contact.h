@@ -34,7 +34,7 @@ struct tl_contacts {
     size_t sample_count;               /* probes, and after them peaks: cloth in front of pointed skin */
     struct tl_contact_sample *samples; /* [sample_count] */
     struct tl_contact_cache *caches;   /* [particle_count + sample_count] */
-    struct tl_skin_grid skin;          /* of `revision`, at skin_phase */
+    struct tl_skin_grid skin;          /* pointed skin at skin_phase of `revision` */
     double skin_phase;
     bool *caught;          /* [particle_count] caught in this frame so far */
     bool *pinched;         /* [particle_count] caught in the last frame, or in the last one in which

@@ -9,7 +9,7 @@
 #define CELL_M   0.04
 /* Cosine of the angle between the normals of skin and cloth. */
 #define FACING 0.5
-/* By which a point may lie outside a triangle, as a share of it: between the prisms over both sides of a
+/* Lets a point lie outside a triangle by this share of it: between the prisms over both sides of a
  * fold. */
 #define MARGIN 0.1
 
@@ -22,7 +22,7 @@ static struct skin_cell cell_of(vec3d x)
     return (struct skin_cell){{(int)floor(x.x / CELL_M), (int)floor(x.y / CELL_M), (int)floor(x.z / CELL_M)}};
 }
 
-/* Hash of Teschner et al. 2003, section 4. */
+/* Hashes a cell [Teschner et al. 2003, section 4]. */
 static size_t bucket_of(const struct tl_skin_grid *skin, struct skin_cell cell)
 {
     return ((size_t)cell.at[0] * 73856093U ^ (size_t)cell.at[1] * 19349663U ^

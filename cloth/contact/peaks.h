@@ -11,7 +11,7 @@
 
 struct tl_peak {
     struct tl_contact_sample at; /* the point of the cloth that is nearest to the vertex of the skin */
-    double beyond_m;             /* of the skin from the cloth, outwards; less than 0 below it */
+    double beyond_m;             /* m from the cloth to the skin, outwards; less than 0 below it */
 };
 
 /* The skin by cells of a grid. Create with tl_skin_grid_create, end with tl_skin_grid_release. */
@@ -22,7 +22,7 @@ struct tl_skin_grid {
     uint32_t *first;                 /* [buckets + 2] */
     uint32_t *items;                 /* [count] rising within a bucket */
 };
-/* Of vertices that are more pointed than `point` (collider.h); -1: all. */
+/* Takes vertices that are more pointed than `point` (collider.h); -1: all. */
 struct tl_skin_grid tl_skin_grid_create(const tl_collider *collider, double phase, double point);
 void tl_skin_grid_release(struct tl_skin_grid *skin);
 
