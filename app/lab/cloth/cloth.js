@@ -53,7 +53,7 @@ function showFit() {
 
 function showSizes() {
   heading("Size by size");
-  paragraph("A drape comes to rest as a garment does before its first frame: preview brings it near, the solver ends it. " +
+  paragraph("A drape comes to rest as a garment does before its first frame: by relaxation of the exact energy; `preview` then rests in motion. " +
     "Of equal drapes that are each other's mirror image the nearer one counts. What lies on the reference itself has no " +
     "place on a logarithmic axis.");
   for (const side of new Set(rows.map(row => row.side))) {
