@@ -77,10 +77,10 @@ struct tl_cloth_report {
     double substep_s;        /* the chosen solver's substep */
     double deepest_m;        /* deepest penetration of the avatar's surface or the ground; 0: none */
     size_t inside_count;     /* particles inside the avatar or below the ground */
-    size_t skin_count;   /* vertices of the avatar beyond the cloth between its vertices, seen by a viewer */
-    double skin_m;       /* by which the farthest of them is; 0: none */
-    size_t caught_count; /* particles caught between parts of the avatar in the last frame: moved back
-                            outside,    or slipped past one part, both at the price of strain */
+    size_t skin_count;       /* vertices of the avatar beyond the cloth, between the cloth's vertices */
+    double skin_m;           /* by which the farthest of them is; 0: none */
+    size_t caught_count;     /* particles caught between parts of the avatar in the last frame: moved back
+                                outside, or slipped past one part, both at the price of strain */
     bool settled;
 };
 

@@ -210,9 +210,8 @@ static void renew_peaks(struct tl_contacts *contacts, const vec3d *x, double thi
     for (size_t i = 0; i < contacts->particle_count; i++)
         near[i] = distance_to(&contacts->caches[i], x[i], phase) < thickness + PEAK_REACH_M;
     renew_skin(contacts, phase);
-    const double share = tl_contacts_share(contacts, SIZE_MAX);
     const size_t count = tl_peaks_find(&contacts->skin, contacts->topology, x, near,
-                                       (1 + PEAK_MARGIN) * share * thickness, &peaks);
+                                       (1 + PEAK_MARGIN) * TL_PEAK_SHARE * thickness, &peaks);
     contacts->sample_count = contacts->probe_count + count;
     contacts->samples = tl_resize(contacts->samples, contacts->sample_count + 1, sizeof *contacts->samples);
     contacts->caches = tl_resize(contacts->caches, cache_count(contacts), sizeof *contacts->caches);

@@ -54,11 +54,15 @@ struct tl_contacts {
 struct tl_contacts tl_contacts_create(const struct tl_topology *topology, const vec2s (*rest)[3]);
 void tl_contacts_release(struct tl_contacts *contacts);
 
+/* Cloth in front of pointed skin keeps this share of the thickness above it: the skin stays below the smooth
+ * surface that is drawn, and the cloth between its vertices is not pushed out by more. */
+#define TL_PEAK_SHARE 0.5
+
 /* The height that a particle or sample (index particle_count and more) keeps above the avatar, as a share of
- * the thickness. Cloth in front of pointed skin keeps half: what it shows is the skin, not its own fold. */
+ * the thickness. */
 static inline double tl_contacts_share(const struct tl_contacts *contacts, size_t i)
 {
-    return i < contacts->particle_count + contacts->probe_count ? 1 : 0.5;
+    return i < contacts->particle_count + contacts->probe_count ? 1 : TL_PEAK_SHARE;
 }
 
 /* m/s. Removes 14 mm of penetration in 0.07 s, and adds no more energy than a fall from 2 mm: v^2 / 2g. */
