@@ -107,8 +107,9 @@ bool tl_cloth_set(tl_cloth *cloth, const struct tl_cloth_fabric *fabric, const s
         return false;
     bool pins_change =
         params->pin_above_m != cloth->params.pin_above_m || params->pin_colour != cloth->params.pin_colour;
-    bool weight_changes =
-        memcmp(fabric, &cloth->fabric, sizeof *fabric) != 0 || params->gravity != cloth->params.gravity;
+    const struct tl_cloth_fabric *old = &cloth->fabric;  /* numbers without gaps */
+    bool is_new = memcmp(fabric, old, sizeof *old) != 0; // NOLINT(bugprone-suspicious-memory-comparison)
+    bool weight_changes = is_new || params->gravity != cloth->params.gravity;
     const double substep = tl_cloth_substep(cloth);
     cloth->fabric = *fabric;
     cloth->params = *params;

@@ -201,7 +201,7 @@ static bool write_png(const struct tl_card *card, const char *path, tl_error *er
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             uint32_t texel;
-            memcpy(&texel, data + (ptrdiff_t)y * stride + 4 * x, sizeof texel);
+            memcpy(&texel, data + (ptrdiff_t)y * stride + (ptrdiff_t)4 * x, sizeof texel);
             for (int c = 0; c < 3; c++)
                 tl_image_bytes(&image)[3 * ((ptrdiff_t)y * width + x) + c] = (uint8_t)(texel >> (16 - 8 * c));
         }

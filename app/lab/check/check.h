@@ -43,7 +43,7 @@ struct tl_verdicts {
 /* Measures all invariants (only those of geometry when there is no image) and merges the findings into
  * `verdicts`. Returns the index of the first broken invariant, -1: none; `broken` (or NULL) receives its
  * finding. */
-int tl_check_frame(const struct tl_checked *checked, struct tl_verdicts *verdicts, struct tl_finding *broken);
+int tl_check_frame(const struct tl_checked *frame, struct tl_verdicts *verdicts, struct tl_finding *broken);
 /* The bound of an invariant: at most half as much again as the clean run found, and a tenth of the general
  * bound for what rounding and other machines change. */
 double tl_check_bound(const struct tl_check_baseline *baseline, size_t invariant, double general);

@@ -190,7 +190,7 @@ static double mean_of(const double *values, int stride, double *variance)
 {
     double sum = 0, squares = 0;
     for (int pair = 0; pair < PAIRS; pair++) {
-        double one = values[2 * pair * stride], other = values[(2 * pair + 1) * stride];
+        double one = values[(ptrdiff_t)2 * pair * stride], other = values[(ptrdiff_t)(2 * pair + 1) * stride];
         sum += one + other;
         squares += (one - other) * (one - other);
     }
@@ -297,7 +297,7 @@ static bool find_displacement(const struct comparison *comparison, const tl_imag
             int at = y * width + x;
             double along = 0.5 * (double)(cover[at + 1] - cover[at - 1]);
             double down = 0.5 * (double)(cover[at + width] - cover[at - width]);
-            double off = (double)(cover[at] - got[4 * at]);
+            double off = (double)(cover[at] - got[4 * (ptrdiff_t)at]);
             xx += along * along, xy += along * down, yy += down * down;
             x_off += along * off, y_off += down * off;
         }
@@ -384,7 +384,7 @@ static void find_worst_tile(const struct comparison *comparison, const tl_image 
                             struct suspect *suspects, int count, const struct tile_sums *whole,
                             struct tl_truth *out)
 {
-    int again = count < SUSPECTS ? count : SUSPECTS, tiles[SUSPECTS];
+    int again = count < SUSPECTS ? count : SUSPECTS, tiles[SUSPECTS] = {0};
     qsort(suspects, (size_t)count, sizeof *suspects, by_error);
     for (int i = 0; i < again; i++)
         tiles[i] = suspects[i].tile;
@@ -401,7 +401,7 @@ static void find_worst_block(const struct comparison *comparison, const tl_image
                              struct suspect *suspects, int count, const struct tile_sums *whole,
                              struct tl_truth *out)
 {
-    int again = count < SUSPECTS / 4 ? count : SUSPECTS / 4, tiles[SUSPECTS];
+    int again = count < SUSPECTS / 4 ? count : SUSPECTS / 4, tiles[SUSPECTS] = {0};
     double errors[SUSPECTS];
     qsort(suspects, (size_t)count, sizeof *suspects, by_error);
     for (int i = 0; i < 4 * again; i++)
@@ -410,7 +410,7 @@ static void find_worst_block(const struct comparison *comparison, const tl_image
     for (int i = 0; i < 4 * again; i++)
         errors[i] = thorough_error(comparison, image, tiles[i], whole);
     for (int i = 0; i < again; i++)
-        suspects[i].error = min_of(&errors[4 * i]);
+        suspects[i].error = min_of(errors + (ptrdiff_t)4 * i);
     qsort(suspects, (size_t)again, sizeof *suspects, by_error);
     out->patch_error = again > 0 ? suspects[0].error : 0;
     out->patch_x = again > 0 ? (suspects[0].tile % comparison->tiles_x + 1) * TILE : 0;

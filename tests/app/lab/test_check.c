@@ -391,7 +391,7 @@ static void patches_are_named(void **state)
     assert_clean(&stand->checked);
     tl_image *drawn = &stand->fresh_image;
     for (int y = 28; y < 36; y++)
-        memset(tl_image_floats(drawn) + 4 * (y * WIDTH + 40), 0, 8 * 4 * sizeof(float));
+        memset(tl_image_floats(drawn) + 4 * ((ptrdiff_t)y * WIDTH + 40), 0, sizeof(float[8][4]));
     assert_breaks(&stand->checked, "image.patch", "pixel 44, 32");
     free(kept);
     take_down(&stand);

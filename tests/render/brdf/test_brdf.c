@@ -195,7 +195,8 @@ static bool is_blocked(const double p[2], vec3s d, double elevation)
 static void schlick_approximates(void **state)
 {
     (void)state;
-    for (float width = 0.05f; width < 0.6f; width += 0.1f) {
+    for (int step = 0; step < 6; step++) {
+        const float width = 0.05f + 0.1f * (float)step;
         struct tl_brdf brdf = of_widths(TL_REFLECT_TORRANCE_SPARROW, width, width);
         const double r = (double)width * (double)width, k = sqrt(2 * r / PI);
         brdf.gloss.facets = TL_FACETS_GGX;

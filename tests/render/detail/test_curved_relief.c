@@ -37,7 +37,8 @@ static tl_image make_map(enum pattern pattern, bool is_paint)
     tl_image map = tl_image_create(TEXELS, TEXELS, is_paint ? 3 : 1, TL_IMAGE_F32);
     map.linear = true;
     for (int i = 0; i < TEXELS * TEXELS; i++) {
-        double u = (i % TEXELS + 0.5) / TEXELS, v = ((double)(i / TEXELS) + 0.5) / TEXELS;
+        int column = i % TEXELS, row = i / TEXELS;
+        double u = (column + 0.5) / TEXELS, v = (row + 0.5) / TEXELS;
         if (is_paint)
             for (int c = 0; c < 3; c++)
                 tl_image_floats(&map)[3 * i + c] = (float)paint_at(u, v);
@@ -164,7 +165,7 @@ static void check_view(struct test_device *device, enum pattern pattern, vec3s e
 {
     tl_image heights = make_map(pattern, false), paint = make_map(pattern, true);
     struct test_scene scene;
-    struct seen *seen = TL_NEW_ARRAY(struct seen, SIDE * SIDE);
+    struct seen *seen = TL_NEW_ARRAY(struct seen, (size_t)SIDE * SIDE);
     scene_open(&scene, &heights, &paint, eye);
     struct tl_view view = tl_view_make(&scene.frame.camera, SIDE, SIDE);
     for (int i = 0; i < SIDE * SIDE; i++) {
