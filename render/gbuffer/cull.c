@@ -2,14 +2,15 @@
 
 #include "config/base/memory.h"
 #include "config/base/simd.h"
+#include "render/gbuffer/depth_terms.glsl"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* Rounding of depths, and of places for every sample that the picture is wide: sixteen roundings of a float.
- */
-#define DEPTH_ROUNDING 1e-6f
+/* What depths may differ by from the plane's: sixteen roundings of a float, and backs by their step. Rounding
+ * of places for every sample that the picture is wide. */
+#define DEPTH_MARGIN   (1e-6f + DEPTH_OF_BACKS)
 #define PLACE_ROUNDING (16 * FLT_EPSILON)
 
 /* Positions farther out than this, in sizes of the picture, are rounded too coarsely for a bound. */
@@ -132,8 +133,8 @@ TL_INLINE void depth_bounds(const struct facet *facet, float margin, float x, fl
     const struct tl_cull_place *at = &facet->corners[0];
     float z = at->z + facet->slope_x * (x - at->x) + facet->slope_y * (y - at->y);
     float spread = margin * (fabsf(facet->slope_x) + fabsf(facet->slope_y));
-    *low = z - spread - DEPTH_ROUNDING;
-    *high = z + spread + DEPTH_ROUNDING;
+    *low = z - spread - DEPTH_MARGIN;
+    *high = z + spread + DEPTH_MARGIN;
 }
 
 TL_INLINE bool covers_any(const struct raster *raster, const struct facet *facet)

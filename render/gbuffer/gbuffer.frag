@@ -1,5 +1,6 @@
 #version 450 core
 // Outputs for the light passes, of the nearest surface: point, shading normal, and the two colours of its material.
+#include "depth_terms.glsl"
 #include "material.glsl"
 #include "ground.glsl"
 
@@ -23,17 +24,17 @@ layout(location = 2) out vec4 out_diffuse;  // kd with occlusion; octahedral x o
 layout(location = 3) out vec4 out_specular; // F ks, or F0 of facets where FRAMES; octahedral y of the smooth normal
 layout(location = 4) out uint out_triangle; // 1 + its number, and TRIANGLE_BACK
 #endif
+layout(depth_greater) out float gl_FragDepth;
 #ifdef FRAMES
 layout(location = 5) out vec4 out_widening; // added to squared widths of facets along u and v, and to their product
 #endif
 #ifdef BEHIND
 layout(binding = 15) uniform sampler2D passed; // depth of what is nearer than what is wanted
 
-const float DEPTH_ROUNDING = 1.2e-7;
 
 bool is_passed()
 {
-    return gl_FragCoord.z <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING;
+    return gl_FragDepth <= texelFetch(passed, ivec2(gl_FragCoord.xy), 0).r + DEPTH_ROUNDING;
 }
 #endif
 
@@ -56,6 +57,7 @@ uint with_side(uint place)
 #ifdef ONLY_TRIANGLE
 void main()
 {
+    gl_FragDepth = gl_FragCoord.z + (gl_FrontFacing ? 0.0 : DEPTH_OF_BACKS);
 #ifdef BEHIND
     if (is_passed())
         discard;
@@ -69,6 +71,7 @@ void main()
 #else
 void main()
 {
+    gl_FragDepth = gl_FragCoord.z + (gl_FrontFacing ? 0.0 : DEPTH_OF_BACKS);
 #ifdef BEHIND
     if (is_passed())
         discard;

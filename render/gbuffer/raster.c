@@ -3,6 +3,7 @@
 #include "config/base/memory.h"
 #include "config/base/simd.h"
 #include "render/gbuffer/clip.h"
+#include "render/gbuffer/depth_terms.glsl"
 #include "render/gbuffer/samples.h"
 
 #include <math.h>
@@ -18,8 +19,6 @@
 /* Rows whose spans are computed together, and pixels that are filled together. */
 #define SPAN_LANES 4
 #define FILL_LANES 8
-/* A surface behind an open triangle is deeper than it by more than this, as in gbuffer.frag. */
-#define DEPTH_ROUNDING 1.2e-7f
 /* Bit of an id while its band is filled: the triangle is open. */
 #define OPEN 0x40000000u
 /* Triangles of the surfaces that one thread prepares at a time, and vertices. */
@@ -319,11 +318,12 @@ TL_INLINE void fill_span(const struct raster_triangle *triangle, int row, int be
 {
     const float y = (float)row, start = triangle->depth, across = triangle->depth_x, up = triangle->depth_y;
     const uint32_t id = triangle->id;
+    const float back = id & TL_SAMPLE_BACK ? DEPTH_OF_BACKS : 0;
     for (int from = begin; from < end; from += FILL_LANES)
 #pragma omp simd
         for (int k = 0; k < FILL_LANES; k++) {
             int x = from + k;
-            float depth = fmaf(up, y, fmaf(across, (float)x, start));
+            float depth = fmaf(up, y, fmaf(across, (float)x, start)) + back;
             bool is_nearer = (x < end) & (depth < depths[x]);
             if (passed)
                 is_nearer &= depth > passed[x];

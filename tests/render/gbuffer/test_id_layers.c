@@ -3,6 +3,7 @@
  * count where rays beside the pixel's centre find the same triangles; at an edge rounding decides. */
 #include "tests/render/soup.h"
 
+#include "render/gbuffer/depth_terms.glsl"
 #include "render/gbuffer/ids_internal.h"
 
 #include "tests/testing.h"
@@ -77,13 +78,15 @@ static struct seen look(const struct soup *soups, size_t soup_count, const struc
             continue;
         vec3s normal =
             glms_vec3_cross(glms_vec3_sub(corners[1], corners[0]), glms_vec3_sub(corners[2], corners[0]));
+        bool is_back = glms_vec3_dot(normal, direction) > 0;
+        if (is_back) /* the way along which the depth 1 - near / distance grows by the step */
+            distance += (double)DEPTH_OF_BACKS * distance * distance / (double)view->near_m;
         const struct tl_mesh_part *part =
             3 * own < surface->parts[1].first_index ? &surface->parts[0] : &surface->parts[1];
-        count = insert(
-            hits, count,
-            (struct hit){.distance = distance,
-                         .id = (number + 1) | (glms_vec3_dot(normal, direction) > 0 ? TL_SAMPLE_BACK : 0),
-                         .is_open = surface->materials[part->material].openness > 0});
+        count = insert(hits, count,
+                       (struct hit){.distance = distance,
+                                    .id = (number + 1) | (is_back ? TL_SAMPLE_BACK : 0),
+                                    .is_open = surface->materials[part->material].openness > 0});
     }
     struct seen seen = {{0}};
     for (int i = 0; i < count; i++) {
