@@ -67,7 +67,7 @@ void tl_cloth_set_constants(tl_cloth *cloth)
         tl_strain_limits_create(&cloth->topology, &cloth->energy, (const vec2s(*)[3])cloth->rest,
                                 cloth->shortest_edge, cloth->params.strain_limit, cloth->particles.x);
     tl_layers_forget(&cloth->layers);
-    tl_apart_forget(&cloth->apart);
+    tl_self_contact_forget(&cloth->self_contact);
     cloth->undriven = cloth->cage_is_current = false;
 }
 
@@ -132,7 +132,7 @@ void tl_cloth_build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_co
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
     tl_layers_release(&cloth->layers);
-    tl_apart_forget(&cloth->apart);
+    tl_self_contact_forget(&cloth->self_contact);
 }
 
 void tl_cloth_add_pin(tl_cloth *cloth, uint32_t particle, bool by_hand)
@@ -186,7 +186,7 @@ void tl_cloth_release_state(tl_cloth *cloth)
     tl_particles_release(&cloth->particles);
     tl_contacts_release(&cloth->contacts);
     tl_layers_release(&cloth->layers);
-    tl_apart_release(&cloth->apart);
+    tl_self_contact_release(&cloth->self_contact);
     tl_strain_limits_release(&cloth->limits);
     tl_seams_release(&cloth->seams);
     free(cloth->rest);

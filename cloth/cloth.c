@@ -132,7 +132,7 @@ static void reset_history(tl_cloth *cloth)
     for (size_t i = 0; i < cloth->topology.render_count; i++)
         cloth->contacts.pinched[cloth->topology.weld[i]] |= cloth->start_pinched[i];
     tl_layers_forget(&cloth->layers);
-    tl_apart_forget(&cloth->apart);
+    tl_self_contact_forget(&cloth->self_contact);
     cloth->cage_is_current = false;
 }
 

@@ -44,7 +44,7 @@ struct tl_cloth_params {
     int pin_colour;         /* enum tl_pin_colour; vertices of this colour in the file are pinned likewise */
     const char *pin_openings; /* names of openings whose vertices are pinned, with commas between
                                           them */
-    bool self_contact;        /* the cloth does not pass through itself: cloth/self_contact/keep_apart.h */
+    bool self_contact;        /* the cloth does not pass through itself: cloth/self_contact/self_contact.h */
     double gravity;           /* m/s^2, along -Y */
     float wind[3];            /* m/s; 0: no aerodynamic force at all, fabric.damping alone slows the cloth */
     double gust;              /* 0 to 1: amplitude of the wind's speed, relative to it */

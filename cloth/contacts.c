@@ -35,23 +35,23 @@ static double ply_distance(const tl_cloth *cloth)
  * coarse cloth stand higher than the points between them, which touch. */
 #define CARRIER_DISTANCES 3
 
-static struct tl_apart_params params_of_self_contact(const tl_cloth *cloth, double friction, double h,
-                                                     double phase)
+static struct tl_self_contact_params params_of_self_contact(const tl_cloth *cloth, double friction, double h,
+                                                            double phase)
 {
-    return (struct tl_apart_params){.topology = &cloth->topology,
-                                    .rest = (const vec2s(*)[3])cloth->rest,
-                                    .made_at = cloth->made_at,
-                                    .thickness_m = ply_distance(cloth),
-                                    .friction = friction,
-                                    .h = h,
-                                    .body = &cloth->contacts,
-                                    .phase = phase,
-                                    .carrier_m = CARRIER_DISTANCES * cloth->fabric.thickness_m};
+    return (struct tl_self_contact_params){.topology = &cloth->topology,
+                                           .rest = (const vec2s(*)[3])cloth->rest,
+                                           .made_at = cloth->made_at,
+                                           .thickness_m = ply_distance(cloth),
+                                           .friction = friction,
+                                           .h = h,
+                                           .body = &cloth->contacts,
+                                           .phase = phase,
+                                           .carrier_m = CARRIER_DISTANCES * cloth->fabric.thickness_m};
 }
 
 bool tl_cloth_is_tangled(const tl_cloth *cloth)
 {
-    return cloth->params.self_contact && !cloth->apart.was_clean;
+    return cloth->params.self_contact && !cloth->self_contact.was_clean;
 }
 
 bool tl_cloth_order_layers(tl_cloth *cloth, const tl_collider *collider, tl_error *error)
@@ -64,19 +64,19 @@ bool tl_cloth_order_layers(tl_cloth *cloth, const tl_collider *collider, tl_erro
                             cloth->particles.x, error);
 }
 
-void tl_cloth_keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact)
+void tl_cloth_solve_contact(tl_cloth *cloth, const struct tl_contact_params *contact)
 {
-    const struct tl_apart_params apart =
+    const struct tl_self_contact_params params =
         params_of_self_contact(cloth, contact->friction, contact->h, contact->phase);
     if (cloth->params.self_contact) {
-        tl_apart_solve(&cloth->apart, &apart, &cloth->particles);
+        tl_self_contact_solve(&cloth->self_contact, &params, &cloth->particles);
         if (tl_cloth_is_tangled(cloth))
             tl_layers_solve(&cloth->layers, contact, &cloth->particles);
     }
     tl_contacts_solve(&cloth->contacts, contact, &cloth->particles);
     if (cloth->params.self_contact) {
-        tl_apart_carry(&cloth->apart, &apart, &cloth->particles);
-        tl_apart_truncate(&cloth->apart, &apart, cloth->particles.previous, &cloth->particles);
+        tl_self_contact_carry(&cloth->self_contact, &params, &cloth->particles);
+        tl_self_contact_truncate(&cloth->self_contact, &params, cloth->particles.previous, &cloth->particles);
     }
 }
 
@@ -109,20 +109,20 @@ static uint32_t *make_classes(const tl_cloth *cloth)
 
 void tl_cloth_prepare_contact(tl_cloth *cloth)
 {
-    if (cloth->apart.made || !cloth->params.self_contact)
+    if (cloth->self_contact.made || !cloth->params.self_contact)
         return;
     uint32_t *classes = make_classes(cloth);
-    const struct tl_apart_params params = params_of_self_contact(cloth, 0, 1, 0);
-    tl_apart_prepare(&cloth->apart, &params, classes, cloth->particles.x);
+    const struct tl_self_contact_params params = params_of_self_contact(cloth, 0, 1, 0);
+    tl_self_contact_prepare(&cloth->self_contact, &params, classes, cloth->particles.x);
     free(classes);
 }
 
 void tl_cloth_renew_contact(tl_cloth *cloth, double h, double phase_before, bool velocity_from_positions)
 {
-    if (!cloth->params.self_contact || !tl_apart_is_due(&cloth->apart, h))
+    if (!cloth->params.self_contact || !tl_self_contact_is_due(&cloth->self_contact, h))
         return;
-    const struct tl_apart_params params = params_of_self_contact(cloth, 0, h, phase_before);
-    tl_apart_renew(&cloth->apart, &params, &cloth->particles, velocity_from_positions);
+    const struct tl_self_contact_params params = params_of_self_contact(cloth, 0, h, phase_before);
+    tl_self_contact_renew(&cloth->self_contact, &params, &cloth->particles, velocity_from_positions);
 }
 
 /* A moving avatar catches cloth, and so does cloth that lies on itself and holds a vertex inside the avatar
@@ -153,13 +153,13 @@ static bool make_way(tl_cloth *cloth, const tl_collider *collider, const struct 
                      vec3d *from)
 {
     struct tl_particles *particles = &cloth->particles;
-    const struct tl_apart_params apart =
+    const struct tl_self_contact_params params =
         params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), contact->phase);
     bool any = true;
     for (int round = 0; round < MAKE_WAY_ROUNDS && (any || is_torn(cloth)); round++) {
         release_caught(cloth, collider);
-        tl_apart_push(&cloth->apart, &apart, particles);
-        tl_apart_truncate(&cloth->apart, &apart, from, particles);
+        tl_self_contact_push(&cloth->self_contact, &params, particles);
+        tl_self_contact_truncate(&cloth->self_contact, &params, from, particles);
         memcpy(from, particles->x, particles->count * sizeof *from);
         any = tl_contacts_lift(&cloth->contacts, contact, particles);
     }
@@ -183,27 +183,27 @@ void tl_cloth_keep_outside(tl_cloth *cloth, const tl_collider *collider,
     tl_contacts_enforce(&cloth->contacts, contact, particles);
     if (tl_collider_travel(collider) > 0 && cloth->contacts.caught_count > 0)
         pressed = make_way(cloth, collider, contact, from);
-    const struct tl_apart_params apart =
+    const struct tl_self_contact_params params =
         params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), contact->phase);
-    tl_apart_truncate(&cloth->apart, &apart, from, particles);
+    tl_self_contact_truncate(&cloth->self_contact, &params, from, particles);
     if (pressed)
         tl_contacts_let_go(&cloth->contacts, contact, particles);
     free(from);
 }
 
 void tl_cloth_find_contacts(const tl_cloth *cloth, const tl_collider *collider, struct tl_contacts *body,
-                            struct tl_apart *self)
+                            struct tl_self_contact *self)
 {
     *body = tl_contacts_create(&cloth->topology, (const vec2s(*)[3])cloth->rest);
-    *self = (struct tl_apart){0};
+    *self = (struct tl_self_contact){0};
     tl_contacts_begin(body, collider);
     tl_contacts_update(body, cloth->particles.x, cloth->fabric.thickness_m, 1);
     if (!cloth->params.self_contact)
         return;
     uint32_t *classes = make_classes(cloth);
-    struct tl_apart_params params = params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), 1);
+    struct tl_self_contact_params params = params_of_self_contact(cloth, 0, tl_cloth_substep(cloth), 1);
     params.body = body;
-    tl_apart_prepare(self, &params, classes, cloth->particles.x);
-    tl_apart_renew(self, &params, &cloth->particles, false);
+    tl_self_contact_prepare(self, &params, classes, cloth->particles.x);
+    tl_self_contact_renew(self, &params, &cloth->particles, false);
     free(classes);
 }

@@ -1,9 +1,9 @@
 /* Contact of a cloth with the avatar, the ground and itself, with the cloth's own thickness and friction.
  *
  * Before a substep the caller looks for what the cloth might touch (tl_cloth_renew_contact); after the other
- * constraints of the substep it keeps the cloth apart (tl_cloth_keep_apart); after a step of several substeps
- * it moves outside what these have left inside (tl_cloth_keep_outside). SI. Errors: none but where stated.
- * Threads: one call at a time for one cloth. */
+ * constraints of the substep it keeps the cloth apart (tl_cloth_solve_contact); after a step of several
+ * substeps it moves outside what these have left inside (tl_cloth_keep_outside). SI. Errors: none but where
+ * stated. Threads: one call at a time for one cloth. */
 #ifndef TOILE_CLOTH_CONTACTS_H
 #define TOILE_CLOTH_CONTACTS_H
 
@@ -30,7 +30,7 @@ void tl_cloth_renew_contact(tl_cloth *cloth, double h, double phase_before, bool
 
 /* Contact of the cloth with itself, then with the avatar; last, what would pass through the cloth is moved
  * back. */
-void tl_cloth_keep_apart(tl_cloth *cloth, const struct tl_contact_params *contact);
+void tl_cloth_solve_contact(tl_cloth *cloth, const struct tl_contact_params *contact);
 
 /* Moves cloth outside that a step has left inside the avatar, and keeps it on its side of other cloth. Where
  * it cannot be both, as between an arm and a hip that pass through each other, the avatar lets it go.
@@ -40,8 +40,8 @@ void tl_cloth_keep_outside(tl_cloth *cloth, const tl_collider *collider,
 
 /* Finds what touches the cloth where it is now, by searches of its own: the planes of `body` and contacts of
  * `self`, which stays {0} where the cloth passes through itself. End with tl_contacts_release and
- * tl_apart_release. Borrows the cloth and the collider. */
+ * tl_self_contact_release. Borrows the cloth and the collider. */
 void tl_cloth_find_contacts(const tl_cloth *cloth, const tl_collider *collider, struct tl_contacts *body,
-                            struct tl_apart *self);
+                            struct tl_self_contact *self);
 
 #endif

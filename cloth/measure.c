@@ -135,8 +135,8 @@ struct tl_energies tl_cloth_energies(const tl_cloth *cloth)
 /* Contact's own tree is fitted to other positions whenever it is used. */
 static size_t count_crossings(const tl_cloth *cloth)
 {
-    struct tl_near_tree tree = cloth->apart.near.tree;
-    return tl_crossings_count(cloth->apart.made ? &tree : NULL, &cloth->topology, cloth->particles.x);
+    struct tl_near_tree tree = cloth->self_contact.near.tree;
+    return tl_crossings_count(cloth->self_contact.made ? &tree : NULL, &cloth->topology, cloth->particles.x);
 }
 
 struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider *collider)
@@ -174,7 +174,7 @@ struct tl_cloth_report tl_cloth_measure(const tl_cloth *cloth, const tl_collider
 struct tl_residual tl_cloth_residual(const tl_cloth *cloth, const tl_collider *collider)
 {
     struct tl_contacts body;
-    struct tl_apart self;
+    struct tl_self_contact self;
     vec3d *forces = TL_NEW_ARRAY(vec3d, cloth->particles.count);
     tl_energy_forces(&cloth->energy, &cloth->fabric, cloth->particles.x, forces, NULL);
     tl_cloth_find_contacts(cloth, collider, &body, &self);
@@ -187,7 +187,7 @@ struct tl_residual tl_cloth_residual(const tl_cloth *cloth, const tl_collider *c
                                               .thickness_m = cloth->fabric.thickness_m};
     struct tl_residual residual = tl_residual_measure(&source);
     tl_contacts_release(&body);
-    tl_apart_release(&self);
+    tl_self_contact_release(&self);
     free(forces);
     return residual;
 }

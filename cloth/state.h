@@ -7,7 +7,7 @@
 #include "cloth/contact/layers.h"
 #include "cloth/drive/pins.h"
 #include "cloth/drive/seams.h"
-#include "cloth/self_contact/keep_apart.h"
+#include "cloth/self_contact/self_contact.h"
 #include "cloth/solvers/strain_limit.h"
 
 struct tl_cloth {
@@ -29,8 +29,8 @@ struct tl_cloth {
     vec3d *good_x, *good_v;         /* [particles.count] at the frame's start, restored after a failure */
     struct tl_strain_limits limits; /* preview */
     struct tl_contacts contacts;
-    struct tl_layers layers; /* with params.self_contact */
-    struct tl_apart apart;   /* the same */
+    struct tl_layers layers;             /* with params.self_contact */
+    struct tl_self_contact self_contact; /* the same */
     struct tl_seams seams;
     bool hanging; /* settling has just begun: holds of height still draw */
     size_t pin_count;

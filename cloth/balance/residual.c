@@ -68,9 +68,9 @@ static void add_body(const struct tl_residual_source *source, struct row_list *r
 static void add_self(const struct tl_residual_source *source, struct row_list *rows)
 {
     for (size_t i = 0; source->self && i < source->self->count; i++) {
-        const struct tl_apart_contact *contact = &source->self->contacts[i];
+        const struct tl_self_contact_pair *contact = &source->self->pairs[i];
         struct contact_row row = {.count = 4, .normal = contact->normal};
-        vec3d gap = tl_apart_between(contact, source->particles->x);
+        vec3d gap = tl_self_contact_between(contact, source->particles->x);
         if (vec3d_dot(gap, contact->normal) > contact->kept + WITHIN_M)
             continue;
         for (int k = 0; k < 4; k++) {

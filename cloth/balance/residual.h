@@ -14,7 +14,7 @@
 
 #include "cloth/contact/contact.h"
 #include "cloth/mesh/particles.h"
-#include "cloth/self_contact/keep_apart.h"
+#include "cloth/self_contact/self_contact.h"
 
 /* Shares of a vertex's weight, over the vertices that are not held. */
 struct tl_residual {
@@ -37,10 +37,10 @@ static inline bool tl_residual_is_balance(const struct tl_residual *residual)
 /* Borrowed for the call. */
 struct tl_residual_source {
     const struct tl_particles *particles;
-    const vec3d *forces;                  /* [particles->count] N, elastic */
-    const struct tl_contacts *body;       /* updated for these positions */
-    const struct tl_apart_contacts *self; /* the same; NULL: the cloth passes through itself */
-    double gravity;                       /* m/s^2; where it is 0, shares are of 9.81 */
+    const vec3d *forces;                      /* [particles->count] N, elastic */
+    const struct tl_contacts *body;           /* updated for these positions */
+    const struct tl_self_contact_pairs *self; /* the same; NULL: the cloth passes through itself */
+    double gravity;                           /* m/s^2; where it is 0, shares are of 9.81 */
     double friction, thickness_m;
 };
 struct tl_residual tl_residual_measure(const struct tl_residual_source *source);

@@ -74,9 +74,9 @@ static void list_pairs(const tl_cloth *cloth, size_t count, struct tl_clearance 
 
 static void measure_rooms(const tl_cloth *cloth, size_t count, struct tl_clearance *out)
 {
-    const struct tl_apart *apart = &cloth->apart;
-    if (apart->made && apart->near.listed)
-        take_pairs(&apart->near, apart->off, cloth->particles.x, count, out);
+    const struct tl_self_contact *self_contact = &cloth->self_contact;
+    if (self_contact->made && self_contact->near.listed)
+        take_pairs(&self_contact->near, self_contact->off, cloth->particles.x, count, out);
     else if (cloth->params.self_contact)
         list_pairs(cloth, count, out);
     else

@@ -1,4 +1,4 @@
-/* Exchange of single planes within a window (keep_apart.h).
+/* Exchange of single planes within a window (self_contact.h).
  *
  * Planes stand still, and two features that move on together are stopped by the plane between them. A pair's
  * plane may be exchanged for another at the start of any substep: both hold the pair's vertices there, and
@@ -11,13 +11,13 @@
 #ifndef TOILE_CLOTH_SELF_CONTACT_EXCHANGE_H
 #define TOILE_CLOTH_SELF_CONTACT_EXCHANGE_H
 
-#include "cloth/self_contact/keep_apart.h"
+#include "cloth/self_contact/self_contact.h"
 
-/* Exchanges planes so that the vertices that apart->cut marks can go where they want, `x`, as far as their
+/* Exchanges planes so that the vertices that self->cut marks can go where they want, `x`, as far as their
  * pairs leave them place; moves them, and other vertices of these pairs, to where they then can be. `start`
  * is where all planes hold. Returns whether a vertex was moved into the body. Metres. Errors: none. Threads:
  * one call at a time. */
-bool tl_apart_exchange(struct tl_apart *apart, const struct tl_apart_params *params,
-                       const struct tl_apart_start *start, vec3d *x);
+bool tl_self_contact_exchange(struct tl_self_contact *self, const struct tl_self_contact_params *params,
+                              const struct tl_self_contact_start *start, vec3d *x);
 
 #endif

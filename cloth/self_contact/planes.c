@@ -1,6 +1,6 @@
 #include "cloth/self_contact/planes.h"
 
-/* TL_APART_FLOOR_M is at most this share of the mesh's own size there. */
+/* TL_SELF_CONTACT_FLOOR_M is at most this share of the mesh's own size there. */
 #define FLOOR_SHARE 0.004
 /* Projections on all planes of a vertex, one after the other, before it is moved back along its way. */
 #define ROUNDS 3
@@ -25,8 +25,9 @@ static struct facing facing_heights(const double heights[4], int second)
 /* The plane is half way between the features, as the vertices themselves show it: so it separates them even
  * where the nearest points are rounded. At the substep's end it may be half way between where they want to
  * be. */
-bool tl_apart_planes_of(const struct tl_near_pair *pair, const double *size, const vec3d at[4],
-                        const vec3d to[4], vec3d normal, double distance, struct tl_apart_plane planes[4])
+bool tl_self_contact_planes_of(const struct tl_near_pair *pair, const double *size, const vec3d at[4],
+                               const vec3d to[4], vec3d normal, double distance,
+                               struct tl_self_contact_plane planes[4])
 {
     int second = tl_near_second(pair);
     double heights[4], later[4];
@@ -35,13 +36,14 @@ bool tl_apart_planes_of(const struct tl_near_pair *pair, const double *size, con
         later[i] = vec3d_dot(normal, vec3d_sub(to[i], at[0]));
     }
     const struct facing now = facing_heights(heights, second), then = facing_heights(later, second);
-    if (!(now.above - now.below > TL_APART_UNPLANED_SHARE * distance))
+    if (!(now.above - now.below > TL_SELF_CONTACT_UNPLANED_SHARE * distance))
         return false;
     double middle = (now.below + now.above) / 2, step = (then.below + then.above) / 2 - middle;
     for (int i = 0; i < 4; i++) {
         double side = i < second ? 1 : -1;
-        double room = side * (middle - heights[i]) - tl_min(TL_APART_FLOOR_M, FLOOR_SHARE * size[pair->v[i]]);
-        planes[i] = (struct tl_apart_plane){
+        double room =
+            side * (middle - heights[i]) - tl_min(TL_SELF_CONTACT_FLOOR_M, FLOOR_SHARE * size[pair->v[i]]);
+        planes[i] = (struct tl_self_contact_plane){
             .normal = vec3d_scale(normal, side), .room = tl_max(room, 0), .gain = side * step};
     }
     return true;
@@ -56,8 +58,8 @@ static double share_within(vec3d safe, vec3d d, double radius)
     return a > 0 ? tl_max((root - b) / a, 0) : 0;
 }
 
-vec3d tl_apart_bounded(vec3d d, vec3d safe, double radius, const struct tl_apart_plane *planes,
-                       size_t plane_count, bool *stopped)
+vec3d tl_self_contact_bounded(vec3d d, vec3d safe, double radius, const struct tl_self_contact_plane *planes,
+                              size_t plane_count, bool *stopped)
 {
     double length = vec3d_norm(d);
     if (length > radius)
@@ -87,7 +89,8 @@ vec3d tl_apart_bounded(vec3d d, vec3d safe, double radius, const struct tl_apart
     return share < 1 ? vec3d_mix(safe, d, share) : d;
 }
 
-bool tl_apart_allows(vec3d d, double radius, const struct tl_apart_plane *planes, size_t plane_count)
+bool tl_self_contact_allows(vec3d d, double radius, const struct tl_self_contact_plane *planes,
+                            size_t plane_count)
 {
     bool allowed = vec3d_norm(d) <= radius + ON_PLANE_M;
     for (size_t k = 0; k < plane_count && allowed; k++)

@@ -102,7 +102,7 @@ static void apply_constraints(tl_cloth *cloth, const struct tl_substep *substep,
     if (draws_seams)
         draw_seams(cloth, substep);
     pull_grabbed(cloth, substep);
-    tl_cloth_keep_apart(cloth, &contact);
+    tl_cloth_solve_contact(cloth, &contact);
 }
 
 /* One substep of XPBD: predict x from v and external forces, project the constraints, then take v from the
@@ -259,7 +259,7 @@ static void close_seams(tl_cloth *cloth, bool was_stuck)
     if (count < cloth->particles.count)
         tl_cloth_join(cloth, joined, count);
     else if (tl_seams_are_stuck(&cloth->seams) != was_stuck)
-        tl_apart_forget(&cloth->apart);
+        tl_self_contact_forget(&cloth->self_contact);
     free(joined);
 }
 
@@ -305,7 +305,7 @@ static bool is_driven(const tl_cloth *cloth, const tl_collider *collider)
     for (size_t i = 0; i < cloth->particles.count && collider && !pushed; i++)
         pushed = cloth->contacts.allowed_depth[i] > 0 || (ground && cloth->particles.x[i].y < -BURIED_M);
     return pushed || cloth->grabbed || cloth->hanging || cloth->seams.pair_count > 0 ||
-           (cloth->params.self_contact && !cloth->apart.clean) || wind[0] != 0 || wind[1] != 0 ||
+           (cloth->params.self_contact && !cloth->self_contact.clean) || wind[0] != 0 || wind[1] != 0 ||
            wind[2] != 0;
 }
 
@@ -363,7 +363,7 @@ static void follow_jump(tl_cloth *cloth, const tl_collider *collider)
         particles->v[i] = tl_rigid_turn(&jump, particles->v[i]);
     }
     tl_contacts_forget(&cloth->contacts);
-    tl_apart_end_window(&cloth->apart);
+    tl_self_contact_end_window(&cloth->self_contact);
 }
 
 bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct tl_advance_params *advance,
@@ -402,7 +402,7 @@ bool tl_cloth_advance(tl_cloth *cloth, const tl_collider *collider, const struct
         memcpy(particles->v, cloth->good_v, bytes);
         cloth->jump_followed = jump_followed;
         tl_layers_forget(&cloth->layers);
-        tl_apart_forget(&cloth->apart);
+        tl_self_contact_forget(&cloth->self_contact);
     }
     return good;
 }

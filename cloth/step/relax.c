@@ -112,7 +112,7 @@ static void relax_step(const struct relaxing *relaxing, double keep)
     tl_energy_forces(&cloth->energy, &cloth->fabric, particles->x, cloth->forces, &then);
     if (cloth->seams.pair_count > 0)
         tl_seams_solve(&cloth->seams, particles, h);
-    tl_cloth_keep_apart(cloth, &contact);
+    tl_cloth_solve_contact(cloth, &contact);
     tl_particles_finish(particles, h);
 }
 

@@ -85,7 +85,7 @@ static uint64_t play(struct worn *worn, const char *name, int settling, int moti
         hash = tl_hash(hash, worn->cloth->particles.x, worn->cloth->particles.count * sizeof(vec3d));
     }
     printf("%s: no crossing in %d frames, strain in motion %.2f, %zu windows and %zu lists\n", name,
-           settling + motion, strain, worn->cloth->apart.windows, worn->cloth->apart.lists);
+           settling + motion, strain, worn->cloth->self_contact.windows, worn->cloth->self_contact.lists);
     assert_true(strain < 1);
     assert_near(deepest, 0, 1e-6);
     return hash;

@@ -122,7 +122,7 @@ const struct tl_invariant tl_invariants[] = {
      "a third of the contact distance; the skin of a moving body is followed in steps", false,
      tl_measure_inside},
     {"cloth.crossing", "the cloth does not pass through itself: pairs of triangles that cross", 0,
-     "planes separate what is near, and nothing else can reach (cloth/self_contact/keep_apart.h)", false,
+     "planes separate what is near, and nothing else can reach (cloth/self_contact/self_contact.h)", false,
      tl_measure_crossing},
     {"cloth.seams", "no seam is open: pairs of vertices that are apart", 0,
      "sewing welds what meets, and draws until it has met", false, tl_measure_seams},

@@ -2,7 +2,7 @@
  * holds, and no motion, however far, takes a pair past each other, while motion away from others is not cut.
  */
 #include "cloth/self_contact/closest.h"
-#include "cloth/self_contact/keep_apart.h"
+#include "cloth/self_contact/self_contact.h"
 #include "config/base/memory.h"
 #include "tests/cloth/crossing_oracle.h"
 #include "tests/testing.h"
@@ -306,13 +306,13 @@ static void test_umbrella(void **state)
 
 /* ---- Planes ---- */
 
-static struct tl_apart_params params_of(const struct scene *scene)
+static struct tl_self_contact_params params_of(const struct scene *scene)
 {
-    return (struct tl_apart_params){.topology = &scene->topology,
-                                    .rest = (const vec2s(*)[3])scene->rest,
-                                    .made_at = scene->x,
-                                    .thickness_m = 0.001,
-                                    .h = 1e-3};
+    return (struct tl_self_contact_params){.topology = &scene->topology,
+                                           .rest = (const vec2s(*)[3])scene->rest,
+                                           .made_at = scene->x,
+                                           .thickness_m = 0.001,
+                                           .h = 1e-3};
 }
 
 static struct tl_particles particles_at(const struct scene *scene)
@@ -337,15 +337,15 @@ static void test_bounded(void **state)
     for (int k = 0; k < 20000; k++) {
         const double radius = 1 + noise(&seed);
         const vec3d safe = scattered(&seed, 1.1), d = scattered(&seed, 4);
-        struct tl_apart_plane planes[PLANES];
+        struct tl_self_contact_plane planes[PLANES];
         size_t count = (size_t)(noise(&seed) * (PLANES + 1));
         for (size_t i = 0; i < count; i++) {
             planes[i].normal = vec3d_unit_or(scattered(&seed, 1), (vec3d){1, 0, 0});
             planes[i].room = vec3d_dot(planes[i].normal, safe) + 0.2 * noise(&seed) * noise(&seed);
         }
-        bool stopped = false, may = tl_apart_allows(d, radius, planes, count);
-        vec3d kept = tl_apart_bounded(d, safe, radius, planes, count, &stopped);
-        assert_true(tl_apart_allows(kept, radius, planes, count));
+        bool stopped = false, may = tl_self_contact_allows(d, radius, planes, count);
+        vec3d kept = tl_self_contact_bounded(d, safe, radius, planes, count, &stopped);
+        assert_true(tl_self_contact_allows(kept, radius, planes, count));
         assert_true(!may || vec3d_distance(kept, d) == 0);
         held += stopped;
         partly += vec3d_distance(kept, safe) > 1e-3;
@@ -369,8 +369,8 @@ static void test_two_triangles(void **state)
         for (int i = 3; i < 6; i++)
             x[i] = vec3d_add(x[i], vec3d_scale((vec3d){1, 0.3, 0.2}, 0.02 + distance));
         struct scene scene = make_scene(indices, 6, x, 6);
-        struct tl_apart apart = {0};
-        const struct tl_apart_params params = params_of(&scene);
+        struct tl_self_contact self = {0};
+        const struct tl_self_contact_params params = params_of(&scene);
         struct tl_particles particles = particles_at(&scene);
         vec3d common = scattered(&seed, k % 2 ? 5 : 0);
         if (oracle_crossings(&scene.topology, x) > 0) {
@@ -381,22 +381,22 @@ static void test_two_triangles(void **state)
         tried++;
         for (int i = 0; i < 6; i++)
             particles.v[i] = vec3d_add(common, scattered(&seed, 1));
-        tl_apart_prepare(&apart, &params, scene.classes, particles.x);
+        tl_self_contact_prepare(&self, &params, scene.classes, particles.x);
         for (int step = 0; step < 20; step++) {
             vec3d before[6];
             memcpy(before, particles.x, sizeof before);
             memcpy(particles.previous, particles.x, sizeof before);
-            if (tl_apart_is_due(&apart, params.h))
-                tl_apart_renew(&apart, &params, &particles, false);
+            if (tl_self_contact_is_due(&self, params.h))
+                tl_self_contact_renew(&self, &params, &particles, false);
             for (int i = 0; i < 6; i++)
                 particles.x[i] = vec3d_add(vec3d_muladd(before[i], common, params.h), scattered(&seed, 1));
-            tl_apart_solve(&apart, &params, &particles);
-            tl_apart_truncate(&apart, &params, particles.previous, &particles);
+            tl_self_contact_solve(&self, &params, &particles);
+            tl_self_contact_truncate(&self, &params, particles.previous, &particles);
             assert_int_equal(oracle_crossings(&scene.topology, particles.x), 0);
             for (int i = 0; i < 6; i++)
                 moved_far += vec3d_distance(before[i], particles.x[i]) > 1e-4;
         }
-        tl_apart_release(&apart);
+        tl_self_contact_release(&self);
         tl_particles_release(&particles);
         release_scene(&scene);
     }
@@ -409,27 +409,27 @@ static void test_two_triangles(void **state)
  * of separate triangles. The oracle is brute force. */
 static void shake(struct scene *scene, uint32_t seed, double size, int steps)
 {
-    const struct tl_apart_params params = params_of(scene);
-    struct tl_apart apart = {0};
+    const struct tl_self_contact_params params = params_of(scene);
+    struct tl_self_contact self = {0};
     struct tl_particles particles = particles_at(scene);
     size_t count = particles.count;
-    tl_apart_prepare(&apart, &params, scene->classes, particles.x);
+    tl_self_contact_prepare(&self, &params, scene->classes, particles.x);
     assert_int_equal(oracle_crossings(&scene->topology, particles.x), 0);
-    assert_true(apart.clean);
+    assert_true(self.clean);
     for (int step = 0; step < steps; step++) {
         memcpy(particles.previous, particles.x, count * sizeof(vec3d));
-        if (tl_apart_is_due(&apart, params.h))
-            tl_apart_renew(&apart, &params, &particles, false);
+        if (tl_self_contact_is_due(&self, params.h))
+            tl_self_contact_renew(&self, &params, &particles, false);
         for (size_t i = 0; i < count; i++)
             particles.x[i] = vec3d_add(particles.x[i], scattered(&seed, size));
-        tl_apart_solve(&apart, &params, &particles);
-        tl_apart_truncate(&apart, &params, particles.previous, &particles);
+        tl_self_contact_solve(&self, &params, &particles);
+        tl_self_contact_truncate(&self, &params, particles.previous, &particles);
         for (size_t i = 0; i < count; i++)
             particles.v[i] = vec3d_scale(vec3d_sub(particles.x[i], particles.previous[i]), 1 / params.h);
         assert_int_equal(oracle_crossings(&scene->topology, particles.x), 0);
     }
-    assert_true(apart.clean && apart.windows > 20);
-    tl_apart_release(&apart);
+    assert_true(self.clean && self.windows > 20);
+    tl_self_contact_release(&self);
     tl_particles_release(&particles);
 }
 
@@ -444,7 +444,7 @@ static void test_shaken_sheet(void **state)
 
 /* ---- Plies that move on together ---- */
 
-/* Two flat sheets, `gap` apart. */
+/* Two flat sheets, `gap` self. */
 static struct scene two_plies(double gap)
 {
     struct scene sheet = crumpled(1, 0);
@@ -475,24 +475,24 @@ static void test_wave(void **state)
     enum { STEPS = 100 };
     const double gap = 4e-4, height = 4e-3, per_m = 10, per_s = 150;
     struct scene scene = two_plies(gap);
-    const struct tl_apart_params params = params_of(&scene);
-    struct tl_apart apart = {0};
+    const struct tl_self_contact_params params = params_of(&scene);
+    struct tl_self_contact self = {0};
     struct tl_particles particles = particles_at(&scene);
     size_t count = particles.count;
     double held_back = 0, fastest = 0;
-    tl_apart_prepare(&apart, &params, scene.classes, particles.x);
+    tl_self_contact_prepare(&self, &params, scene.classes, particles.x);
     for (int step = 1; step <= STEPS; step++) {
         memcpy(particles.previous, particles.x, count * sizeof(vec3d));
-        if (tl_apart_is_due(&apart, params.h))
-            tl_apart_renew(&apart, &params, &particles, false);
+        if (tl_self_contact_is_due(&self, params.h))
+            tl_self_contact_renew(&self, &params, &particles, false);
         double t = per_s * step * params.h;
         for (size_t i = 0; i < count; i++)
             particles.x[i].z =
                 scene.x[i].z + height * (sin(per_m * scene.x[i].x + t) - sin(per_m * scene.x[i].x));
-        tl_apart_solve(&apart, &params, &particles);
+        tl_self_contact_solve(&self, &params, &particles);
         vec3d *wanted = TL_NEW_ARRAY(vec3d, count);
         memcpy(wanted, particles.x, count * sizeof(vec3d));
-        tl_apart_truncate(&apart, &params, particles.previous, &particles);
+        tl_self_contact_truncate(&self, &params, particles.previous, &particles);
         for (size_t i = 0; i < count; i++) {
             held_back = fmax(held_back, vec3d_distance(wanted[i], particles.x[i]));
             fastest = fmax(fastest, vec3d_distance(particles.x[i], particles.previous[i]));
@@ -503,11 +503,11 @@ static void test_wave(void **state)
             assert_int_equal(oracle_crossings(&scene.topology, particles.x), 0);
     }
     printf("wave: %.0f um a substep, %.1f um held back, %zu windows in %d substeps\n", 1e6 * fastest,
-           1e6 * held_back, apart.windows, STEPS);
+           1e6 * held_back, self.windows, STEPS);
     assert_true(fastest > gap);
-    assert_true(held_back < 2 * TL_APART_CUT_M);
-    assert_true(apart.windows < STEPS / 2);
-    tl_apart_release(&apart);
+    assert_true(held_back < 2 * TL_SELF_CONTACT_CUT_M);
+    assert_true(self.windows < STEPS / 2);
+    tl_self_contact_release(&self);
     tl_particles_release(&particles);
     release_scene(&scene);
 }
@@ -519,24 +519,24 @@ static void test_free_ways(void **state)
     const uint32_t indices[6] = {0, 1, 2, 3, 4, 5};
     const vec3d x[6] = {{0, 0, 0}, {0.02, 0, 0}, {0, 0.02, 0}, {0, 0, 1}, {0.02, 0, 1}, {0, 0.02, 1}};
     struct scene scene = make_scene(indices, 6, x, 6);
-    const struct tl_apart_params params = params_of(&scene);
+    const struct tl_self_contact_params params = params_of(&scene);
     struct tl_particles particles = particles_at(&scene);
-    struct tl_apart apart = {0};
-    tl_apart_prepare(&apart, &params, scene.classes, particles.x);
+    struct tl_self_contact self = {0};
+    tl_self_contact_prepare(&self, &params, scene.classes, particles.x);
     for (int i = 0; i < 6; i++)
         particles.v[i] = (vec3d){i < 3 ? 1 : -1, 0, 0};
     for (int step = 1; step <= 100; step++) {
-        if (tl_apart_is_due(&apart, params.h))
-            tl_apart_renew(&apart, &params, &particles, false);
+        if (tl_self_contact_is_due(&self, params.h))
+            tl_self_contact_renew(&self, &params, &particles, false);
         memcpy(particles.previous, particles.x, sizeof x);
         for (int i = 0; i < 6; i++)
             particles.x[i].x += params.h * particles.v[i].x;
-        tl_apart_solve(&apart, &params, &particles);
-        tl_apart_truncate(&apart, &params, particles.previous, &particles);
+        tl_self_contact_solve(&self, &params, &particles);
+        tl_self_contact_truncate(&self, &params, particles.previous, &particles);
         for (int i = 0; i < 6; i++)
             assert_near(particles.x[i].x, x[i].x + step * params.h * particles.v[i].x, 1e-12);
     }
-    tl_apart_release(&apart);
+    tl_self_contact_release(&self);
     tl_particles_release(&particles);
     release_scene(&scene);
 }
@@ -553,14 +553,14 @@ static void test_contact(void **state)
     const vec3d x[6] = {{-0.1, -0.1, 0},     {0.2, -0.1, 0},      {-0.1, 0.2, 0},
                         {0.001, 0.001, gap}, {0.001, 0.001, 0.1}, {0.03, 0.001, 0.1}};
     struct scene scene = make_scene(indices, 6, x, 6);
-    struct tl_apart_params params = params_of(&scene);
+    struct tl_self_contact_params params = params_of(&scene);
     params.friction = friction;
     struct tl_particles particles = particles_at(&scene);
-    struct tl_apart apart = {0};
-    tl_apart_prepare(&apart, &params, scene.classes, particles.x);
-    tl_apart_renew(&apart, &params, &particles, false);
+    struct tl_self_contact self = {0};
+    tl_self_contact_prepare(&self, &params, scene.classes, particles.x);
+    tl_self_contact_renew(&self, &params, &particles, false);
     particles.x[3] = vec3d_add(particles.x[3], (vec3d){along, 0, -down});
-    tl_apart_solve(&apart, &params, &particles);
+    tl_self_contact_solve(&self, &params, &particles);
     double height = particles.x[3].z - (particles.x[0].z + particles.x[1].z + particles.x[2].z) / 3;
     vec3d sum = {0};
     for (int i = 0; i < 6; i++)
@@ -572,7 +572,7 @@ static void test_contact(void **state)
     double slip = particles.x[3].x - x[3].x -
                   (particles.x[0].x - x[0].x + particles.x[1].x - x[1].x + particles.x[2].x - x[2].x) / 3;
     assert_near(slip, along - friction * depth, 2e-6);
-    tl_apart_release(&apart);
+    tl_self_contact_release(&self);
     tl_particles_release(&particles);
     release_scene(&scene);
 }
