@@ -22,9 +22,9 @@ enum { TRUNK_COUNT = TL_COUNT(trunk) };
 /* Superellipse exponent of the trunk: 2 is an ellipse, more is boxier. */
 #define TRUNK_EXPONENT 2.2
 
-/* Pairs of soft swellings: depth * exp(-(x -+ apart)^2 / 2 sx^2 - (y - level)^2 / 2 sy^2). */
+/* Pairs of soft swellings: depth * exp(-(x -+ offset)^2 / 2 sx^2 - (y - level)^2 / 2 sy^2). */
 struct swelling {
-    double level, apart, depth, spread_x, spread_y, spread_up;
+    double level, offset, depth, spread_x, spread_y, spread_up;
     double facing; /* +1 front, -1 back */
 };
 static const struct swelling swellings[] = {
@@ -86,7 +86,7 @@ static double superellipse(double x, double z, double a, double b, double expone
 
 static double swelling_depth(const struct swelling *s, double x, double y)
 {
-    double dx = (fabs(x) - s->apart) / s->spread_x, other = (fabs(x) + s->apart) / s->spread_x;
+    double dx = (fabs(x) - s->offset) / s->spread_x, other = (fabs(x) + s->offset) / s->spread_x;
     double dy = (y - s->level) / (y > s->level ? s->spread_up : s->spread_y);
     return s->depth * (exp(-0.5 * dx * dx) + exp(-0.5 * other * other)) * exp(-0.5 * dy * dy);
 }

@@ -246,7 +246,7 @@ static struct tl_point around_leg(const struct tl_ring *ring, double from_inside
 
 static void place_leg(const void *context, struct tl_point p, double position[3])
 {
-    const double apart = 0.003; /* between the two legs */
+    const double half_gap = 0.003; /* between the two legs */
     const struct leg_placement *place = context;
     const struct trousers *t = place->trousers;
     const struct leg_pattern *pattern = place->pattern;
@@ -270,7 +270,7 @@ static void place_leg(const void *context, struct tl_point p, double position[3]
     }
     struct tl_point on = between(at[0], at[1], u);
     bool left = place->back == place->mirrored; /* on +X */
-    position[0] = (left ? 1 : -1) * (x <= pattern->low[i] + 1e-6 && y > t->fork_y ? 0 : fmax(on.x, apart));
+    position[0] = (left ? 1 : -1) * (x <= pattern->low[i] + 1e-6 && y > t->fork_y ? 0 : fmax(on.x, half_gap));
     position[1] = y;
     position[2] = on.y;
 }

@@ -191,8 +191,8 @@ static bool is_armhole(const struct tl_opening_mesh *mesh, const struct opening_
     const float down = -0.15f, near = 2.2f;
     const struct tl_opening *const neck = piece->loops[LIKE_TOP][0];
     struct tl_opening *const *pair = piece->loops[LIKE_ARM];
-    float apart = (pair[0]->centre.x - pair[1]->centre.x) / 2;
-    return (pair[0]->normal.y + pair[1]->normal.y) / 2 > down && apart < near * half_width(mesh, neck);
+    float offset = (pair[0]->centre.x - pair[1]->centre.x) / 2;
+    return (pair[0]->normal.y + pair[1]->normal.y) / 2 > down && offset < near * half_width(mesh, neck);
 }
 
 /* Mean distance from the loop's own axis of what lies in a slab of the piece, metres; 0: nothing does. */

@@ -179,10 +179,10 @@ static float sky_at(const struct tl_tile *tile, int column, int row)
     float seen = 0;
     for (int k = 0; k < DIRECTIONS; k++) {
         float steepest = 0;
-        const float apart = hypotf(texel_x * (float)ways[k][0], texel_y * (float)ways[k][1]);
+        const float distance = hypotf(texel_x * (float)ways[k][0], texel_y * (float)ways[k][1]);
         for (int s = 0; s < STEPS; s++) {
             float rise = height_at(tile, column + ways[k][0] * steps[s], row + ways[k][1] * steps[s]) - here;
-            steepest = fmaxf(steepest, rise / (apart * (float)steps[s]));
+            steepest = fmaxf(steepest, rise / (distance * (float)steps[s]));
         }
         seen += 1 / (1 + steepest * steepest); /* cos^2 of the elevation */
     }

@@ -107,8 +107,8 @@ static bool are_neighbours(const struct tl_patches *patches, uint32_t a, uint32_
 
 static bool face_alike(const struct tl_patch_bounds *a, const struct tl_patch_bounds *b)
 {
-    const double apart = acos(fmin(fmax(vec3d_dot(a->axis, b->axis), -1), 1));
-    return fmax(fmax(a->angle, b->angle), (a->angle + b->angle + apart) / 2) < FLAT;
+    const double axes_angle = acos(fmin(fmax(vec3d_dot(a->axis, b->axis), -1), 1));
+    return fmax(fmax(a->angle, b->angle), (a->angle + b->angle + axes_angle) / 2) < FLAT;
 }
 
 static void test(const struct tl_patches *patches, const struct tl_topology *topology, const vec3d *x,

@@ -10,8 +10,8 @@
 static bool shorten(const uint32_t edge[2], double rest, double limit, struct tl_particles *particles,
                     bool *slipped)
 {
-    vec3d apart = vec3d_sub(particles->x[edge[1]], particles->x[edge[0]]);
-    double squared = vec3d_dot(apart, apart), most = limit * rest;
+    vec3d offset = vec3d_sub(particles->x[edge[1]], particles->x[edge[0]]);
+    double squared = vec3d_dot(offset, offset), most = limit * rest;
     double sum = particles->w[edge[0]] + particles->w[edge[1]];
     if (!(squared > most * most) || !(sum > 0))
         return false;
@@ -19,7 +19,7 @@ static bool shorten(const uint32_t edge[2], double rest, double limit, struct tl
     for (int end = 0; end < 2; end++) {
         uint32_t i = edge[end];
         double way = (end == 0 ? 1 : -1) * excess * particles->w[i];
-        particles->x[i] = vec3d_muladd(particles->x[i], apart, way);
+        particles->x[i] = vec3d_muladd(particles->x[i], offset, way);
         slipped[i] = slipped[i] || particles->w[i] > 0;
         particles->v[i] = (vec3d){0};
     }

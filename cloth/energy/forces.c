@@ -28,8 +28,8 @@ TL_CLONES static void square_lengths(const vec3d *x, const uint32_t (*edges)[2],
                                      double *squared)
 {
     for (size_t e = range.from; e < range.to; e++) {
-        vec3d apart = vec3d_sub(x[edges[e][1]], x[edges[e][0]]);
-        squared[e] = vec3d_dot(apart, apart);
+        vec3d offset = vec3d_sub(x[edges[e][1]], x[edges[e][0]]);
+        squared[e] = vec3d_dot(offset, offset);
     }
 }
 

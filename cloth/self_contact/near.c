@@ -368,7 +368,7 @@ static bool plane_parts(const uint32_t a[3], const uint32_t b[3], vec3d along, d
 
 /* Whether two triangles are farther apart than their reach: along the line between their centres, or, as
  * layers are, along the first one's normal. */
-static bool are_apart(const struct tl_near *near, uint32_t first, uint32_t second, const vec3d *x)
+static bool are_beyond_reach(const struct tl_near *near, uint32_t first, uint32_t second, const vec3d *x)
 {
     const uint32_t *a = near->topology->triangles[first], *b = near->topology->triangles[second];
     vec3d along = vec3d_sub(vec3d_add(vec3d_add(x[b[0]], x[b[1]]), x[b[2]]),
@@ -385,7 +385,7 @@ static void list_features(const struct tl_near *near, uint32_t first, uint32_t s
 {
     const uint32_t *a = near->topology->triangles[first], *b = near->topology->triangles[second];
     unsigned owns_a = near->owns[first], owns_b = near->owns[second];
-    if (are_apart(near, first, second, x))
+    if (are_beyond_reach(near, first, second, x))
         return;
     for (uint32_t i = 0; i < 3; i++) {
         if (owns_a >> i & 1)

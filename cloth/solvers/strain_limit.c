@@ -138,9 +138,9 @@ static void mark_vertex(struct tl_strain_limits *limits, const struct tl_pair_fo
 TL_INLINE bool is_long(const struct tl_strain_limits *limits, const struct tl_limited_edge *edge,
                        const vec3d *x)
 {
-    vec3d apart = vec3d_sub(x[edge->ends[1]], x[edge->ends[0]]);
+    vec3d offset = vec3d_sub(x[edge->ends[1]], x[edge->ends[0]]);
     double max = (1 + limits->strain) * edge->rest;
-    return vec3d_dot(apart, apart) > max * max;
+    return vec3d_dot(offset, offset) > max * max;
 }
 
 /* Shortens one edge that is too long; returns whether it moved. Its neighbours may become longer by it, so
@@ -149,13 +149,13 @@ static bool correct_edge(struct tl_strain_limits *limits, const struct tl_pair_f
                          const struct tl_limited_edge *edge, struct tl_particles *particles)
 {
     uint32_t a = edge->ends[0], b = edge->ends[1];
-    vec3d apart = vec3d_sub(particles->x[b], particles->x[a]);
-    double squared = vec3d_dot(apart, apart), sum = particles->w[a] + particles->w[b];
+    vec3d offset = vec3d_sub(particles->x[b], particles->x[a]);
+    double squared = vec3d_dot(offset, offset), sum = particles->w[a] + particles->w[b];
     double max = fmax((1 + limits->strain) * edge->rest,
                       edge->start_length - CORRECTION_SPEED * edge->rest * limits->elapsed_s);
     if (!(squared > max * max) || !(sum > 0))
         return false;
-    vec3d push = vec3d_scale(apart, (1 - max / sqrt(squared)) / sum);
+    vec3d push = vec3d_scale(offset, (1 - max / sqrt(squared)) / sum);
     particles->x[a] = vec3d_muladd(particles->x[a], push, particles->w[a]);
     particles->x[b] = vec3d_muladd(particles->x[b], push, -particles->w[b]);
     mark_vertex(limits, pairs, a);

@@ -357,11 +357,11 @@ static void solve_bends(const struct tl_energy *energy, vec3d *x)
 void tl_xpbd_solve_link(const struct tl_link *link, struct tl_particles *particles)
 {
     double wa = particles->w[link->a], wb = particles->w[link->b];
-    vec3d apart = vec3d_sub(particles->x[link->b], particles->x[link->a]);
-    double length = vec3d_norm(apart), sum = wa + wb + link->compliance;
+    vec3d offset = vec3d_sub(particles->x[link->b], particles->x[link->a]);
+    double length = vec3d_norm(offset), sum = wa + wb + link->compliance;
     if (length < NO_LENGTH || !(wa + wb > 0) || !isfinite(sum))
         return;
-    vec3d push = vec3d_scale(apart, (length - link->rest) / (length * sum));
+    vec3d push = vec3d_scale(offset, (length - link->rest) / (length * sum));
     particles->x[link->a] = vec3d_muladd(particles->x[link->a], push, wa);
     particles->x[link->b] = vec3d_muladd(particles->x[link->b], push, -wb);
 }

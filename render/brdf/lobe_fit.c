@@ -209,8 +209,8 @@ static int fit_cosine_lobe(const struct tl_brdf *brdf, const struct tl_brdf_fram
 /* The variance at which `count` neighbours on a half circle overlap. */
 static float thread_variance(const struct tl_brdf *brdf, int count, float sine)
 {
-    float apart = THREAD_OVERLAP * GLM_PIf * sine / (float)count;
-    return fmaxf(1 / (brdf->exponent + 1), apart * apart);
+    float deviation = THREAD_OVERLAP * GLM_PIf * sine / (float)count;
+    return fmaxf(1 / (brdf->exponent + 1), deviation * deviation);
 }
 
 /* A thread reflects light into a cone about itself. Across the cone the gloss is a power of a cosine; along

@@ -92,8 +92,8 @@ TL_INLINE struct tl_lobe_set tl_lobe_set_of(float weft, float warp, float x, flo
 
     float thin = 2 * TL_SLOPE_MIN_COSINE * tl_minf(weft, warp), narrow = tl_maxf(axes.narrow, thin * thin);
     float span = tl_minf(highest, TL_LOBE_SET_REACH) - tl_maxf(lowest, -TL_LOBE_SET_REACH);
-    float apart = sqrtf(tl_maxf(axes.broad - narrow, 0) / narrow);
-    float wanted = tl_minf(TL_LOBE_SET_OVERLAP * apart * span, (float)maximum + 1);
+    float widening = sqrtf(tl_maxf(axes.broad - narrow, 0) / narrow);
+    float wanted = tl_minf(TL_LOBE_SET_OVERLAP * widening * span, (float)maximum + 1);
     wanted = (float)(int)(wanted + 0.9999f);
     float is_broad = axes.broad > 1.5f * narrow ? 1.0f : 0.0f;
     wanted = 1 + is_broad * (tl_maxf(wanted, 3) - 1);

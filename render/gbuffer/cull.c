@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Depths may differ from the plane's by sixteen roundings of a float, and those of backs by their step. Rounding
- * of places for every sample that the picture is wide. */
+/* Depths may differ from the plane's by sixteen roundings of a float, and those of backs by their step.
+ * Rounding of places for every sample that the picture is wide. */
 #define DEPTH_MARGIN   (1e-6f + DEPTH_OF_BACKS)
 #define PLACE_ROUNDING (16 * FLT_EPSILON)
 

@@ -65,9 +65,9 @@ static void order_cell(const struct tl_lobe_set_table *table, int gloss, int row
     float width = -1;
     for (int i = 0; i < corners; i++) {
         nodes[i] = node_at(table, gloss + (i >> 2), row + (i >> 1 & 1), column + (i & 1));
-        float apart = distance_of(nodes[i], nodes[i], count, true);
-        if (apart > width) {
-            width = apart;
+        float distance = distance_of(nodes[i], nodes[i], count, true);
+        if (distance > width) {
+            width = distance;
             widest = nodes[i];
         }
     }

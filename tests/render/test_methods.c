@@ -258,8 +258,8 @@ static void test_sun_apart(void **state)
             settings.light.pem_size = 64;
             vec3s together = draw_square(device->renderer, &tilt, 0.5f, &environment, &settings);
             settings.light.sun = true;
-            vec3s apart = draw_square(device->renderer, &tilt, 0.5f, &environment, &settings);
-            assert_colour(apart, together, 0.02f);
+            vec3s separate = draw_square(device->renderer, &tilt, 0.5f, &environment, &settings);
+            assert_colour(separate, together, 0.02f);
         }
     tl_environment_release(&environment);
 }

@@ -81,11 +81,11 @@ static void find_forces(tl_plain_loop *loop)
         forces[i] = (vec3d){0, -loop->mass * GRAVITY, 0};
     for (size_t s = 0; s < loop->spring_count; s++) {
         const struct spring *spring = &loop->springs[s];
-        vec3d apart = vec3d_sub(loop->x[spring->b], loop->x[spring->a]);
-        double length = vec3d_norm(apart);
+        vec3d offset = vec3d_sub(loop->x[spring->b], loop->x[spring->a]);
+        double length = vec3d_norm(offset);
         double pull = spring->stiffness * (length - spring->rest) / length;
-        forces[spring->a] = vec3d_muladd(forces[spring->a], apart, pull);
-        forces[spring->b] = vec3d_muladd(forces[spring->b], apart, -pull);
+        forces[spring->a] = vec3d_muladd(forces[spring->a], offset, pull);
+        forces[spring->b] = vec3d_muladd(forces[spring->b], offset, -pull);
     }
 }
 

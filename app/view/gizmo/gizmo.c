@@ -138,11 +138,11 @@ enum tl_gizmo_handle tl_gizmo_under(const struct tl_gizmo *gizmo, vec2s at)
 
 bool tl_gizmo_nearest_on_axis(const struct tl_ray *ray, vec3s point, vec3s axis, float *parameter)
 {
-    vec3s apart = glms_vec3_sub(point, ray->origin);
+    vec3s offset = glms_vec3_sub(point, ray->origin);
     float cosine = glms_vec3_dot(axis, ray->direction), sine2 = 1 - cosine * cosine;
     if (!(sine2 > 1e-6f))
         return false;
-    *parameter = (cosine * glms_vec3_dot(ray->direction, apart) - glms_vec3_dot(axis, apart)) / sine2;
+    *parameter = (cosine * glms_vec3_dot(ray->direction, offset) - glms_vec3_dot(axis, offset)) / sine2;
     return true;
 }
 

@@ -274,8 +274,8 @@ void draw_read_out(const tl_panel_input &input)
     const ImGuiIO &io = ImGui::GetIO();
     const bool is_right = io.MousePos.x > 0.5f * view_width(input);
     const bool is_low = io.MousePos.y > 0.5f * io.DisplaySize.y;
-    const float apart = 16;
-    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x + (is_right ? -apart : apart), io.MousePos.y),
+    const float offset = 16;
+    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x + (is_right ? -offset : offset), io.MousePos.y),
                             ImGuiCond_Always, ImVec2(is_right ? 1.0f : 0.0f, is_low ? 1.0f : 0.0f));
     ImGui::SetNextWindowBgAlpha(0.85f);
     make_room(input.read_out);
@@ -290,9 +290,9 @@ void draw_amount(const tl_panel_input &input)
     if (!input.amount || !input.amount[0])
         return;
     const ImGuiIO &io = ImGui::GetIO();
-    const float apart = 28;
-    const bool is_low = io.MousePos.y + 3 * apart > io.DisplaySize.y;
-    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x, io.MousePos.y + (is_low ? -apart : apart)),
+    const float offset = 28;
+    const bool is_low = io.MousePos.y + 3 * offset > io.DisplaySize.y;
+    ImGui::SetNextWindowPos(ImVec2(io.MousePos.x, io.MousePos.y + (is_low ? -offset : offset)),
                             ImGuiCond_Always, ImVec2(0.5f, is_low ? 1.0f : 0.0f));
     ImGui::SetNextWindowBgAlpha(0.85f);
     make_room(input.amount);

@@ -169,16 +169,16 @@ static void triangles(void **state)
     tl_audit_release(&audit);
 
     /* Two neighbours turned over are one patch, two apart are two. */
-    for (int apart = 0; apart < 2; apart++) {
+    for (int separate = 0; separate < 2; separate++) {
         sheet = plain_sheet();
         for (int n = 0; n < 2; n++) {
-            corners = sheet.triangles[n == 0 ? square(0, 0) : apart ? square(3, 3) : square(0, 0) + 1];
+            corners = sheet.triangles[n == 0 ? square(0, 0) : separate ? square(3, 3) : square(0, 0) + 1];
             first = corners[0];
             corners[0] = corners[1];
             corners[1] = first;
         }
         audit = audit_sheet(&sheet);
-        expect(&audit, TL_AUDIT_TRIANGLE_FLIPPED, apart ? 2 : 1);
+        expect(&audit, TL_AUDIT_TRIANGLE_FLIPPED, separate ? 2 : 1);
         tl_audit_release(&audit);
     }
 

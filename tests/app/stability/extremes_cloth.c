@@ -65,13 +65,13 @@ static void say(tl_error *found, const char *format, ...)
 
 /* ---- Garments ---- */
 
-static void move_vertex(struct trial *trial, size_t vertex, size_t to, float apart)
+static void move_vertex(struct trial *trial, size_t vertex, size_t to, float offset)
 {
     tl_garment *garment = &trial->garment;
     garment->model.mesh.positions[vertex] = garment->model.mesh.positions[to];
-    garment->model.mesh.positions[vertex].x += apart;
+    garment->model.mesh.positions[vertex].x += offset;
     garment->pattern[vertex] = garment->pattern[to];
-    garment->pattern[vertex].x += apart;
+    garment->pattern[vertex].x += offset;
 }
 
 static void make_needles(struct trial *trial)

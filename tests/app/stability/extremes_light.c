@@ -416,8 +416,8 @@ static void up_is_view(struct tl_extreme_scene *scene)
 #define POINT                                                                                                \
     "a point of light: its shadow's edge is a map's texel, or a ray's grain, wide; the chain makes 0.51 to " \
     "3.14 times of it"
-#define RAYS      "light.visibility=rays light.composition=ratio"
-#define SUN_APART RAYS " light.sun=true"
+#define RAYS         "light.visibility=rays light.composition=ratio"
+#define SEPARATE_SUN RAYS " light.sun=true"
 #define MIRROR                                                                                               \
     "paper: what a mirror reflects of the scene is black [Knuth et al. 2014, 6]; review: the cache lights "  \
     "it"
@@ -428,9 +428,9 @@ const struct tl_extreme tl_extremes[] = {
     {"ordinary scene", .bounds = {PAPER, REVIEW}, .why = ORDINARY},
     {"environment all black", .change = black, .bounds = {0, 0}, .why = "there is no light"},
     {"one texel of 65504", .change = texel_half, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"one texel of 1e6", .change = texel_million, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"map of 1 x 1 texel", .change = one_texel_map, .bounds = {PAPER, 0.10},
      .why = "light from below the floor too: more of it is hidden"},
     {"map of 8192 x 4096", .change = large_map, .bounds = {0.30, 0.10}, .slow = true,
@@ -438,15 +438,15 @@ const struct tl_extreme tl_extremes[] = {
     {"NaN, Inf, negative texels", .change = dirty_texels, .bounds = {PAPER, REVIEW}, .from_file = true,
      .why = "cleaned by the reader; then as the ordinary scene"},
     {"light behind the viewer", .change = light_behind_viewer, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"light before the viewer", .change = light_before_viewer, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"light along the normal", .change = light_overhead, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"light in the floor's plane", .change = light_in_floor, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"sheet edge-on to the light", .change = sheet_edge_on, .bounds = {CHAIN, SUN}, .why = POINT,
-     .remedies = {SUN_APART}},
+     .remedies = {SEPARATE_SUN}},
     {"N = 6", .assignments = "light.regions=6", .bounds = {TL_NO_WORSE, 0.25},
      .why = "few shadows for all of the light", .remedies = {"light.regions=24"}},
     {"N = 384", .assignments = "light.regions=384", .bounds = {PAPER, REVIEW}, .why = ORDINARY},

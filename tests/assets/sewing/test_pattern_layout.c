@@ -74,9 +74,9 @@ static void test_pieces_lie_apart_on_the_table(void **state)
     }
     for (int p = 0; p < 3; p++)
         for (int q = 0; q < p; q++) {
-            float apart_x = fmaxf(lower[p].x - upper[q].x, lower[q].x - upper[p].x);
-            float apart_y = fmaxf(lower[p].y - upper[q].y, lower[q].y - upper[p].y);
-            assert_true(fmaxf(apart_x, apart_y) > TL_LAYOUT_GAP_M - 1e-6f);
+            float gap_x = fmaxf(lower[p].x - upper[q].x, lower[q].x - upper[p].x);
+            float gap_y = fmaxf(lower[p].y - upper[q].y, lower[q].y - upper[p].y);
+            assert_true(fmaxf(gap_x, gap_y) > TL_LAYOUT_GAP_M - 1e-6f);
         }
     tl_garment_release(&garment);
 }

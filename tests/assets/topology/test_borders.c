@@ -98,12 +98,12 @@ static void test_seams_join(void **state)
         seams[i] = (struct tl_seam_pair){i * row + row - 1, count + i * row};
     for (uint32_t i = 0; i < mesh.vertex_count; i++)
         weld[i] = i;
-    tl_borders apart = tl_borders_make(&mesh, NULL, weld, NULL, 0);
+    tl_borders separate = tl_borders_make(&mesh, NULL, weld, NULL, 0);
     tl_borders sewn = tl_borders_make(&mesh, NULL, weld, seams, row);
-    assert_near(length_of_kind(&apart, TL_BORDER_HEM), 1.2, 1e-5);
+    assert_near(length_of_kind(&separate, TL_BORDER_HEM), 1.2, 1e-5);
     assert_near(length_of_kind(&sewn, TL_BORDER_HEM), 1.0, 1e-5);
     assert_near(length_of_kind(&sewn, TL_BORDER_SEAM_OVER), 0.1, 1e-5);
-    tl_borders_release(&apart);
+    tl_borders_release(&separate);
     tl_borders_release(&sewn);
     free(weld);
     tl_mesh_release(&mesh);

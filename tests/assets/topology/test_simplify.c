@@ -490,9 +490,9 @@ static void a_small_body_stays(void **state)
     tl_model_release(&larger);
 }
 
-/* Gives each triangle from `first` on its own vertices, with one normal; `apart_m`: its own place;
- * `apart_uv`: its own part of the UVs. */
-static tl_model make_soup(size_t first, float apart_m, float apart_uv)
+/* Gives each triangle from `first` on its own vertices, with one normal; `step_m`: its own place;
+ * `step_uv`: its own part of the UVs. */
+static tl_model make_soup(size_t first, float step_m, float step_uv)
 {
     tl_model model = cut_body(TL_SIMPLIFY_ABOVE + 1000);
     tl_mesh *mesh = &model.mesh;
@@ -504,10 +504,10 @@ static tl_model make_soup(size_t first, float apart_m, float apart_uv)
         uint32_t was = mesh->indices[i];
         size_t own = mesh->indices[i] = (uint32_t)mesh->vertex_count++;
         mesh->positions[own] = mesh->positions[was];
-        mesh->positions[own].x += apart_m * (float)(i / 3);
+        mesh->positions[own].x += step_m * (float)(i / 3);
         mesh->normals[own] = mesh->normals[mesh->indices[i - i % 3]];
         mesh->uvs[own] = mesh->uvs[was];
-        mesh->uvs[own].u += apart_uv * (float)(i / 3);
+        mesh->uvs[own].u += step_uv * (float)(i / 3);
     }
     free(model.pins);
     free(model.colours);
@@ -520,8 +520,8 @@ static tl_model make_soup(size_t first, float apart_m, float apart_uv)
 static void loose_triangles_stay(void **state)
 {
     (void)state;
-    tl_model apart = make_soup(0, 1e-5f, 0), split = make_soup(0, 0, 1), partly = make_soup(20000, 0, 1);
-    assert_untouched(&apart);
+    tl_model loose = make_soup(0, 1e-5f, 0), split = make_soup(0, 0, 1), partly = make_soup(20000, 0, 1);
+    assert_untouched(&loose);
     assert_untouched(&split);  /* each side is a seam */
     assert_untouched(&partly); /* a tenth fewer triangles are not worth another body */
 }

@@ -23,11 +23,11 @@ static vec3s upright(double u, double v)
  * mm, or a quarter of the mesh's mean side where that is less, as here: 1.4 mm. */
 static size_t count_touching(const tl_cloth *cloth, const tl_garment *garment)
 {
-    const double apart_m = 0.02, near_m = 0.001;
+    const double far_m = 0.02, near_m = 0.001;
     size_t count = 0;
     for (size_t i = 0; i < cloth->particles.count; i++)
         for (size_t j = i + 1; j < cloth->particles.count; j++)
-            if ((double)glms_vec2_distance(garment->pattern[i], garment->pattern[j]) > apart_m)
+            if ((double)glms_vec2_distance(garment->pattern[i], garment->pattern[j]) > far_m)
                 count += vec3d_distance(cloth->particles.x[i], cloth->particles.x[j]) < near_m;
     return count;
 }

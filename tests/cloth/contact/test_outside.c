@@ -245,11 +245,11 @@ static void check_twisting(const char *garment, const char *avatar)
 /* A sheet in three folds, 8 mm above each other, on the lower of two blocks. */
 static vec3s fold(double u, double v)
 {
-    const double side = 0.1, apart = 0.008;
+    const double side = 0.1, gap = 0.008;
     int ply = u < side ? 0 : u < 2 * side ? 1 : 2;
     double along = u - side * ply;
     return (vec3s){{(float)((ply == 1 ? side - along : along) - side / 2),
-                    (float)(0.105 + apart * (ply + 0.9 * along / side)), (float)(v - 0.1)}};
+                    (float)(0.105 + gap * (ply + 0.9 * along / side)), (float)(v - 0.1)}};
 }
 
 static void dress_blocks(struct dressed *d)

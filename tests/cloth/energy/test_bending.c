@@ -188,7 +188,7 @@ static struct tip droop(const struct strip *strip)
 }
 
 /* Distance of two tips, in lengths of the strip. */
-static double apart(struct tip a, struct tip b)
+static double distance(struct tip a, struct tip b)
 {
     return hypot(a.along - b.along, a.below - b.below);
 }
@@ -196,7 +196,7 @@ static double apart(struct tip a, struct tip b)
 static struct tip check(const struct strip *strip, double tolerance)
 {
     struct tip expected = elastica(strip->load), tip = droop(strip);
-    double error = apart(tip, expected);
+    double error = distance(tip, expected);
     printf(
         "%s, load %4.1f, %d cells, turned %2.0f, irregular %.2f%s, across %.2f: tip (%.4f, %.4f), elastica "
         "(%.4f, %.4f): off by %.2f %%\n",
@@ -261,10 +261,10 @@ static void test_mesh_independence(void **state)
         tips[i] = check(&strip, 0.01);
     }
     for (int i = 0; i < 2; i++) {
-        double order = observed_order(apart(tips[i], tips[i + 1]), apart(tips[i + 1], tips[i + 2]));
+        double order = observed_order(distance(tips[i], tips[i + 1]), distance(tips[i + 1], tips[i + 2]));
         printf("from %d to %d to %d cells the tip moves by %.1e and %.1e L: order %.2f\n", 10 << i,
-               10 << (i + 1), 10 << (i + 2), apart(tips[i], tips[i + 1]), apart(tips[i + 1], tips[i + 2]),
-               order);
+               10 << (i + 1), 10 << (i + 2), distance(tips[i], tips[i + 1]),
+               distance(tips[i + 1], tips[i + 2]), order);
         assert_near(order, 2, 0.3);
     }
 }

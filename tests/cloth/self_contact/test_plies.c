@@ -8,7 +8,7 @@
 #include <time.h>
 
 #define ABOVE_M   0.004 /* the lowest sheet's start over the body; the avatar's distance is 3 mm */
-#define APART_M   0.006 /* sheets at their start */
+#define GAP_M     0.006 /* sheets at their start */
 #define SHEETS    20
 #define FRAMES    7
 #define BALL      0.12
@@ -58,7 +58,7 @@ static double resting_gap(const struct tl_cloth_fabric *fabric, int solver)
     tl_garment garment = {0};
     tl_mesh box = body_box((vec3s){{0, BOX_TOP - 0.05f, 0}}, (vec3s){{0.5f, 0.05f, 0.5f}}, 0);
     for (int i = 0; i < ON_BOX; i++)
-        add_sheet(&garment, (double)BOX_TOP + ABOVE_M + i * APART_M, 0, 0);
+        add_sheet(&garment, (double)BOX_TOP + ABOVE_M + i * GAP_M, 0, 0);
     struct tl_cloth_params params = params_defaults();
     params.solver = solver;
     tl_collider *collider = tl_collider_create(&box, false, &error);
@@ -108,7 +108,7 @@ static void test_slope(void **state)
     tl_mesh box = body_box((vec3s){{(float)(0.05 * sin(SLOPE_RAD)), (float)(-0.05 * cos(SLOPE_RAD)), 0}},
                            (vec3s){{0.5f, 0.05f, 0.5f}}, SLOPE_RAD);
     for (int i = 0; i < ON_SLOPE; i++)
-        add_sheet(&garment, ABOVE_M + i * APART_M, 0, SLOPE_RAD);
+        add_sheet(&garment, ABOVE_M + i * GAP_M, 0, SLOPE_RAD);
     const struct tl_cloth_fabric fabric = fabric_defaults();
     const struct tl_cloth_params params = params_defaults();
     tl_collider *collider = tl_collider_create(&box, false, &error);
@@ -148,7 +148,7 @@ static void test_ball(void **state)
     const int sheets = number_of("TOILE_SHEETS", SHEETS), frames = number_of("TOILE_FRAMES", FRAMES);
     tl_mesh ball = body_sphere((vec3s){{0, 1, 0}}, BALL, 24);
     for (int i = 0; i < sheets; i++)
-        add_sheet(&garment, 1 + BALL + ABOVE_M + i * APART_M, i * TURN_RAD, 0);
+        add_sheet(&garment, 1 + BALL + ABOVE_M + i * GAP_M, i * TURN_RAD, 0);
     const struct tl_cloth_fabric fabric = fabric_defaults();
     const struct tl_cloth_params params = params_defaults();
     tl_collider *collider = tl_collider_create(&ball, true, &error);
@@ -185,7 +185,7 @@ static void test_landing(void **state)
     tl_error error = {0};
     tl_garment garment = {0};
     for (int i = 0; i < LANDING; i++)
-        add_sheet(&garment, above_m + i * APART_M, i * TURN_RAD, i * tilt);
+        add_sheet(&garment, above_m + i * GAP_M, i * TURN_RAD, i * tilt);
     struct tl_cloth_fabric fabric = fabric_defaults();
     fabric.thickness_m = 0.0006;
     const struct tl_cloth_params params = params_defaults();

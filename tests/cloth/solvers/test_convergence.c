@@ -43,7 +43,7 @@ static void swing(int solver, double h, vec3d out[SWING_VERTICES])
     sheet_free(&garment);
 }
 
-static double rms_apart(const vec3d *a, const vec3d *b)
+static double rms_distance(const vec3d *a, const vec3d *b)
 {
     double sum = 0;
     for (int i = 0; i < SWING_VERTICES; i++)
@@ -61,7 +61,7 @@ static void test_step(void **state)
         double errors[4], expected = solver_rule(solver) == RULE_VERLET ? 2 : 1, order = 0;
         for (int i = 0; i < 4; i++) {
             swing(solver, 1.0 / (1024 << i), at);
-            errors[i] = rms_apart(at, exact);
+            errors[i] = rms_distance(at, exact);
         }
         order = observed_order(errors[2], errors[3]);
         printf("%s: RMS %.2e, %.2e, %.2e, %.2e m off at 1/1024 to 1/8192 s: order %.2f\n",

@@ -279,7 +279,7 @@ static vec3d *places_after(const struct tl_cloth_fabric *fabric, int division, s
     return places;
 }
 
-static double apart(const vec3d *a, const vec3d *b, size_t count)
+static double rms_distance(const vec3d *a, const vec3d *b, size_t count)
 {
     double sum = 0;
     for (size_t i = 0; i < count; i++)
@@ -299,7 +299,8 @@ static void test_second_order(void **state)
         vec3d *places[3];
         for (int i = 0; i < 3; i++)
             places[i] = places_after(&fabric, 4 << i, &count);
-        double coarse = apart(places[0], places[1], count), fine = apart(places[1], places[2], count);
+        double coarse = rms_distance(places[0], places[1], count),
+               fine = rms_distance(places[1], places[2], count);
         printf("damping %g: halving the step changes places by %.3g m, then %.3g m: ratio %.3f\n",
                fabric.damping, coarse, fine, coarse / fine);
         assert_near(coarse / fine, 4, 0.4);

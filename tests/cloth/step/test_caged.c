@@ -109,12 +109,12 @@ static void places_are_on_the_cage(void **state)
     sheet_free(&garment);
 }
 
-static double apart_rms(tl_cloth *const cloths[2])
+static double rms_distance(tl_cloth *const cloths[2])
 {
     double sum = 0;
     for (size_t i = 0; i < COUNT; i++) {
-        const double apart = vec3d_distance(cloths[0]->particles.x[i], cloths[1]->particles.x[i]);
-        sum += apart * apart;
+        const double distance = vec3d_distance(cloths[0]->particles.x[i], cloths[1]->particles.x[i]);
+        sum += distance * distance;
     }
     return sqrt(sum / COUNT);
 }
@@ -176,8 +176,8 @@ static void it_hangs(void **state)
         crumpled[caged] = crumpled_rms(cloths[caged], start);
     }
     print_message("caged and not: %.1f mm root mean square apart; crumpled by %.4f and %.4f\n",
-                  1000 * apart_rms(cloths), crumpled[1], crumpled[0]);
-    assert_true(apart_rms(cloths) < 0.05);
+                  1000 * rms_distance(cloths), crumpled[1], crumpled[0]);
+    assert_true(rms_distance(cloths) < 0.05);
     assert_true(crumpled[1] < 1.1 * crumpled[0]);
     free(start);
     for (size_t i = 0; i < CORNERS; i++)

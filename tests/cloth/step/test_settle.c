@@ -28,8 +28,8 @@ static double rms_mirrored(const tl_cloth *a, const tl_cloth *b, double z)
     for (size_t i = 0; i < a->particles.count; i++) {
         vec3d to = b->particles.x[i];
         to.z = 2 * z - to.z;
-        vec3d apart = vec3d_sub(a->particles.x[i], to);
-        sum += vec3d_dot(apart, apart);
+        vec3d offset = vec3d_sub(a->particles.x[i], to);
+        sum += vec3d_dot(offset, offset);
     }
     return sqrt(sum / (double)a->particles.count);
 }
@@ -38,8 +38,8 @@ static double rms(const tl_cloth *a, const tl_cloth *b)
 {
     double sum = 0;
     for (size_t i = 0; i < a->particles.count; i++) {
-        vec3d apart = vec3d_sub(a->particles.x[i], b->particles.x[i]);
-        sum += vec3d_dot(apart, apart);
+        vec3d offset = vec3d_sub(a->particles.x[i], b->particles.x[i]);
+        sum += vec3d_dot(offset, offset);
     }
     return sqrt(sum / (double)a->particles.count);
 }
