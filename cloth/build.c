@@ -125,12 +125,13 @@ void tl_cloth_build_mesh(tl_cloth *cloth, const uint32_t *weld, size_t vertex_co
     cloth->topology =
         tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, vertex_count);
     cloth->rest = tl_rest_shapes(cloth->garment, &cloth->topology);
-    cloth->energy = tl_energy_build(&cloth->topology, cloth->rest);
-    cloth->shortest_edge = find_shortest_edge(cloth);
-    cloth->needle_share = find_needle_share(cloth);
     cloth->made_at = tl_resize(cloth->made_at, vertex_count, sizeof *cloth->made_at);
     for (size_t i = 0; i < mesh->vertex_count; i++)
         cloth->made_at[weld[i]] = vec3d_from(mesh->positions[i]);
+    cloth->energy =
+        tl_energy_build(&cloth->topology, cloth->rest, cloth->garment->pattern ? NULL : cloth->made_at);
+    cloth->shortest_edge = find_shortest_edge(cloth);
+    cloth->needle_share = find_needle_share(cloth);
     tl_layers_release(&cloth->layers);
     tl_self_contact_forget(&cloth->self_contact);
 }

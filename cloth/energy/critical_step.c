@@ -66,6 +66,7 @@ void tl_energy_row_sums(const struct tl_energy *energy, const struct tl_cloth_fa
             add_rows(&bend->rows[row][0][lane], TL_BATCH, &bend->vertices[0][lane], TL_BEND_STENCIL,
                      stiffness[row] * bend->area[lane], sums);
     }
+    tl_folds_add_row_sums(&energy->folds, sums);
     for (size_t i = 0; i < energy->link_count; i++) {
         sums[energy->links[i].a] += 2 * fabric->stretch_warp;
         sums[energy->links[i].b] += 2 * fabric->stretch_warp;

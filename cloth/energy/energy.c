@@ -268,7 +268,51 @@ static void build_bends(struct tl_energy *energy, const struct tl_topology *topo
     free(stencils);
 }
 
-struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3])
+/* Returns whether there is a hinge across the edge opposite to `corner`, once for both its sides. */
+static bool make_fold(const struct tl_topology *topology, const struct flat *flats, uint32_t triangle,
+                      int corner, const vec3d *made, struct tl_fold *out)
+{
+    const uint32_t other = topology->neighbour[triangle][corner];
+    if (other == TL_NONE || other < triangle || quality(&flats[triangle]) < needle ||
+        quality(&flats[other]) < needle)
+        return false;
+    const struct flat *near = &flats[triangle], *far = &flats[other];
+    const int start = (corner + 1) % 3, end = (corner + 2) % 3;
+    const int far_corner = (int)tl_topology_far_corner(topology, triangle, other);
+    const uint32_t *mine = topology->triangles[triangle], *theirs = topology->triangles[other];
+    const int far_start =
+        theirs[(far_corner + 1) % 3] == mine[start] ? (far_corner + 1) % 3 : (far_corner + 2) % 3;
+    const double length = edge_length(near, corner), scale = length / edge_length(far, far_corner);
+    const double height = fabs(near->signed_double_area) / length;
+    const double far_height = fabs(far->signed_double_area) / length * (scale * scale);
+    /* From the edge's start to the corners' feet: a cotangent is a foot's distance over the height. */
+    const double along = cotangent(near, start) * height - cotangent(far, far_start) * far_height;
+    const double normal_u = near->y[end] - near->y[start], normal_v = near->x[end] - near->x[start];
+    const double reach = sqrt(along * along + height * height + far_height * far_height);
+    const double flat = hypot(along, height - far_height), deep = reach - flat;
+    *out = (struct tl_fold){.ends = {mine[corner], theirs[far_corner]},
+                            .reach = reach,
+                            .spring = (M_PI * M_PI - 4) * 2 * length / ((height + far_height) * deep * deep),
+                            .across_weft = normal_u * normal_u / (length * length),
+                            .across_warp = normal_v * normal_v / (length * length)};
+    if (made)
+        out->reach = fmin(reach, vec3d_norm(vec3d_sub(made[out->ends[0]], made[out->ends[1]])));
+    return out->ends[0] != out->ends[1];
+}
+
+static void build_folds(struct tl_energy *energy, const struct tl_topology *topology,
+                        const struct flat *flats, const vec3d *made)
+{
+    struct tl_fold *folds = TL_NEW_ARRAY(struct tl_fold, 3 * topology->triangle_count);
+    size_t count = 0;
+    for (uint32_t t = 0; t < topology->triangle_count; t++)
+        for (int corner = 0; corner < 3; corner++)
+            count += make_fold(topology, flats, t, corner, made, &folds[count]);
+    energy->folds = tl_folds_build(folds, count, topology->vertex_count);
+}
+
+struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3],
+                                 const vec3d *made)
 {
     size_t count = topology->triangle_count, membrane_count = 0;
     struct tl_energy energy = {.links = TL_NEW_ARRAY(struct tl_link, 3 * count),
@@ -286,6 +330,7 @@ struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s
     }
     build_membranes(&energy, topology, flats, triangles, membrane_count);
     build_bends(&energy, topology, flats);
+    build_folds(&energy, topology, flats, made);
     energy.pairs = tl_pair_forces_build(topology, &energy);
     free(triangles);
     free(flats);
@@ -301,6 +346,7 @@ void tl_energy_release(struct tl_energy *energy)
     free(energy->bends);
     free(energy->links);
     free(energy->masses);
+    tl_folds_release(&energy->folds);
     tl_pair_forces_release(&energy->pairs);
     *energy = (struct tl_energy){0};
 }
@@ -319,6 +365,7 @@ void tl_energy_set_fabric(struct tl_energy *energy, const struct tl_cloth_fabric
     double stiffness[3];
     tl_bend_stiffness(fabric, stiffness);
     tl_pair_forces_set(&energy->pairs, energy, stiffness);
+    tl_folds_set_fabric(&energy->folds, fabric);
 }
 
 /* XPBD's -1 / (w |grad C|^2 + compliance / h^2); 0 where nothing can move or nothing resists. */
@@ -391,6 +438,7 @@ void tl_energy_set_preview(struct tl_energy *energy, const struct tl_cloth_fabri
         set_preview(&energy->membranes[i], fabric, inverse_masses, h, &energy->previewed[i]);
     for (size_t i = 0; i < energy->bend_count; i++)
         set_bend(&energy->bends[i], fabric, inverse_masses, h);
+    tl_folds_set_step(&energy->folds, inverse_masses, h);
     energy->bending_is_force =
         !bends_by_rows && h * sqrt(fastest_bending(&energy->pairs, inverse_masses)) <= FORCE_LIMIT;
     for (size_t i = 0; i < energy->link_count; i++)

@@ -13,7 +13,7 @@
  * A sum of squared hinge angles weighted by l^2/A would overstate B by up to 3 on a grid, where all bending
  * falls on one of three edge directions; the tensor is exact for any quadratic surface over a regular grid.
  * Each component is linear in the positions, and so a constraint with constant gradients. The rest state is
- * flat: folds in the garment's file are not remembered.
+ * flat. Sharp folds have springs besides (folds.h).
  *
  * Rest shapes: x along the weft, y along the warp, metres. Lifetime: plain structs that own their arrays.
  * Threads: pure, except where a function states otherwise. */
@@ -22,6 +22,7 @@
 
 #include "assets/garment.h"
 #include "cloth/energy/fabric.h"
+#include "cloth/energy/folds.h"
 #include "cloth/energy/pair_forces.h"
 #include "cloth/mesh/particles.h"
 #include "cloth/mesh/topology.h"
@@ -79,14 +80,17 @@ struct tl_energy {
     struct tl_bend *bends;
     struct tl_link *links;
     double *masses; /* [vertex_count] kg per areal density: a third of the area around */
+    struct tl_folds folds;
     struct tl_pair_forces pairs;
     bool bending_is_force; /* preview: its substep is short enough for bending as an explicit force, see
                               xpbd.h */
     bool is_prestressed;
 };
 
-/* Builds the energy of a mesh whose triangles have the flat `rest` shapes. */
-struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3]);
+/* Builds the energy of a mesh whose triangles have the flat `rest` shapes. `made` [vertex_count] is how it is
+ * folded when nothing acts; NULL: it is not. */
+struct tl_energy tl_energy_build(const struct tl_topology *topology, const vec2s (*rest)[3],
+                                 const vec3d *made);
 void tl_energy_release(struct tl_energy *energy);
 
 /* Sets the fabric; must precede evaluation of energy and forces, and tl_energy_set_preview must follow. */
@@ -119,12 +123,12 @@ double tl_energy_evaluate(const struct tl_energy *energy, const struct tl_cloth_
 void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
                       vec3d *forces, const struct tl_particle_kernel *then);
 
-/* The same with the explicit forces of `preview`: prestress, and bending where it is a force. */
+/* The same with the explicit forces of `preview`: prestress, folds, and bending where it is a force. */
 void tl_energy_explicit_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,
                                const struct tl_particle_kernel *then);
 static inline bool tl_energy_has_explicit_forces(const struct tl_energy *energy)
 {
-    return energy->bending_is_force || energy->is_prestressed;
+    return energy->bending_is_force || energy->is_prestressed || energy->folds.count > 0;
 }
 
 /* Bending stiffness of the components L_uu, L_vv and sqrt(2) L_uv, N m. */

@@ -162,6 +162,30 @@ TL_INLINE void add_along(const struct tl_pair_forces *pairs, size_t vertex, cons
     }
 }
 
+/* Returns half of the energy of the vertex's folds. */
+TL_INLINE double add_folds(const struct tl_folds *folds, const double *positions, size_t vertex,
+                           bool is_explicit, struct tl_wide_force *sum)
+{
+    const double *at = &positions[4 * vertex];
+    double energy = 0;
+    for (uint32_t k = folds->first[vertex]; k < folds->first[vertex + 1]; k++) {
+        const struct tl_fold_end *end = &folds->ends[k];
+        const double *other = &positions[4 * (size_t)end->other];
+        double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2];
+        double squared = x * x + y * y + z * z;
+        if (!(squared < end->reach_squared))
+            continue;
+        double length = fmax(sqrt(squared), TL_FOLD_NEAREST_M), short_by = end->reach - length;
+        double stiffness = is_explicit ? end->stable : end->stiffness;
+        double strength = stiffness * short_by / length;
+        sum->x += strength * x;
+        sum->y += strength * y;
+        sum->z += strength * z;
+        energy += 0.25 * stiffness * (short_by * short_by);
+    }
+    return energy;
+}
+
 /* The explicit forces, in two independent sums, so that one addition need not wait for the other. */
 TL_INLINE struct tl_wide_force add_packs(const struct tl_pair_forces *pairs, size_t vertex)
 {
@@ -178,9 +202,10 @@ TL_INLINE struct tl_wide_force add_packs(const struct tl_pair_forces *pairs, siz
 }
 
 /* `strengths` [edge_count] of all that acts along edges; NULL: the explicit forces. */
-TL_INLINE void add_block(const struct tl_pair_forces *pairs, struct tl_range block, const double *strengths,
+TL_INLINE void add_block(const struct tl_energy *energy, struct tl_range block, const double *strengths,
                          vec3d *forces)
 {
+    const struct tl_pair_forces *pairs = &energy->pairs;
     for (size_t i = block.from; i < block.to; i++) {
         struct tl_wide_force sum = {0};
         if (strengths) {
@@ -189,6 +214,7 @@ TL_INLINE void add_block(const struct tl_pair_forces *pairs, struct tl_range blo
         } else {
             sum = add_packs(pairs, i);
         }
+        (void)add_folds(&energy->folds, pairs->positions, i, !strengths, &sum);
         pairs->sums[i] = sum;
     }
     for (size_t i = block.from; i < block.to; i++)
@@ -202,33 +228,34 @@ static struct tl_range block_from(size_t from, struct tl_range range)
 }
 
 /* Each block's particles are advanced as soon as their forces are known, while these are in the cache. */
-TL_INLINE void add_range(const struct tl_pair_forces *pairs, const double *strengths, struct tl_range range,
+TL_INLINE void add_range(const struct tl_energy *energy, const double *strengths, struct tl_range range,
                          vec3d *forces, const struct tl_particle_kernel *then)
 {
     for (size_t from = range.from; from < range.to; from += TL_PAIR_BLOCK) {
         struct tl_range block = block_from(from, range);
-        add_block(pairs, block, strengths, forces);
+        add_block(energy, block, strengths, forces);
         if (then)
             then->run(then->particles, block, then->params);
     }
 }
 
-TL_CLONES static void add_forces(const struct tl_pair_forces *pairs, struct tl_range range, vec3d *forces,
+TL_CLONES static void add_forces(const struct tl_energy *energy, struct tl_range range, vec3d *forces,
                                  const struct tl_particle_kernel *then)
 {
-    add_range(pairs, pairs->edge_strengths, range, forces, then);
+    add_range(energy, energy->pairs.edge_strengths, range, forces, then);
 }
 
-TL_CLONES static void add_explicit(const struct tl_pair_forces *pairs, struct tl_range range, vec3d *forces,
+TL_CLONES static void add_explicit(const struct tl_energy *energy, struct tl_range range, vec3d *forces,
                                    const struct tl_particle_kernel *then)
 {
-    add_range(pairs, NULL, range, forces, then);
+    add_range(energy, NULL, range, forces, then);
 }
 
-/* x.Kx/2 of a block of vertices. Rows of K sum to 0, so that x may be measured from any origin; one near by
- * keeps the rounding small. */
-TL_CLONES static double bending_energy(const struct tl_pair_forces *pairs, struct tl_range range)
+/* x.Kx/2 of a block of vertices, and its folds. Rows of K sum to 0, so that x may be measured from any
+ * origin; one near by keeps the rounding small. */
+TL_CLONES static double bending_energy(const struct tl_energy *of, struct tl_range range)
 {
+    const struct tl_pair_forces *pairs = &of->pairs;
     double energy = 0;
     const double *origin = pairs->positions;
     for (size_t i = range.from; i < range.to; i++) {
@@ -238,16 +265,18 @@ TL_CLONES static double bending_energy(const struct tl_pair_forces *pairs, struc
         add_others(pairs, i, &sum);
         energy -=
             0.5 * (sum.x * (at[0] - origin[0]) + sum.y * (at[1] - origin[1]) + sum.z * (at[2] - origin[2]));
+        energy += add_folds(&of->folds, pairs->positions, i, false, &sum);
     }
     return energy;
 }
 
-static void add_energies(const struct tl_pair_forces *pairs)
+static void add_energies(const struct tl_energy *energy)
 {
+    const struct tl_pair_forces *pairs = &energy->pairs;
     struct tl_range mine = tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK);
     for (size_t from = mine.from; from < mine.to; from += TL_PAIR_BLOCK)
         pairs->parts[pairs->metric_count + from / TL_PAIR_BLOCK] =
-            bending_energy(pairs, block_from(from, mine));
+            bending_energy(energy, block_from(from, mine));
 }
 
 /* Work of the passes on the team. */
@@ -293,9 +322,9 @@ static void evaluate(void *context)
             to->links = add_rare(to->energy, to->fabric->stretch_warp);
         tl_team_barrier();
     }
-    add_forces(pairs, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK), to->forces, to->then);
+    add_forces(to->energy, tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK), to->forces, to->then);
     if (to->wants_energy)
-        add_energies(pairs);
+        add_energies(to->energy);
 }
 
 void tl_energy_forces(const struct tl_energy *energy, const struct tl_cloth_fabric *fabric, const vec3d *x,
@@ -319,7 +348,7 @@ static void evaluate_explicit(void *context)
     struct tl_range mine = tl_team_range(pairs->vertex_count, TL_PAIR_BLOCK);
     tl_pair_forces_load_positions(pairs, to->x, mine);
     tl_team_barrier();
-    add_explicit(pairs, mine, to->forces, to->then);
+    add_explicit(to->energy, mine, to->forces, to->then);
 }
 
 void tl_energy_explicit_forces(const struct tl_energy *energy, const vec3d *x, vec3d *forces,

@@ -62,6 +62,26 @@ static double deepest_inside(const struct dressed *d)
     return deepest;
 }
 
+static vec3d normal_of(const tl_cloth *cloth, size_t triangle)
+{
+    const uint32_t *v = cloth->topology.triangles[triangle];
+    const vec3d *x = cloth->particles.x;
+    return vec3d_unit_or(vec3d_cross(vec3d_sub(x[v[1]], x[v[0]]), vec3d_sub(x[v[2]], x[v[0]])), (vec3d){0});
+}
+
+/* The largest angle in degrees by which two triangles are folded. */
+static double sharpest_fold(const tl_cloth *cloth)
+{
+    double least = 1;
+    for (size_t t = 0; t < cloth->topology.triangle_count; t++)
+        for (int corner = 0; corner < 3; corner++) {
+            uint32_t other = cloth->topology.neighbour[t][corner];
+            if (other != TL_NONE)
+                least = fmin(least, vec3d_dot(normal_of(cloth, t), normal_of(cloth, other)));
+        }
+    return acos(fmax(least, -1)) * 180 / M_PI;
+}
+
 /* The largest displacement per frame in 15 frames, in m/s: the motion that a viewer sees. */
 static double creep(struct dressed *d)
 {
@@ -92,7 +112,8 @@ static void check_creep(struct dressed *d, const char *name)
 }
 
 /* Checks speed and displacement in the two seconds after settling. `balances`: in creases of a tight suit a
- * vertex has contact with one plane, and so is pressed to and fro. */
+ * vertex has contact with one plane, and so is pressed to and fro, by at most a sixth of a millimetre a
+ * frame. */
 static void check_rest(struct dressed *d, const char *name, bool balances)
 {
     tl_error error = {0};
@@ -117,7 +138,7 @@ static void check_rest(struct dressed *d, const char *name, bool balances)
                 0.08); /* a flared skirt sinks as its folds form; more would mean that it slides off */
     assert_true(after.max_strain < 1); /* torn cloth is stretched many times its length */
     assert_true(drift < 2e-3);
-    assert_true(rms < 5e-3);
+    assert_true(rms < (balances ? 5e-3 : 1e-2));
     assert_true(after.deepest_m < 1e-3);
     assert_true(deepest < 1e-3);
 }
@@ -157,8 +178,12 @@ static void test_built_in(void **state)
         assert_ok(tl_garment_cut(*name, params_defaults().edge_m, &d.garment, &error), error);
         dress(&d);
         check_rest(&d, *name, true);
-        if (strcmp(*name, "dress") == 0)
+        if (strcmp(*name, "dress") == 0) {
+            double fold_deg = sharpest_fold(d.cloth);
+            printf("%s: folded by at most %.0f degrees an edge\n", *name, fold_deg);
+            assert_true(fold_deg < 150); /* sharper is a knife's edge */
             check_creep(&d, *name);
+        }
         undress(&d);
     }
 }

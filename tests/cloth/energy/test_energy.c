@@ -290,8 +290,19 @@ static void add_bend(const struct tl_bend *bend, size_t lane, const double stiff
     }
 }
 
-/* Forces by plain loops over the triangles, from the deformation gradient and the rows of the curvature
- * operator. */
+static void add_fold(const struct tl_fold *fold, const struct tl_cloth_fabric *fabric, const vec3d *x,
+                     vec3d *forces)
+{
+    double bend =
+        pow(sqrt(fabric->bend_weft) * fold->across_weft + sqrt(fabric->bend_warp) * fold->across_warp, 2);
+    vec3d between = vec3d_sub(x[fold->ends[1]], x[fold->ends[0]]);
+    double push = bend * fold->spring * fmax(0, fold->reach / vec3d_norm(between) - 1);
+    forces[fold->ends[0]] = vec3d_muladd(forces[fold->ends[0]], between, -push);
+    forces[fold->ends[1]] = vec3d_muladd(forces[fold->ends[1]], between, push);
+}
+
+/* Forces by plain loops over the triangles and the folds, from the deformation gradient, the rows of the
+ * curvature operator and the distances of far corners. */
 static void plain_forces(const tl_cloth *cloth, vec3d *forces)
 {
     const struct tl_energy *energy = &cloth->energy;
@@ -304,6 +315,8 @@ static void plain_forces(const tl_cloth *cloth, vec3d *forces)
     for (size_t i = 0; i < energy->bend_count * TL_BATCH; i++)
         if (energy->bends[i / TL_BATCH].area[i % TL_BATCH] > 0)
             add_bend(&energy->bends[i / TL_BATCH], i % TL_BATCH, stiffness, x, forces);
+    for (size_t i = 0; i < energy->folds.count; i++)
+        add_fold(&energy->folds.all[i], &cloth->fabric, x, forces);
 }
 
 #define MAX_THREADS 8

@@ -126,7 +126,7 @@ static void energy_follows_from_strains(void **state)
     struct tl_topology topology =
         tl_topology_build(mesh->indices, mesh->index_count, weld, mesh->vertex_count, mesh->vertex_count);
     vec2s(*rest)[3] = tl_rest_shapes(&garment, &topology);
-    struct tl_energy energy = tl_energy_build(&topology, (const vec2s(*)[3])rest);
+    struct tl_energy energy = tl_energy_build(&topology, (const vec2s(*)[3])rest, NULL);
     const struct tl_cloth_fabric fabric = {.stretch_weft = 2800, .stretch_warp = 4500, .shear = 190};
     tl_energy_set_fabric(&energy, &fabric);
     double joules = tl_energy_evaluate(&energy, &fabric, mesh->vertex_count, x, forces);
