@@ -15,7 +15,8 @@ struct tl_folds tl_folds_build(struct tl_fold *all, size_t count, size_t vertex_
                              .vertex_count = vertex_count,
                              .all = all,
                              .first = TL_NEW_ARRAY(uint32_t, vertex_count + 1),
-                             .ends = TL_NEW_ARRAY(struct tl_fold_end, 2 * count)};
+                             .ends = TL_NEW_ARRAY(struct tl_fold_end, 2 * count),
+                             .springs = TL_NEW_ARRAY(struct tl_fold_spring, 2 * count)};
     uint32_t *next = TL_NEW_ARRAY(uint32_t, vertex_count + 1);
     for (size_t i = 0; i < 2 * count; i++)
         folds.first[all[i / 2].ends[i % 2] + 1]++;
@@ -23,8 +24,10 @@ struct tl_folds tl_folds_build(struct tl_fold *all, size_t count, size_t vertex_
         next[i + 1] = folds.first[i + 1] += folds.first[i];
     for (size_t i = 0; i < 2 * count; i++) {
         const struct tl_fold *fold = &all[i / 2];
-        folds.ends[next[fold->ends[i % 2]]++] = (struct tl_fold_end){
-            .other = fold->ends[1 - i % 2], .reach = fold->reach, .reach_squared = fold->reach * fold->reach};
+        uint32_t place = next[fold->ends[i % 2]]++;
+        folds.ends[place] = (struct tl_fold_end){fold->ends[1 - i % 2],
+                                                 nextafterf((float)(fold->reach * fold->reach), INFINITY)};
+        folds.springs[place].reach = fold->reach;
     }
     free(next);
     return folds;
@@ -44,7 +47,7 @@ void tl_folds_set_fabric(struct tl_folds *folds, const struct tl_cloth_fabric *f
         next[i] = folds->first[i];
     for (size_t i = 0; i < 2 * folds->count; i++) {
         const struct tl_fold *fold = &folds->all[i / 2];
-        folds->ends[next[fold->ends[i % 2]]++].stiffness = fold->spring * stiffness_across(fold, fabric);
+        folds->springs[next[fold->ends[i % 2]]++].stiffness = fold->spring * stiffness_across(fold, fabric);
     }
     free(next);
 }
@@ -57,8 +60,8 @@ void tl_folds_set_step(struct tl_folds *folds, const double *inverse_masses, dou
         shares[i] = fmin(1, STABLE_PHASE_SQUARED / (h * h * inverse_masses[i] * shares[i]));
     for (size_t i = 0; i < folds->vertex_count; i++)
         for (uint32_t k = folds->first[i]; k < folds->first[i + 1]; k++) {
-            struct tl_fold_end *end = &folds->ends[k];
-            end->stable = end->stiffness * fmin(shares[i], shares[end->other]);
+            struct tl_fold_spring *spring = &folds->springs[k];
+            spring->stable = spring->stiffness * fmin(shares[i], shares[folds->ends[k].other]);
         }
     free(shares);
 }
@@ -68,6 +71,7 @@ void tl_folds_release(struct tl_folds *folds)
     free(folds->all);
     free(folds->first);
     free(folds->ends);
+    free(folds->springs);
     *folds = (struct tl_folds){0};
 }
 
@@ -76,5 +80,5 @@ void tl_folds_add_row_sums(const struct tl_folds *folds, double *sums)
 {
     for (size_t i = 0; i < folds->vertex_count; i++)
         for (uint32_t k = folds->first[i]; k < folds->first[i + 1]; k++)
-            sums[i] += 2 * folds->ends[k].stiffness;
+            sums[i] += 2 * folds->springs[k].stiffness;
 }

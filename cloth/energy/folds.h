@@ -28,19 +28,23 @@ struct tl_fold {
     double across_weft, across_warp; /* squares of the cosines between its normal and the threads */
 };
 
-/* The same from one of its ends. */
+/* The same from one of its ends: what is read of every hinge, and what of those that are folded. */
 struct tl_fold_end {
     uint32_t other;
-    double reach_squared, reach; /* m */
-    double stiffness;            /* N/m */
-    double stable;               /* N/m, of it what is stable as an explicit force of `preview` */
+    float reach_squared; /* m^2, rounded up */
+};
+struct tl_fold_spring {
+    double reach;     /* m */
+    double stiffness; /* N/m */
+    double stable;    /* N/m, of it what is stable as an explicit force of `preview` */
 };
 
 struct tl_folds {
     size_t count, vertex_count;
     struct tl_fold *all;
-    uint32_t *first; /* [vertex_count + 1]: ends[first[i]] and on are vertex i's */
+    uint32_t *first; /* [vertex_count + 1]: ends[first[i]] and on are vertex i's, and their springs */
     struct tl_fold_end *ends;
+    struct tl_fold_spring *springs;
 };
 
 /* Takes the array of folds. */

@@ -173,10 +173,11 @@ TL_INLINE double add_folds(const struct tl_folds *folds, const double *positions
         const double *other = &positions[4 * (size_t)end->other];
         double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2];
         double squared = x * x + y * y + z * z;
-        if (!(squared < end->reach_squared))
+        if (!(squared < (double)end->reach_squared))
             continue;
-        double length = fmax(sqrt(squared), TL_FOLD_NEAREST_M), short_by = end->reach - length;
-        double stiffness = is_explicit ? end->stable : end->stiffness;
+        const struct tl_fold_spring *spring = &folds->springs[k];
+        double length = fmax(sqrt(squared), TL_FOLD_NEAREST_M), short_by = fmax(spring->reach - length, 0);
+        double stiffness = is_explicit ? spring->stable : spring->stiffness;
         double strength = stiffness * short_by / length;
         sum->x += strength * x;
         sum->y += strength * y;
