@@ -96,8 +96,8 @@ static void run(bool (*command)(const struct tl_arguments *, tl_error *), unsign
     tl_arguments_release(&arguments);
 }
 
-/* Renders a scene with further options. Four samples a side, because Cycles' filter is a box as wide as a
- * pixel. */
+/* Renders a scene with further options. Four samples a side unless they say otherwise, because Cycles' filter
+ * is a box as wide as a pixel. */
 static tl_image render(const char *scene, const char *mesh, const char *const *options)
 {
     const char *path = TOILE_SCRATCH_DIR "/truth.exr", *words[WORDS] = {NULL};
@@ -125,7 +125,11 @@ static tl_image read_truth(const char *scene)
         "reference.bounce_samples=4"
 #define BOUNCE(choice) "--set", "light.bounce=" choice
 
-static const char *const reference[] = {RAYS, BOUNCE("all"), NULL}, *const drawn[] = {NULL};
+/* What is drawn has no noise: blocks of its pixels with two samples a side differ from those with four by a
+ * tenth of a percent of the mean, and take a quarter of the time. */
+#define COARSELY "--set", "image.supersample=2"
+
+static const char *const reference[] = {RAYS, BOUNCE("all"), NULL}, *const drawn[] = {COARSELY, NULL};
 
 /* The picture of the scene with these options, against the truth. */
 static struct difference render_and_compare(const char *scene, const char *mesh, const char *const *options)
@@ -234,12 +238,15 @@ static void metal_without_bounces_meets_the_reference(void **state)
         {"fold_metal_studio", FOLDER "fold_metal.glb", 1.6, 3.3, false},
         {"fold_metal_sun", FOLDER "fold_metal.glb", 1.3, 4.6, true},
     };
+    /* A quarter of the rays: their noise raises what is found of 2.65 % to 3.1 %, under the same bound. */
+    static const char *const without[] = {"--preset", "review", COARSELY, BOUNCE("off"), NULL},
+                             *const few_rays[] = {RAYS, "--set", "reference.strata=4", BOUNCE("off"), NULL};
     int failures = 0;
     for (size_t i = 0; i < TL_COUNT(metals); i++) {
         if (!(draws_all || metals[i].always))
             continue;
-        tl_image exact = render(metals[i].name, metals[i].mesh, bounces[1].reference),
-                 shown = render(metals[i].name, metals[i].mesh, bounces[1].review);
+        tl_image exact = render(metals[i].name, metals[i].mesh, few_rays),
+                 shown = render(metals[i].name, metals[i].mesh, without);
         const struct difference off = compare(&shown, &exact);
         printf("%-20s    without bounces, as drawn: %8.2f %8.2f\n", metals[i].name, 100 * off.mean,
                100 * off.rms);
