@@ -133,14 +133,15 @@ static void walk(struct dressed *d, int frame)
 
 /* Arms go through the skirt and into the hips. When all caught cloth was let through other cloth at once, 196
  * pairs crossed, in 5 of the 75 frames; when torn cloth was, 4 pairs in one of them, and 12 from the 193rd
- * frame on. TOILE_FRAMES=230: at most 12 of 4,558 particles are inside, in 75 of 260 frames. Every 40th is
- * counted by brute force too. */
+ * frame on. TOILE_FRAMES=230 on edges of 2 cm: at most 12 of 4,558 particles are inside, in 75 of 260 frames.
+ * Edges of 2.5 cm go through the hip as these do; with 3 cm nothing is let go. Every 40th frame is counted by
+ * brute force too. */
 static void test_walking(void **state)
 {
     (void)state;
     struct dressed d = {0};
     struct worst worst = {0};
-    dress_walker(&d, params_defaults().edge_m);
+    dress_walker(&d, 0.025f);
     int frames = POSE_IN + frame_count(1);
     for (int frame = 0; frame < frames; frame++) {
         walk(&d, frame);
@@ -217,7 +218,7 @@ static void check_twisting(const char *garment, const char *avatar)
 {
     static const struct {
         int solver, share;
-    } cases[] = {{TL_CLOTH_PREVIEW, 1}, {TL_CLOTH_REFERENCE, 9}};
+    } cases[] = {{TL_CLOTH_PREVIEW, 2}, {TL_CLOTH_REFERENCE, 9}};
     tl_error error = {0};
     struct dressed d = {0};
     assert_ok(tl_avatar_load(test_data(avatar), &d.avatar, &error), error);
@@ -249,12 +250,12 @@ static vec3s fold(double u, double v)
     int ply = u < side ? 0 : u < 2 * side ? 1 : 2;
     double along = u - side * ply;
     return (vec3s){{(float)((ply == 1 ? side - along : along) - side / 2),
-                    (float)(0.105 + gap * (ply + 0.9 * along / side)), (float)(v - 0.1)}};
+                    (float)(0.105 + gap * (ply + 0.9 * along / side)), (float)(v - 0.05)}};
 }
 
 static void dress_blocks(struct dressed *d)
 {
-    static const struct sheet_shape shape = {30, 20, 0.3, 0.2};
+    static const struct sheet_shape shape = {30, 10, 0.3, 0.1};
     tl_error error = {0};
     tl_mesh *mesh = &d->avatar.model.mesh;
     tl_mesh upper = body_box((vec3s){{0.02f, 0.25f, 0}}, (vec3s){{0.15f, 0.05f, 0.15f}}, 0);
