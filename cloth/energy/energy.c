@@ -285,7 +285,8 @@ static bool make_fold(const struct tl_topology *topology, const struct flat *fla
     const double length = edge_length(near, corner), scale = length / edge_length(far, far_corner);
     const double height = fabs(near->signed_double_area) / length;
     const double far_height = fabs(far->signed_double_area) / length * (scale * scale);
-    /* From the edge's start to the corners' feet: a cotangent is a foot's distance over the height. */
+    /* Distance of the corners' feet on the edge: a cotangent is a foot's distance from its end over the
+     * height. */
     const double along = cotangent(near, start) * height - cotangent(far, far_start) * far_height;
     const double normal_u = near->y[end] - near->y[start], normal_v = near->x[end] - near->x[start];
     const double reach = sqrt(along * along + height * height + far_height * far_height);

@@ -1,4 +1,4 @@
-/* What hinges resist beyond a right angle.
+/* Springs that resist sharp folds: those beyond a right angle.
  *
  * The bend of tl_bend is a chord: at an angle t a hinge of stiffness k has the energy k/2 (2 sin(t/2))^2,
  * whose moment falls from a right angle on, so that cloth which is folded flat stays folded. The angle's
@@ -58,7 +58,7 @@ void tl_folds_release(struct tl_folds *folds);
 /* Adds a bound of each row of |K| (N/m) to `sums` [vertex_count]. */
 void tl_folds_add_row_sums(const struct tl_folds *folds, double *sums);
 
-/* Two plies that touch push apart no harder than from here. */
+/* Corners nearer than this push as from here. */
 #define TL_FOLD_NEAREST_M 1e-6
 
 #endif
