@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "config/base/interrupt.h"
 #include "config/base/memory.h"
+#include "render/gpu/gpu.h"
 
 #include <locale.h>
 #include <malloc.h>
@@ -31,6 +32,7 @@ static bool run(int argc, char **argv, tl_error *error)
     } else if (done) {
         arguments.command_line = argv + 1;
         tl_arguments_apply(&arguments);
+        tl_gpu_choose(arguments.device);
         done = command->run(&arguments, error);
     }
     tl_arguments_release(&arguments);

@@ -167,6 +167,8 @@ static const struct flag flags_known[] = {
      "exit with 1 if a finding is an error; warnings alone exit with 0"},
     {"--allow-outside", 0, FLAG_SWITCH, AT(allow_outside), NULL, NULL,
      "also read pictures and buffers that a model names outside its own folder"},
+    {"--device", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_WHOLE, AT(device), NULL, "N",
+     "the graphics device that draws: `toile info devices` lists them; view draws on the screen's"},
     {"--force", TL_FLAGS_OUTPUT, FLAG_SWITCH, AT(force), NULL, NULL, "let -o replace a file that is read"},
     {"--memory", 0, FLAG_BYTES, AT(memory_bytes), NULL, "SIZE",
      "how much memory may be taken, as in 500M or 8G; else nearly all that the machine or the container has"},

@@ -57,6 +57,7 @@ struct tl_arguments {
     } sheet;
     /* 0: not given */
     uint64_t memory_bytes;
+    int device; /* --device, from 1; 0: any */
     double budget_ms;
     bool calibrate;
     double repeat_mm, height_mm, reach_mm;

@@ -259,6 +259,8 @@ static void log_end(const struct tl_review *review, size_t bytes_before)
 
 bool tl_command_view(const struct tl_arguments *arguments, tl_error *error)
 {
+    if (arguments->device)
+        return tl_fail(error, TL_USAGE, "--device: the window is drawn by the screen's device: leave it out");
     struct tl_review *review = TL_NEW(struct tl_review);
     review->keep.arguments = arguments;
     tl_settings_reset(&review->wanted);

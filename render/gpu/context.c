@@ -10,15 +10,25 @@
 
 #define GL_VERSION_NEEDED 45
 
+/* Whether a message is of a fault. Drivers send hints about speed and notes as well, some of them as severe.
+ */
+static bool is_fault(GLenum type)
+{
+    return type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR ||
+           type == GL_DEBUG_TYPE_DEPRECATED_BEHAVIOR || type == GL_DEBUG_TYPE_PORTABILITY;
+}
+
 static void on_message(GLenum source, GLenum type, GLuint id, GLenum severity, GLsizei length,
                        const GLchar *message, const void *user)
 {
-    (void)source, (void)type, (void)length;
-    if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM)
-        return;
-    /* The pointer comes back const only because GL declares it so. */
-    ((tl_gpu *)user)->message_count++;
-    tl_warn("GL message %u: %s", id, message);
+    (void)source, (void)length;
+    if (is_fault(type)) {
+        /* The pointer comes back const only because GL declares it so. */
+        ((tl_gpu *)user)->message_count++;
+        tl_warn("GL message %u: %s", id, message);
+    } else if (severity != GL_DEBUG_SEVERITY_NOTIFICATION) {
+        tl_debug("GL hint %u: %s", id, message);
+    }
 }
 
 /* Initialises everything that does not depend on the origin of the context. */
@@ -38,42 +48,105 @@ static bool take_over(tl_gpu *gpu, tl_error *error)
     return true;
 }
 
-static bool create_context(tl_gpu *gpu, tl_error *error)
+static bool create_context(tl_gpu *gpu, EGLDisplay display, tl_error *error)
 {
-    const char *remedy = "install Mesa's EGL driver (libegl-mesa0)";
-    if (!dlopen("libEGL.so.1", RTLD_LAZY)) /* libepoxy would abort */
-        return tl_fail(error, TL_DEVICE, "EGL: %s: install libegl1", dlerror());
-    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
-        return tl_fail(error, TL_DEVICE, "EGL: there is no surfaceless platform here: %s", remedy);
-    gpu->display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
-    if (gpu->display == EGL_NO_DISPLAY || !eglInitialize(gpu->display, NULL, NULL))
-        return tl_fail(error, TL_DEVICE, "EGL: the surfaceless display does not open: %s", remedy);
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_CONTEXT_OPENGL_DEBUG,
-                                 EGL_TRUE,
-                                 EGL_NONE};
-    if (eglBindAPI(EGL_OPENGL_API))
-        gpu->context = eglCreateContext(gpu->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
-    if (gpu->context == EGL_NO_CONTEXT ||
-        !eglMakeCurrent(gpu->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context))
+    static const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                        4,
+                                        EGL_CONTEXT_MINOR_VERSION,
+                                        5,
+                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                        EGL_CONTEXT_OPENGL_DEBUG,
+                                        EGL_TRUE,
+                                        EGL_NONE};
+    gpu->display = display;
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL))
         return tl_fail(error, TL_DEVICE,
-                       "EGL: no OpenGL 4.5 core context (EGL error 0x%x): update the driver",
-                       (unsigned)eglGetError());
-    return true;
+                       "EGL: the device does not open: install its driver; libegl-mesa0 has one in software");
+    if (eglBindAPI(EGL_OPENGL_API))
+        gpu->context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    return (gpu->context != EGL_NO_CONTEXT &&
+            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gpu->context)) ||
+           tl_fail(error, TL_DEVICE, "EGL: no OpenGL 4.5 core context (EGL error 0x%x): update the driver",
+                   (unsigned)eglGetError());
+}
+
+static tl_gpu *create_on(EGLDisplay display, tl_error *error)
+{
+    tl_gpu *gpu = TL_NEW(tl_gpu);
+    gpu->context = EGL_NO_CONTEXT;
+    if (!create_context(gpu, display, error) || !take_over(gpu, error))
+        tl_gpu_destroy(&gpu);
+    return gpu;
+}
+
+/* ---- Devices ---- */
+
+static int chosen_device;
+
+static bool find_egl(tl_error *error)
+{
+    return dlopen("libEGL.so.1", RTLD_LAZY) || /* libepoxy would abort */
+           tl_fail(error, TL_DEVICE, "EGL: %s: install libegl1", dlerror());
+}
+
+static int list_devices(EGLDeviceEXT devices[TL_GPU_DEVICES_MAX])
+{
+    EGLint count = 0;
+    if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
+        (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") ||
+         epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base")))
+        eglQueryDevicesEXT(TL_GPU_DEVICES_MAX, devices, &count);
+    return count;
+}
+
+static EGLDisplay display_of(EGLDeviceEXT device)
+{
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
+}
+
+int tl_gpu_devices(struct tl_gpu_device out[TL_GPU_DEVICES_MAX], tl_error *error)
+{
+    EGLDeviceEXT devices[TL_GPU_DEVICES_MAX];
+    if (!find_egl(error))
+        return -1;
+    const int count = list_devices(devices);
+    for (int i = 0; i < count; i++) {
+        tl_error refusal = {0};
+        tl_gpu *gpu = create_on(display_of(devices[i]), &refusal);
+        out[i].opens = gpu != NULL;
+        snprintf(out[i].name, sizeof out[i].name, "%.255s", gpu ? gpu->name : refusal.message);
+        tl_gpu_destroy(&gpu);
+    }
+    return count;
+}
+
+void tl_gpu_choose(int device)
+{
+    chosen_device = device;
 }
 
 tl_gpu *tl_gpu_create_headless(tl_error *error)
 {
-    tl_gpu *gpu = TL_NEW(tl_gpu);
-    gpu->display = EGL_NO_DISPLAY;
-    gpu->context = EGL_NO_CONTEXT;
-    if (!create_context(gpu, error) || !take_over(gpu, error))
-        tl_gpu_destroy(&gpu);
+    EGLDeviceEXT devices[TL_GPU_DEVICES_MAX];
+    tl_gpu *gpu = NULL;
+    if (!find_egl(error))
+        return NULL;
+    const int count = list_devices(devices);
+    if (chosen_device > count)
+        tl_fail(error, TL_USAGE, "--device: there is no device %d: `toile info devices` lists %d",
+                chosen_device, count);
+    else if (chosen_device > 0)
+        gpu = create_on(display_of(devices[chosen_device - 1]), error);
+    else if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
+        gpu = create_on(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL),
+                        error);
+    else if (count == 0)
+        tl_fail(error, TL_DEVICE,
+                "EGL: there is neither a surfaceless platform here nor a device: install Mesa's driver "
+                "(libegl-mesa0)");
+    for (int i = 0; !gpu && chosen_device == 0 && i < count; i++)
+        gpu = create_on(display_of(devices[i]), error);
     return gpu;
 }
 

@@ -1,7 +1,8 @@
 /* The thin GL floor: the only files that create GL contexts and resources. GL 4.5 core through libepoxy.
  *
- * One tl_gpu is current on one thread. In debug builds of the context every GL message of severity medium or
- * worse is logged and counted (tl_gpu_message_count), so a test can demand none. */
+ * One tl_gpu is current on one thread. Every GL message of an error, of undefined, deprecated or unportable
+ * use is logged and counted (tl_gpu_message_count), so a test can demand none; hints about speed are printed
+ * by --verbose. */
 #ifndef TOILE_RENDER_GPU_GPU_H
 #define TOILE_RENDER_GPU_GPU_H
 
@@ -15,7 +16,19 @@
 
 typedef struct tl_gpu tl_gpu;
 
-/* Surfaceless EGL: needs no display. Software Mesa is fine. */
+/* The devices of EGL, in its order; commands number them from 1. Software Mesa is one. */
+#define TL_GPU_DEVICES_MAX 16
+struct tl_gpu_device {
+    char name[256]; /* as tl_gpu_name; or why it cannot be used */
+    bool opens;
+};
+/* Opens each in turn. Returns how many there are; -1: error. */
+int tl_gpu_devices(struct tl_gpu_device out[TL_GPU_DEVICES_MAX], tl_error *error);
+/* The device that headless contexts are created on from now on, from 1; 0: EGL's own choice, else the first
+ * that opens. Threads: before the first context. */
+void tl_gpu_choose(int device);
+
+/* Needs no display: on EGL's surfaceless platform, or on a device. */
 tl_gpu *tl_gpu_create_headless(tl_error *error);
 /* Adopts the context that is current on this thread (a window's). */
 tl_gpu *tl_gpu_create_current(tl_error *error);
@@ -28,7 +41,7 @@ void tl_gpu_unbind(tl_gpu *gpu);
 
 const char *tl_gpu_name(const tl_gpu *gpu);     /* GL_RENDERER and version, for reports */
 bool tl_gpu_is_software(const tl_gpu *gpu);     /* Mesa's llvmpipe: it runs on the cores of the CPU */
-size_t tl_gpu_message_count(const tl_gpu *gpu); /* GL debug messages so far */
+size_t tl_gpu_message_count(const tl_gpu *gpu); /* faults that GL has reported so far */
 size_t tl_gpu_texture_bytes(const tl_gpu *gpu); /* memory of all live textures, computed from their formats */
 int tl_gpu_texture_side_max(const tl_gpu *gpu); /* texels */
 /* Whether GL had the memory for all that was asked of it since the last check. Where it had not, textures and

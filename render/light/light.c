@@ -100,6 +100,7 @@ bool tl_lighting_create(struct tl_lighting *lighting, tl_gpu *gpu, tl_error *err
     }
     lighting->exponent_levels = tl_texture_create(gpu, GL_TEXTURE_2D, GL_R32F, EXPONENT_STEPS, 1, 1, 1);
     glTextureSubImage2D(lighting->exponent_levels.id, 0, 0, 0, EXPONENT_STEPS, 1, GL_RED, GL_FLOAT, levels);
+    lighting->no_depths = tl_depth_array_create(gpu, 1, 1);
     glCreateBuffers(1, &lighting->regions_buffer);
     glNamedBufferStorage(lighting->regions_buffer,
                          (TL_REGIONS_MAX + TL_SUNS_MAX) * sizeof(struct region_light), NULL,
@@ -113,6 +114,7 @@ void tl_lighting_release(struct tl_lighting *lighting)
         for (int kind = 0; kind < TL_LIGHT_MAP_KINDS; kind++)
             tl_program_destroy(&lighting->programs[source][kind]);
     tl_texture_destroy(&lighting->exponent_levels);
+    tl_texture_destroy(&lighting->no_depths);
     if (lighting->regions_buffer)
         glDeleteBuffers(1, &lighting->regions_buffer);
     lighting->regions_buffer = 0;
@@ -286,10 +288,10 @@ static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct
     glBindTextureUnit(LOBES_UNIT, request->exact->lobes.id);
     if (source == TL_LIGHT_SLICES)
         tl_slice_maps_bind(request->slices);
-    if (shadowed) {
+    const unsigned sun_maps = shadowed ? tl_shadow_maps_sun_texture(request->maps) : 0;
+    if (shadowed)
         glBindTextureUnit(MAPS_UNIT, tl_shadow_maps_texture(request->maps, 0));
-        glBindTextureUnit(SUN_MAPS_UNIT, tl_shadow_maps_sun_texture(request->maps));
-    }
+    glBindTextureUnit(SUN_MAPS_UNIT, sun_maps ? sun_maps : lighting->no_depths.id);
     draw_pass(gpu, true);
     return true;
 }

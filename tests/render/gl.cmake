@@ -1,6 +1,6 @@
 # Tests of the renderer on a headless GL context.
-add_library(toile_test_scenes STATIC scenes.c paths.c)
-target_link_libraries(toile_test_scenes PUBLIC toile_render PkgConfig::CMOCKA)
+add_library(toile_test_scenes STATIC bindings.c scenes.c paths.c)
+target_link_libraries(toile_test_scenes PUBLIC toile_render PkgConfig::CMOCKA PRIVATE PkgConfig::EPOXY)
 target_compile_definitions(toile_test_scenes PRIVATE
   TOILE_SCRATCH_DIR="${CMAKE_CURRENT_BINARY_DIR}")
 

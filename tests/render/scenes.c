@@ -1,4 +1,5 @@
 #include "tests/render/scenes.h"
+#include "tests/render/bindings.h"
 
 #include "assets/weave/weave.h"
 #include "config/base/memory.h"
@@ -248,6 +249,7 @@ int test_device_open(void **state)
     device->cache = tl_format("%s/maps_%ld", TOILE_SCRATCH_DIR, (long)getpid());
     tl_cache_use(device->cache, TL_CACHE_LIMIT_BYTES);
     device->gpu = tl_gpu_create_headless(&error);
+    test_bindings_watch();
     if (device->gpu)
         device->renderer = tl_renderer_create(device->gpu, &error);
     if (!device->renderer)
@@ -260,15 +262,18 @@ int test_device_close(void **state)
     struct test_device *device = *state;
     tl_renderer_destroy(&device->renderer);
     size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_texture_bytes(device->gpu);
+    size_t bindings = test_bindings_take_faults();
     tl_gpu_destroy(&device->gpu);
     tl_cache_use(NULL, 0);
     tl_cache_clear(device->cache);
     rmdir(device->cache);
     free(device->cache);
     free(device);
-    if (messages || bytes)
-        print_error("%zu GL messages, %zu bytes of textures left\n", messages, bytes);
-    return messages || bytes ? -1 : 0;
+    if (messages || bytes || bindings)
+        print_error(
+            "%zu GL messages, %zu bytes of textures left, %zu samplers bound to what they cannot read\n",
+            messages, bytes, bindings);
+    return messages || bytes || bindings ? -1 : 0;
 }
 
 void test_scene_open(struct test_scene *scene, tl_environment environment, vec3s eye, vec3s target,

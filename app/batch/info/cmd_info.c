@@ -14,6 +14,7 @@
 #include "cloth/mesh/topology.h"
 #include "config/base/file.h"
 #include "config/base/memory.h"
+#include "render/gpu/gpu.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -317,13 +318,30 @@ static void list_embedded(cJSON *object, const char *key, const struct tl_embedd
     }
 }
 
-static cJSON *describe_built_in(const char *what)
+/* Lists devices by the numbers that --device takes. */
+static bool list_devices(cJSON *object, const char *key, tl_error *error)
 {
+    struct tl_gpu_device devices[TL_GPU_DEVICES_MAX];
+    cJSON *list = cJSON_AddObjectToObject(object, key);
+    const int count = tl_gpu_devices(devices, error);
+    for (int i = 0; i < count; i++) {
+        char number[16];
+        snprintf(number, sizeof number, "%d", i + 1);
+        cJSON_AddStringToObject(list, number, devices[i].name);
+    }
+    return count >= 0;
+}
+
+static cJSON *describe_built_in(const char *what, tl_error *error)
+{
+    bool listed = true;
     cJSON *object = cJSON_CreateObject();
     if (strcmp(what, "fabrics") == 0)
         list_embedded(object, what, tl_embedded_fabrics);
     else if (strcmp(what, "presets") == 0)
         list_embedded(object, what, tl_embedded_presets);
+    else if (strcmp(what, "devices") == 0)
+        listed = list_devices(object, what, error);
     else if (strcmp(what, "findings") == 0)
         cJSON_AddItemToObject(object, what, tl_audit_codes_json());
     else {
@@ -332,6 +350,10 @@ static cJSON *describe_built_in(const char *what)
             cJSON_AddItemToArray(names, cJSON_CreateString(*name));
         for (const char *const *name = tl_specimen_names; *name; name++)
             cJSON_AddItemToArray(names, cJSON_CreateString(*name));
+    }
+    if (!listed) {
+        cJSON_Delete(object);
+        return NULL;
     }
     return object;
 }
@@ -400,7 +422,7 @@ static cJSON *describe_file(const char *path, tl_audit *audit, tl_error *error)
 
 static bool is_built_in(const char *what)
 {
-    static const char *const lists[] = {"fabrics", "presets", "garments", "findings"};
+    static const char *const lists[] = {"fabrics", "presets", "garments", "devices", "findings"};
     for (size_t i = 0; i < TL_COUNT(lists); i++)
         if (strcmp(what, lists[i]) == 0)
             return true;
@@ -414,7 +436,7 @@ bool tl_command_info(const struct tl_arguments *arguments, tl_error *error)
     const char *path = arguments->positionals[0];
     tl_audit audit = {0};
     bool is_list = is_built_in(path);
-    cJSON *object = is_list ? describe_built_in(path) : describe_file(path, &audit, error);
+    cJSON *object = is_list ? describe_built_in(path, error) : describe_file(path, &audit, error);
     if (!object)
         return false;
     print_object(object, is_list ? NULL : &audit, arguments->json);

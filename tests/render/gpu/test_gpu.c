@@ -49,6 +49,45 @@ static void test_messages_are_counted(void **state)
     glGetError();
 }
 
+/* Hints of drivers are none, whatever they call their severity; what GL leaves undefined is one. */
+static void test_hints_are_no_faults(void **state)
+{
+    tl_gpu *gpu = *state;
+    size_t before = tl_gpu_message_count(gpu);
+    const GLenum hints[] = {GL_DEBUG_TYPE_PERFORMANCE, GL_DEBUG_TYPE_OTHER, GL_DEBUG_TYPE_MARKER};
+    const GLenum found[] = {GL_DEBUG_TYPE_ERROR, GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR, GL_DEBUG_TYPE_PORTABILITY};
+    for (size_t i = 0; i < TL_COUNT(hints); i++)
+        glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, hints[i], 7, GL_DEBUG_SEVERITY_HIGH, -1, "a hint");
+    assert_int_equal(tl_gpu_message_count(gpu), before);
+    for (size_t i = 0; i < TL_COUNT(found); i++)
+        glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, found[i], 8, GL_DEBUG_SEVERITY_MEDIUM, -1,
+                             "a fault");
+    assert_int_equal(tl_gpu_message_count(gpu), before + TL_COUNT(found));
+}
+
+/* Each device that opens draws; one that is not there is refused. */
+static void test_devices(void **state)
+{
+    tl_gpu *first = *state;
+    struct tl_gpu_device devices[TL_GPU_DEVICES_MAX];
+    tl_error error = {0};
+    int count = tl_gpu_devices(devices, &error);
+    assert_true(count >= 0);
+    for (int i = 0; i < count; i++) {
+        tl_gpu_choose(i + 1);
+        tl_gpu *gpu = tl_gpu_create_headless(&error);
+        assert_true((gpu != NULL) == devices[i].opens);
+        if (gpu)
+            assert_string_equal(tl_gpu_name(gpu), devices[i].name);
+        tl_gpu_destroy(&gpu);
+    }
+    tl_gpu_choose(count + 1);
+    assert_null(tl_gpu_create_headless(&error));
+    assert_non_null(strstr(error.message, "--device: there is no device"));
+    tl_gpu_choose(0);
+    assert_ok(tl_gpu_bind(first, &error), error);
+}
+
 static void test_texture_bytes(void **state)
 {
     tl_gpu *gpu = *state;
@@ -193,9 +232,10 @@ static void test_levels_are_means_of_light(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_headless_context),  cmocka_unit_test(test_messages_are_counted),
-        cmocka_unit_test(test_texture_bytes),     cmocka_unit_test(test_includes_keep_lines),
-        cmocka_unit_test(test_shaders_from_disk), cmocka_unit_test(test_levels_are_means_of_light),
+        cmocka_unit_test(test_headless_context),    cmocka_unit_test(test_messages_are_counted),
+        cmocka_unit_test(test_hints_are_no_faults), cmocka_unit_test(test_devices),
+        cmocka_unit_test(test_texture_bytes),       cmocka_unit_test(test_includes_keep_lines),
+        cmocka_unit_test(test_shaders_from_disk),   cmocka_unit_test(test_levels_are_means_of_light),
     };
     return cmocka_run_group_tests(tests, open_gpu, close_gpu);
 }

@@ -1,0 +1,141 @@
+#include "tests/render/bindings.h"
+
+#include "config/base/memory.h"
+#include "tests/testing.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#define PRINTED_MAX 5
+
+static PFNGLDRAWARRAYSPROC draw_arrays;
+static PFNGLDRAWELEMENTSPROC draw_elements;
+static size_t faults;
+
+/* The binding that a sampler's type reads, 0: no sampler of this program's shaders. */
+static GLenum binding_of(GLenum type, bool *compares)
+{
+    static const struct {
+        GLenum type, binding;
+        bool compares;
+    } types[] = {
+        {GL_SAMPLER_2D, GL_TEXTURE_BINDING_2D, false},
+        {GL_SAMPLER_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY, false},
+        {GL_SAMPLER_CUBE, GL_TEXTURE_BINDING_CUBE_MAP, false},
+        {GL_SAMPLER_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY, false},
+        {GL_SAMPLER_2D_SHADOW, GL_TEXTURE_BINDING_2D, true},
+        {GL_SAMPLER_2D_ARRAY_SHADOW, GL_TEXTURE_BINDING_2D_ARRAY, true},
+    };
+    for (size_t i = 0; i < TL_COUNT(types); i++)
+        if (types[i].type == type) {
+            *compares = types[i].compares;
+            return types[i].binding;
+        }
+    return 0;
+}
+
+/* A program's samplers. To list them takes GL longer than to draw, so those of the last programs are kept;
+ * one that has been deleted may have left its name to another. */
+struct sampler {
+    GLenum binding;
+    bool compares;
+    GLint unit;
+    char name[64];
+};
+#define SAMPLERS_MAX 32
+#define KEPT_MAX     64
+struct listed {
+    GLint program, uniform_count, count;
+    struct sampler samplers[SAMPLERS_MAX];
+};
+static struct listed kept[KEPT_MAX];
+
+static void list_samplers(struct listed *listed)
+{
+    const GLuint program = (GLuint)listed->program;
+    listed->count = 0;
+    for (GLint i = 0; i < listed->uniform_count && listed->count < SAMPLERS_MAX; i++) {
+        struct sampler *sampler = &listed->samplers[listed->count];
+        GLint size;
+        GLenum type;
+        glGetActiveUniform(program, (GLuint)i, sizeof sampler->name, NULL, &size, &type, sampler->name);
+        sampler->binding = binding_of(type, &sampler->compares);
+        if (!sampler->binding)
+            continue;
+        glGetUniformiv(program, glGetUniformLocation(program, sampler->name), &sampler->unit);
+        listed->count++;
+    }
+}
+
+static const struct listed *samplers_of(GLint program)
+{
+    struct listed *listed = &kept[program % KEPT_MAX];
+    GLint uniform_count;
+    glGetProgramiv((GLuint)program, GL_ACTIVE_UNIFORMS, &uniform_count);
+    if (listed->program != program || listed->uniform_count != uniform_count) {
+        listed->program = program;
+        listed->uniform_count = uniform_count;
+        list_samplers(listed);
+    }
+    return listed;
+}
+
+static void check_sampler(const struct sampler *sampler)
+{
+    GLint texture, mode = GL_NONE;
+    glActiveTexture(GL_TEXTURE0 + (GLenum)sampler->unit);
+    glGetIntegerv(sampler->binding, &texture);
+    if (texture)
+        glGetTextureParameteriv((GLuint)texture, GL_TEXTURE_COMPARE_MODE, &mode);
+    if (sampler->compares ? mode == GL_COMPARE_REF_TO_TEXTURE : mode == GL_NONE)
+        return;
+    if (faults++ < PRINTED_MAX)
+        print_error("bindings: sampler %s reads unit %d, texture %d, which %s\n", sampler->name,
+                    sampler->unit, texture,
+                    !texture            ? "is none"
+                    : sampler->compares ? "does not compare depths"
+                                        : "compares depths");
+}
+
+static void check_draw(void)
+{
+    GLint program, active;
+    glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+    if (!program)
+        return;
+    glGetIntegerv(GL_ACTIVE_TEXTURE, &active);
+    const struct listed *listed = samplers_of(program);
+    for (GLint i = 0; i < listed->count; i++)
+        check_sampler(&listed->samplers[i]);
+    glActiveTexture((GLenum)active);
+}
+
+static void watched_arrays(GLenum mode, GLint first, GLsizei count)
+{
+    check_draw();
+    draw_arrays(mode, first, count);
+}
+
+static void watched_elements(GLenum mode, GLsizei count, GLenum type, const void *indices)
+{
+    check_draw();
+    draw_elements(mode, count, type, indices);
+}
+
+void test_bindings_watch(void)
+{
+    if (draw_arrays)
+        return;
+    /* epoxy's own pointers are set to these at their first call, which would take the watch away. */
+    draw_arrays = (PFNGLDRAWARRAYSPROC)eglGetProcAddress("glDrawArrays");
+    draw_elements = (PFNGLDRAWELEMENTSPROC)eglGetProcAddress("glDrawElements");
+    epoxy_glDrawArrays = watched_arrays;
+    epoxy_glDrawElements = watched_elements;
+}
+
+size_t test_bindings_take_faults(void)
+{
+    const size_t taken = faults;
+    faults = 0;
+    return taken;
+}

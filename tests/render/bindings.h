@@ -1,0 +1,15 @@
+/* A check of every draw that drivers do not make alike: samplers that compare depths read textures that do,
+ * and no other sampler does. What GL leaves undefined there, software GL draws in silence.
+ *
+ * It stands before GL's functions that draw, for the whole program, from test_bindings_watch on. One thread.
+ */
+#ifndef TOILE_TESTS_RENDER_BINDINGS_H
+#define TOILE_TESTS_RENDER_BINDINGS_H
+
+#include <stddef.h>
+
+void test_bindings_watch(void);
+/* How many samplers of draws were bound so since the last call; the first few were printed. */
+size_t test_bindings_take_faults(void);
+
+#endif
