@@ -412,7 +412,7 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
 struct Bumps {
     vec3 normal;
     vec3 spread;
-    float length;
+    float mean_length;
 };
 
 // Statistics of averages of (x, y), their squares and x y. `scale`: of slopes along u and v.
@@ -429,7 +429,7 @@ Bumps detail_bumps(vec2 first, vec2 squares, float product, vec2 scale)
 float detail_rough(float rough, Bumps bumps, vec3 view)
 {
 #if DETAIL_MINIFY == DETAIL_TOKSVIG
-    float variance = detail_variance(bumps.length);
+    float variance = detail_variance(bumps.mean_length);
     return detail_widened(rough, variance, variance, 1.0);
 #elif DETAIL_MINIFY == DETAIL_LEAN
     float square = dot(view.xy, view.xy);
@@ -446,7 +446,7 @@ float detail_rough(float rough, Bumps bumps, vec3 view)
 vec3 detail_widenings(float own_rough, float rough, Bumps bumps)
 {
 #if DETAIL_MINIFY == DETAIL_TOKSVIG
-    return vec3(vec2(detail_widening(own_rough, rough, detail_variance(bumps.length))), 0.0);
+    return vec3(vec2(detail_widening(own_rough, rough, detail_variance(bumps.mean_length))), 0.0);
 #elif DETAIL_MINIFY == DETAIL_LEAN
     return vec3(detail_widening(own_rough, rough, bumps.spread.x), detail_widening(own_rough, rough, bumps.spread.y),
                 2.0 * bumps.spread.z);

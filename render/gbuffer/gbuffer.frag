@@ -133,7 +133,7 @@ void main()
         out_widening = vec4(detail_widenings(own_rough, rough, bumps), 0.0);
 #endif
         rough = detail_rough(rough, bumps, view);
-        kd *= detail_open(bumps.length);
+        kd *= detail_open(bumps.mean_length);
     }
     vec2 horizon = octahedral(side * smooth_normal);
     vec3 v = direction_or(eye - point, n);

@@ -297,7 +297,7 @@ vec3 reflected(float side, vec3 smooth_normal)
     vec4 lit = lit_texel(side);
 #else
     if (bumpy)
-        kd *= bumps.length; // the mean normal, which is shorter than 1, receives the light
+        kd *= bumps.mean_length; // the mean normal, which is shorter than 1, receives the light
 #ifdef GOURAUD
     vec4 lit = side > 0.0 ? lit_front : lit_back;
 #else
@@ -358,7 +358,7 @@ void main()
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
 #ifdef TEXELS
-    float open = bumpy ? bumps.length : 1.0; // as in reflected
+    float open = bumpy ? bumps.mean_length : 1.0; // as in reflected
     vec4 lit = lit_here(side, smooth_normal, diffuse_here() * open);
     out_light = lit * vec4(vec3(1.0 / lit_scale), PI * open);
     out_cover = 1.0;

@@ -56,7 +56,7 @@ Bumps weave_bumps(vec2 uv)
 Bumps bumps_sum(Bumps a, Bumps b)
 {
     return Bumps(vec3(a.normal.xy * b.normal.z + b.normal.xy * a.normal.z, a.normal.z * b.normal.z), a.spread + b.spread,
-                 a.length * b.length);
+                 a.mean_length * b.mean_length);
 }
 
 // In tangent space: the file's map, the weave and what is sewn (sew, called before).

@@ -1,5 +1,6 @@
 #include "tests/render/bindings.h"
 
+#include "config/base/hash.h"
 #include "config/base/memory.h"
 #include "tests/testing.h"
 
@@ -10,6 +11,7 @@
 
 static PFNGLDRAWARRAYSPROC draw_arrays;
 static PFNGLDRAWELEMENTSPROC draw_elements;
+static PFNGLSHADERSOURCEPROC shader_source;
 static size_t faults;
 
 /* The binding that a sampler's type reads, 0: no sampler of this program's shaders. */
@@ -122,6 +124,30 @@ static void watched_elements(GLenum mode, GLsizei count, GLenum type, const void
     draw_elements(mode, count, type, indices);
 }
 
+/* Writes the text of a shader to FOLDER/HASH.vert or .frag, as glslangValidator tells them. */
+static void keep_shader(const char *folder, GLuint shader, const char *text)
+{
+    GLint type;
+    glGetShaderiv(shader, GL_SHADER_TYPE, &type);
+    char *path =
+        tl_format("%s/%016llx.%s", folder, (unsigned long long)tl_hash(TL_HASH_START, text, strlen(text)),
+                  type == GL_VERTEX_SHADER ? "vert" : "frag");
+    FILE *file = fopen(path, "w");
+    if (file) {
+        fputs(text, file);
+        fclose(file);
+    }
+    free(path);
+}
+
+static void watched_source(GLuint shader, GLsizei count, const GLchar *const *texts, const GLint *lengths)
+{
+    const char *folder = getenv("TOILE_SHADERS_TO");
+    if (folder && count == 1 && !lengths)
+        keep_shader(folder, shader, texts[0]);
+    shader_source(shader, count, texts, lengths);
+}
+
 void test_bindings_watch(void)
 {
     if (draw_arrays)
@@ -129,6 +155,8 @@ void test_bindings_watch(void)
     /* epoxy's own pointers are set to these at their first call, which would take the watch away. */
     draw_arrays = (PFNGLDRAWARRAYSPROC)eglGetProcAddress("glDrawArrays");
     draw_elements = (PFNGLDRAWELEMENTSPROC)eglGetProcAddress("glDrawElements");
+    shader_source = (PFNGLSHADERSOURCEPROC)eglGetProcAddress("glShaderSource");
+    epoxy_glShaderSource = watched_source;
     epoxy_glDrawArrays = watched_arrays;
     epoxy_glDrawElements = watched_elements;
 }

@@ -1,6 +1,8 @@
 /* A check of every draw that drivers do not make alike: samplers that compare depths read textures that do,
  * and no other sampler does. What GL leaves undefined there, software GL draws in silence.
  *
+ * Where TOILE_SHADERS_TO names a folder, the text of every shader is kept there, for `./dev lint`.
+ *
  * It stands before GL's functions that draw, for the whole program, from test_bindings_watch on. One thread.
  */
 #ifndef TOILE_TESTS_RENDER_BINDINGS_H
