@@ -20,7 +20,7 @@ open_display
 first_size 900 560
 : >log
 scene() {
-    printf 'scene: {garment: %s, environment: light.exr, preset: draft}\ncloth: {edge_m: 0.05}\nlight: {regions: 24, pem_size: 16, rounds: 4, bounce: off}\n' "$1" >new.yaml
+    printf 'scene: {garment: %s, environment: light.exr, preset: draft}\ncloth: {edge_m: 0.05}\nlight: {regions: 24, pem_size: 16, rounds: 4, bounce: off}\nimage: {scale: 0.5}\n' "$1" >new.yaml
     mv new.yaml scene.yaml
 }
 scene dress

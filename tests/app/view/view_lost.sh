@@ -4,7 +4,7 @@
 set -eu
 . "$(dirname "$0")/view_room.sh"
 
-small="--preset draft --garment sheet --avatar ball --fabric none --set cloth.settle_s=0.2 $cheap_light"
+small="--preset draft --set image.scale=0.5 --garment sheet --avatar ball --fabric none --set cloth.settle_s=0.2 $cheap_light"
 start() {
     : >log
     $TOILE view $small --verbose --screenshots shots >out 2>log &
