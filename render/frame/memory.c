@@ -96,7 +96,8 @@ static void count_bytes(const struct tl_resources *from, size_t bytes[TL_RESOURC
     TL_MADE_RESOURCES(NOTHING, COUNT, COUNT_HANDLE)
 #undef COUNT
 #undef COUNT_HANDLE
-    bytes[TL_MADE_LOBE] += tl_texture_bytes(&from->lighting.exponent_levels);
+    bytes[TL_MADE_LOBE] +=
+        tl_texture_bytes(&from->lighting.exponent_levels) + tl_texture_bytes(&from->lighting.no_depths);
     bytes[TL_MADE_LOBES] +=
         tl_lobes_bytes(&from->light_cache.lobes) + tl_texture_bytes(&from->exact.maps.lobes);
     bytes[TL_MADE_LIGHTS] += lights_bytes(&from->light_cache);
