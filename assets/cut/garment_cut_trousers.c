@@ -361,7 +361,8 @@ struct tl_cut_range tl_cut_longer_trousers(const struct tl_body *body)
 {
     const double drafted_y = HEM_PART * body->height, step = 0.005;
     double lowest_y = drafted_y;
-    for (double y = drafted_y; y > 0; y -= step) { /* feet are wider than the hem */
+    for (int i = 0; drafted_y - i * step > 0; i++) { /* feet are wider than the hem */
+        const double y = drafted_y - i * step;
         double girth = tl_body_leg_girth(body, y);
         if (!(girth > 0 && girth + FOOT_EASE < hem_girth(body)))
             break;

@@ -261,7 +261,8 @@ static void crossings(void **state)
     tl_audit audit = audit_sheet(&sheet);
     const struct tl_audit_finding *finding = expect(&audit, TL_AUDIT_CROSSING, 1);
     assert_int_equal(audit.crossing_count, 1);
-    bool is_either = finding->place.triangle == square(1, 1) || finding->place.triangle == 2 * SIDE * SIDE;
+    bool is_either =
+        finding->place.triangle == square(1, 1) || finding->place.triangle == (int64_t)2 * SIDE * SIDE;
     assert_true(is_either);
     tl_audit_release(&audit);
 }

@@ -724,7 +724,7 @@ static void a_baseline_tightens_bounds(void **state)
 {
     (void)state;
     const size_t row = row_of("image.tile");
-    struct tl_check_baseline baseline;
+    struct tl_check_baseline baseline = {0};
     for (size_t i = 0; i < TL_INVARIANTS_MAX; i++)
         baseline.worst[i] = NAN;
     assert_near(tl_check_bound(&baseline, row, 1.5), 1.5, 1e-9);

@@ -64,10 +64,11 @@ static void test_pieces_lie_apart_on_the_table(void **state)
     assert_true(tl_layout_make(&garment, flat, &size));
     vec2s lower[3], upper[3];
     for (int p = 0; p < 3; p++) {
-        lower[p] = upper[p] = flat[6 * p];
+        const vec2s *corners = flat + (ptrdiff_t)6 * p;
+        lower[p] = upper[p] = corners[0];
         for (int i = 1; i < 6; i++) {
-            lower[p] = glms_vec2_minv(lower[p], flat[6 * p + i]);
-            upper[p] = glms_vec2_maxv(upper[p], flat[6 * p + i]);
+            lower[p] = glms_vec2_minv(lower[p], corners[i]);
+            upper[p] = glms_vec2_maxv(upper[p], corners[i]);
         }
         assert_true(lower[p].x > -1e-6f && lower[p].y > -1e-6f);
         assert_true(upper[p].x < size.x + 1e-6f && upper[p].y < size.y + 1e-6f);

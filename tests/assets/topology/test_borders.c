@@ -19,14 +19,15 @@
 static tl_mesh make_panels(int cells)
 {
     size_t row = (size_t)cells + 1, count = row * row;
-    tl_mesh mesh = {.vertex_count = 2 * count, .index_count = 2 * 6 * (size_t)cells * (size_t)cells};
+    tl_mesh mesh = {.vertex_count = 2 * count, .index_count = (size_t)12 * (size_t)cells * (size_t)cells};
     mesh.positions = TL_NEW_ARRAY(vec3s, mesh.vertex_count);
     mesh.uvs = TL_NEW_ARRAY(vec2s, mesh.vertex_count);
     mesh.indices = TL_NEW_ARRAY(uint32_t, mesh.index_count);
     size_t next = 0;
     for (size_t p = 0; p < 2; p++) {
         for (size_t i = 0; i < count; i++) {
-            float x = 0.2f * (float)(i % row) / (float)cells, y = 0.1f * (float)(i / row) / (float)cells;
+            const size_t column = i % row, line = i / row;
+            float x = 0.2f * (float)column / (float)cells, y = 0.1f * (float)line / (float)cells;
             mesh.positions[p * count + i] = (vec3s){{x + 0.2f * (float)p, y, 0}};
             mesh.uvs[p * count + i] = (vec2s){{(x + 0.7f * (float)p) / 2, -y / 2}};
         }

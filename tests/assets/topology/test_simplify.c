@@ -79,7 +79,7 @@ static tl_model make_body(void)
     mesh->positions = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
     mesh->normals = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
     mesh->uvs = TL_NEW_ARRAY(vec2s, mesh->vertex_count);
-    mesh->indices = TL_NEW_ARRAY(uint32_t, 6 * COLUMNS * ROWS);
+    mesh->indices = TL_NEW_ARRAY(uint32_t, (size_t)6 * COLUMNS * ROWS);
     model.pins = TL_NEW_ARRAY(float, mesh->vertex_count);
     model.colours = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
     for (size_t row = 0, i = 0; row <= ROWS; row++)
@@ -114,7 +114,8 @@ struct at_place {
 static int compare_places(const void *a, const void *b)
 {
     const struct at_place *p = a, *q = b;
-    int order = memcmp(&p->place, &q->place, sizeof p->place);
+    const void *place = &p->place, *other = &q->place;
+    int order = memcmp(place, other, sizeof p->place);
     return order ? order : (p->vertex > q->vertex) - (p->vertex < q->vertex);
 }
 static uint32_t *weld_of(const tl_mesh *mesh)
@@ -125,7 +126,8 @@ static uint32_t *weld_of(const tl_mesh *mesh)
         sorted[i] = (struct at_place){glms_vec3_adds(mesh->positions[i], 0), i};
     qsort(sorted, mesh->vertex_count, sizeof *sorted, compare_places);
     for (size_t i = 0; i < mesh->vertex_count; i++) {
-        bool joins = i > 0 && memcmp(&sorted[i].place, &sorted[i - 1].place, sizeof(vec3s)) == 0;
+        const void *place = &sorted[i].place, *last = i > 0 ? &sorted[i - 1].place : NULL;
+        bool joins = last && memcmp(place, last, sizeof(vec3s)) == 0;
         weld[sorted[i].vertex] = joins ? weld[sorted[i - 1].vertex] : sorted[i].vertex;
     }
     free(sorted);
@@ -504,10 +506,11 @@ static tl_model make_soup(size_t first, float step_m, float step_uv)
         uint32_t was = mesh->indices[i];
         size_t own = mesh->indices[i] = (uint32_t)mesh->vertex_count++;
         mesh->positions[own] = mesh->positions[was];
-        mesh->positions[own].x += step_m * (float)(i / 3);
+        const size_t triangle = i / 3;
+        mesh->positions[own].x += step_m * (float)triangle;
         mesh->normals[own] = mesh->normals[mesh->indices[i - i % 3]];
         mesh->uvs[own] = mesh->uvs[was];
-        mesh->uvs[own].u += step_uv * (float)(i / 3);
+        mesh->uvs[own].u += step_uv * (float)triangle;
     }
     free(model.pins);
     free(model.colours);

@@ -330,7 +330,7 @@ static tl_cloth *make_large(tl_garment *garment, const struct tl_cloth_params *p
     struct tl_cloth_fabric fabric = fabric_of(ALL);
     tl_cloth *cloth = tl_cloth_create(garment, &fabric, params, &error);
     assert_non_null(cloth);
-    assert_true(cloth->particles.count > MAX_THREADS * TL_VERTICES_PER_THREAD);
+    assert_true(cloth->particles.count > (size_t)MAX_THREADS * TL_VERTICES_PER_THREAD);
     deform(cloth, 0.001);
     return cloth;
 }

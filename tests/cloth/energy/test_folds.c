@@ -62,7 +62,7 @@ static double energy_at(const struct built *built, const struct hinge *hinge, do
 }
 
 /* k/2 t^2 of a strip of stiffness B across the edge: 0 degrees bends the warp, 90 the weft. */
-static double stiffness_of(const struct hinge *hinge, double turn_deg)
+static double stiffness_of(const struct hinge *hinge, int turn_deg)
 {
     double bend = fabric.bend_warp;
     if (turn_deg == 90)
@@ -76,7 +76,7 @@ static void test_energy_is_the_angles(void **state)
 {
     (void)state;
     for (size_t i = 0; i < TL_COUNT(hinges); i++)
-        for (double turn = 0; turn <= 90; turn += 90) {
+        for (int turn = 0; turn <= 90; turn += 90) {
             struct built built = build(&hinges[i], turn, NULL);
             double k = stiffness_of(&hinges[i], turn), worst = 0;
             for (int angle = 10; angle <= 170; angle += 10) {
@@ -84,7 +84,7 @@ static void test_energy_is_the_angles(void **state)
                 double off = energy_at(&built, &hinges[i], angle) / expected - 1;
                 worst = fmax(worst, fabs(off));
             }
-            printf("hinge %zu, turned by %.0f degrees: at most %.1f %% from the angle's energy\n", i, turn,
+            printf("hinge %zu, turned by %d degrees: at most %.1f %% from the angle's energy\n", i, turn,
                    100 * worst);
             assert_true(worst < 0.22);
             assert_near(energy_at(&built, &hinges[i], 180) / (k / 2 * M_PI * M_PI), 1, 1e-3);
