@@ -161,34 +161,58 @@ static void add_to_stencil(struct stencil *stencil, int *used, uint32_t vertex, 
         stencil->rows[row][slot] += k * unit[row];
 }
 
+/* The hinge across the edge opposite to a corner, in the numbers of both triangles' corners. */
+struct hinge {
+    const struct flat *near, *far;
+    int start, end, far_corner, far_start, far_end;
+    double length, scale; /* of the edge, m; of the far triangle, whose edge may be eased onto it */
+};
+
+/* Returns whether there is one between triangles that bend. */
+static bool find_hinge(const struct tl_topology *topology, const struct flat *flats, uint32_t triangle,
+                       int corner, struct hinge *out)
+{
+    const uint32_t other = topology->neighbour[triangle][corner];
+    if (other == TL_NONE || quality(&flats[triangle]) < needle || quality(&flats[other]) < needle)
+        return false;
+    const uint32_t *mine = topology->triangles[triangle], *theirs = topology->triangles[other];
+    const int start = (corner + 1) % 3, far_corner = (int)tl_topology_far_corner(topology, triangle, other);
+    const int far_start =
+        theirs[(far_corner + 1) % 3] == mine[start] ? (far_corner + 1) % 3 : (far_corner + 2) % 3;
+    *out = (struct hinge){.near = &flats[triangle],
+                          .far = &flats[other],
+                          .start = start,
+                          .end = (corner + 2) % 3,
+                          .far_corner = far_corner,
+                          .far_start = far_start,
+                          .far_end = 3 - far_corner - far_start,
+                          .length = edge_length(&flats[triangle], corner)};
+    out->scale = out->length / edge_length(out->far, far_corner);
+    return true;
+}
+
 /* Adds the hinge across the edge opposite to `corner`: n n^T / (A + A') times the hinge's cotangent
  * coefficients. */
 static void add_hinge(const struct tl_topology *topology, const struct flat *flats, uint32_t triangle,
                       int corner, struct stencil *stencil, int *used)
 {
-    uint32_t other = topology->neighbour[triangle][corner];
-    if (other == TL_NONE || quality(&flats[other]) < needle)
+    struct hinge hinge;
+    if (!find_hinge(topology, flats, triangle, corner, &hinge))
         return;
-    const struct flat *near = &flats[triangle], *far = &flats[other];
-    int far_corner = (int)tl_topology_far_corner(topology, triangle, other);
-    const uint32_t *mine = topology->triangles[triangle], *theirs = topology->triangles[other];
-    int start = (corner + 1) % 3, end = (corner + 2) % 3;
-    int far_start = theirs[(far_corner + 1) % 3] == mine[start] ? (far_corner + 1) % 3 : (far_corner + 2) % 3;
-    int far_end = 3 - far_corner - far_start;
-
-    double dx = near->x[end] - near->x[start], dy = near->y[end] - near->y[start];
-    double length = hypot(dx, dy), nx = dy / length, ny = -dx / length;
-    /* Pattern pieces that are eased together have edges of different lengths: the far cotangents are scaled
-     * to the near edge's length. */
-    double near_start = cotangent(near, start), near_end = cotangent(near, end);
-    double scale = length / edge_length(far, far_corner);
-    double across_start = cotangent(far, far_start) * scale, across_end = cotangent(far, far_end) * scale;
+    const struct flat *near = hinge.near, *far = hinge.far;
+    const uint32_t *mine = topology->triangles[triangle];
+    const uint32_t *theirs = topology->triangles[topology->neighbour[triangle][corner]];
+    double dx = near->x[hinge.end] - near->x[hinge.start], dy = near->y[hinge.end] - near->y[hinge.start];
+    double nx = dy / hinge.length, ny = -dx / hinge.length;
+    double near_start = cotangent(near, hinge.start), near_end = cotangent(near, hinge.end);
+    double across_start = cotangent(far, hinge.far_start) * hinge.scale,
+           across_end = cotangent(far, hinge.far_end) * hinge.scale;
     double spread = 1 / (0.5 * fabs(near->signed_double_area) + 0.5 * fabs(far->signed_double_area));
     const double unit[3] = {spread * nx * nx, spread * ny * ny, spread * M_SQRT2 * nx * ny};
-    add_to_stencil(stencil, used, mine[start], near_end + across_end, unit);
-    add_to_stencil(stencil, used, mine[end], near_start + across_start, unit);
+    add_to_stencil(stencil, used, mine[hinge.start], near_end + across_end, unit);
+    add_to_stencil(stencil, used, mine[hinge.end], near_start + across_start, unit);
     add_to_stencil(stencil, used, mine[corner], -near_start - near_end, unit);
-    add_to_stencil(stencil, used, theirs[far_corner], -across_start - across_end, unit);
+    add_to_stencil(stencil, used, theirs[hinge.far_corner], -across_start - across_end, unit);
 }
 
 static struct stencil make_stencil(const struct tl_topology *topology, const struct flat *flats,
@@ -197,7 +221,7 @@ static struct stencil make_stencil(const struct tl_topology *topology, const str
     struct stencil stencil = {0};
     int used = 3;
     memcpy(stencil.vertices, topology->triangles[triangle], 3 * sizeof(uint32_t));
-    for (int corner = 0; corner < 3 && quality(&flats[triangle]) >= needle; corner++)
+    for (int corner = 0; corner < 3; corner++)
         add_hinge(topology, flats, triangle, corner, &stencil, &used);
     for (; used < TL_BEND_STENCIL; used++)
         stencil.vertices[used] = stencil.vertices[0];
@@ -273,25 +297,21 @@ static bool make_fold(const struct tl_topology *topology, const struct flat *fla
                       int corner, const vec3d *made, struct tl_fold *out)
 {
     const uint32_t other = topology->neighbour[triangle][corner];
-    if (other == TL_NONE || other < triangle || quality(&flats[triangle]) < needle ||
-        quality(&flats[other]) < needle)
+    struct hinge hinge;
+    if (!find_hinge(topology, flats, triangle, corner, &hinge) || other < triangle)
         return false;
-    const struct flat *near = &flats[triangle], *far = &flats[other];
-    const int start = (corner + 1) % 3, end = (corner + 2) % 3;
-    const int far_corner = (int)tl_topology_far_corner(topology, triangle, other);
+    const struct flat *near = hinge.near, *far = hinge.far;
     const uint32_t *mine = topology->triangles[triangle], *theirs = topology->triangles[other];
-    const int far_start =
-        theirs[(far_corner + 1) % 3] == mine[start] ? (far_corner + 1) % 3 : (far_corner + 2) % 3;
-    const double length = edge_length(near, corner), scale = length / edge_length(far, far_corner);
-    const double height = fabs(near->signed_double_area) / length;
-    const double far_height = fabs(far->signed_double_area) / length * (scale * scale);
+    const double length = hinge.length, height = fabs(near->signed_double_area) / length;
+    const double far_height = fabs(far->signed_double_area) / length * (hinge.scale * hinge.scale);
     /* Distance of the corners' feet on the edge: a cotangent is a foot's distance from its end over the
      * height. */
-    const double along = cotangent(near, start) * height - cotangent(far, far_start) * far_height;
-    const double normal_u = near->y[end] - near->y[start], normal_v = near->x[end] - near->x[start];
+    const double along = cotangent(near, hinge.start) * height - cotangent(far, hinge.far_start) * far_height;
+    const double normal_u = near->y[hinge.end] - near->y[hinge.start];
+    const double normal_v = near->x[hinge.end] - near->x[hinge.start];
     const double reach = sqrt(along * along + height * height + far_height * far_height);
     const double flat = hypot(along, height - far_height), deep = reach - flat;
-    *out = (struct tl_fold){.ends = {mine[corner], theirs[far_corner]},
+    *out = (struct tl_fold){.ends = {mine[corner], theirs[hinge.far_corner]},
                             .reach = reach,
                             .spring = (M_PI * M_PI - 4) * 2 * length / ((height + far_height) * deep * deep),
                             .across_weft = normal_u * normal_u / (length * length),

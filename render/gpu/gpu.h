@@ -22,7 +22,7 @@ struct tl_gpu_device {
     char name[256]; /* as tl_gpu_name; or why it cannot be used */
     bool opens;
 };
-/* Opens each in turn. Returns how many there are; -1: error. */
+/* Opens each in turn, and leaves no context current. Returns how many there are; -1: error. */
 int tl_gpu_devices(struct tl_gpu_device out[TL_GPU_DEVICES_MAX], tl_error *error);
 /* The device that headless contexts are created on from now on, from 1; 0: EGL's own choice, else the first
  * that opens. Threads: before the first context. */

@@ -42,8 +42,8 @@ struct tl_lighting {
     tl_program programs[TL_LIGHT_PROGRAMS][TL_LIGHT_MAP_KINDS]; /* made when first used */
     unsigned regions_buffer;                                    /* GL name: regions, then suns */
     tl_texture exponent_levels; /* fractional number of an exponent by the logarithm of s */
-    tl_texture
-        no_depths; /* for samplers that compare, where no maps are: GL leaves it undefined what others read */
+    /* One texel, for samplers that compare where there are no maps: what else they read is undefined. */
+    tl_texture no_depths;
 };
 
 /* The exact light of the whole environment (env/lobes.h) on the GPU. */
