@@ -44,6 +44,7 @@ static bool take_over(tl_gpu *gpu, tl_error *error)
     glDebugMessageCallback(on_message, gpu);
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gpu->texture_side_max);
     glGetIntegerv(GL_SUBPIXEL_BITS, &gpu->subpixel_bits);
+    gpu->compute = tl_compute_limits_ask();
     glCreateVertexArrays(1, &gpu->empty_vertices);
     return true;
 }
@@ -209,9 +210,9 @@ size_t tl_gpu_message_count(const tl_gpu *gpu)
     return gpu->message_count;
 }
 
-size_t tl_gpu_texture_bytes(const tl_gpu *gpu)
+size_t tl_gpu_bytes(const tl_gpu *gpu)
 {
-    return gpu->texture_bytes;
+    return gpu->bytes;
 }
 
 bool tl_gpu_check(const tl_gpu *gpu, tl_error *error)
@@ -221,12 +222,11 @@ bool tl_gpu_check(const tl_gpu *gpu, tl_error *error)
     GLenum code = GL_NO_ERROR;
     for (int i = 0; i < flags_max && (code = glGetError()) != GL_NO_ERROR; i++)
         is_exhausted |= code == GL_OUT_OF_MEMORY;
-    return !is_exhausted ||
-           tl_fail(
-               error, TL_DEVICE,
-               "OpenGL: out of memory, with %zu MiB of textures: close other programs, or make the image, "
-               "light.regions or light.pem_size smaller",
-               gpu->texture_bytes >> 20);
+    return !is_exhausted || tl_fail(error, TL_DEVICE,
+                                    "OpenGL: out of memory, with %zu MiB of textures and buffers: close "
+                                    "other programs, or make the image, "
+                                    "light.regions or light.pem_size smaller",
+                                    gpu->bytes >> 20);
 }
 
 int tl_gpu_texture_side_max(const tl_gpu *gpu)

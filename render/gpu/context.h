@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_GPU_CONTEXT_H
 #define TOILE_RENDER_GPU_CONTEXT_H
 
-#include "render/gpu/gpu.h"
+#include "render/gpu/compute.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -12,8 +12,9 @@ struct tl_gpu {
     EGLContext context;
     GLuint empty_vertices; /* vertex array without attributes, for the full-screen triangle */
     GLint texture_side_max, subpixel_bits;
+    struct tl_compute_limits compute;
     size_t message_count;
-    size_t texture_bytes;
+    size_t bytes; /* of textures and storage buffers */
     char name[256];
 };
 

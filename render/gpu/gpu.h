@@ -42,7 +42,8 @@ void tl_gpu_unbind(tl_gpu *gpu);
 const char *tl_gpu_name(const tl_gpu *gpu);     /* GL_RENDERER and version, for reports */
 bool tl_gpu_is_software(const tl_gpu *gpu);     /* Mesa's llvmpipe: it runs on the cores of the CPU */
 size_t tl_gpu_message_count(const tl_gpu *gpu); /* faults that GL has reported so far */
-size_t tl_gpu_texture_bytes(const tl_gpu *gpu); /* memory of all live textures, computed from their formats */
+/* Memory of all live textures, computed from their formats, and of all live storage buffers (compute.h). */
+size_t tl_gpu_bytes(const tl_gpu *gpu);
 int tl_gpu_texture_side_max(const tl_gpu *gpu); /* texels */
 /* Whether GL had the memory for all that was asked of it since the last check. Where it had not, textures and
  * images that were read are not what they should be. */
@@ -93,13 +94,17 @@ typedef struct tl_program {
     char name[64];
     const struct tl_embedded *shaders;
     const char *vertex, *fragment; /* file names; must live as long as the program */
-    const char *defines;           /* lines that follow #version in both files, or NULL; must live as long */
+    const char *compute;           /* ... in place of these */
+    const char *defines;           /* lines that follow #version in all files, or NULL; must live as long */
 } tl_program;
 bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
                        const char *fragment, tl_program *out, tl_error *error);
 /* One of several programs that are made from the same files by what is #defined. */
 bool tl_program_create_variant(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
                                const char *fragment, const char *defines, tl_program *out, tl_error *error);
+/* A program of one compute shader. `defines` as above. */
+bool tl_program_create_compute(tl_gpu *gpu, const struct tl_embedded *shaders, const char *compute,
+                               const char *defines, tl_program *out, tl_error *error);
 void tl_program_destroy(tl_program *program);
 /* Builds the program again from its files; on failure the old one stays in use. */
 bool tl_program_reload(tl_program *program, tl_error *error);

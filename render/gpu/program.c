@@ -165,33 +165,48 @@ done:
     return shader;
 }
 
+/* Attaches the program's files. Returns false if one does not compile. */
+static bool attach(GLuint id, const tl_program *program, tl_error *error)
+{
+    const struct {
+        GLenum kind;
+        const char *file;
+    } stages[] = {
+        {GL_VERTEX_SHADER, program->vertex},
+        {GL_FRAGMENT_SHADER, program->fragment},
+        {GL_COMPUTE_SHADER, program->compute},
+    };
+    for (size_t i = 0; i < TL_COUNT(stages); i++) {
+        if (!stages[i].file)
+            continue;
+        GLuint shader = compile(stages[i].kind, program, stages[i].file, error);
+        if (!shader)
+            return false;
+        glAttachShader(id, shader);
+        glDeleteShader(shader); /* it goes with the program */
+    }
+    return true;
+}
+
 static GLuint build(const tl_program *program, tl_error *error)
 {
-    GLuint id = 0, vertex = 0, fragment = 0;
-    vertex = compile(GL_VERTEX_SHADER, program, program->vertex, error);
-    if (vertex)
-        fragment = compile(GL_FRAGMENT_SHADER, program, program->fragment, error);
-    if (fragment) {
-        id = glCreateProgram();
-        glAttachShader(id, vertex);
-        glAttachShader(id, fragment);
+    GLuint id = glCreateProgram();
+    GLint linked = GL_FALSE;
+    if (attach(id, program, error)) {
         glLinkProgram(id);
-        GLint linked = GL_FALSE;
         glGetProgramiv(id, GL_LINK_STATUS, &linked);
         if (!linked) {
             char log[512] = "";
             glGetProgramInfoLog(id, sizeof log, NULL, log);
             const char *reason =
                 log[0] ? log : "the driver does not link them and gives no reason: update the driver";
-            tl_fail(error, TL_INPUT, "%s + %s: %.*s", program->vertex, program->fragment,
-                    (int)strcspn(reason, "\n"), reason);
-            glDeleteProgram(id);
-            id = 0;
+            tl_fail(error, TL_INPUT, "%s%s%s: %.*s", program->vertex ? program->vertex : "",
+                    program->vertex ? " + " : "", program->name, (int)strcspn(reason, "\n"), reason);
         }
     }
-    glDeleteShader(vertex);
-    glDeleteShader(fragment);
-    return id;
+    if (!linked)
+        glDeleteProgram(id);
+    return linked ? id : 0;
 }
 
 bool tl_program_create(tl_gpu *gpu, const struct tl_embedded *shaders, const char *vertex,
@@ -206,6 +221,16 @@ bool tl_program_create_variant(tl_gpu *gpu, const struct tl_embedded *shaders, c
     (void)gpu; /* current on this thread */
     *out = (tl_program){.shaders = shaders, .vertex = vertex, .fragment = fragment, .defines = defines};
     snprintf(out->name, sizeof out->name, "%s", fragment);
+    out->id = build(out, error);
+    return out->id != 0;
+}
+
+bool tl_program_create_compute(tl_gpu *gpu, const struct tl_embedded *shaders, const char *compute,
+                               const char *defines, tl_program *out, tl_error *error)
+{
+    (void)gpu; /* current on this thread */
+    *out = (tl_program){.shaders = shaders, .compute = compute, .defines = defines};
+    snprintf(out->name, sizeof out->name, "%s", compute);
     out->id = build(out, error);
     return out->id != 0;
 }

@@ -66,14 +66,14 @@ tl_texture tl_texture_create(tl_gpu *gpu, unsigned target, unsigned format, int 
     glTextureParameteri(texture.id, GL_TEXTURE_MIN_FILTER, levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : near);
     glTextureParameteri(texture.id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTextureParameteri(texture.id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    gpu->texture_bytes += tl_texture_bytes(&texture);
+    gpu->bytes += tl_texture_bytes(&texture);
     return texture;
 }
 
 void tl_texture_destroy(tl_texture *texture)
 {
     if (texture->id) {
-        texture->gpu->texture_bytes -= tl_texture_bytes(texture);
+        texture->gpu->bytes -= tl_texture_bytes(texture);
         glDeleteTextures(1, &texture->id);
     }
     *texture = (tl_texture){0};

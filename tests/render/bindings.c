@@ -11,6 +11,8 @@
 
 static PFNGLDRAWARRAYSPROC draw_arrays;
 static PFNGLDRAWELEMENTSPROC draw_elements;
+static PFNGLDISPATCHCOMPUTEPROC dispatch;
+static PFNGLDISPATCHCOMPUTEINDIRECTPROC dispatch_indirect;
 static PFNGLSHADERSOURCEPROC shader_source;
 static size_t faults;
 
@@ -25,6 +27,7 @@ static GLenum binding_of(GLenum type, bool *compares)
         {GL_SAMPLER_2D_ARRAY, GL_TEXTURE_BINDING_2D_ARRAY, false},
         {GL_SAMPLER_CUBE, GL_TEXTURE_BINDING_CUBE_MAP, false},
         {GL_SAMPLER_CUBE_MAP_ARRAY, GL_TEXTURE_BINDING_CUBE_MAP_ARRAY, false},
+        {GL_UNSIGNED_INT_SAMPLER_2D, GL_TEXTURE_BINDING_2D, false},
         {GL_SAMPLER_2D_SHADOW, GL_TEXTURE_BINDING_2D, true},
         {GL_SAMPLER_2D_ARRAY_SHADOW, GL_TEXTURE_BINDING_2D_ARRAY, true},
     };
@@ -45,12 +48,25 @@ struct sampler {
     char name[64];
 };
 #define SAMPLERS_MAX 32
+#define STORAGES_MAX 16
 #define KEPT_MAX     64
 struct listed {
-    GLint program, uniform_count, count;
+    GLint program, uniform_count, count, storage_count;
     struct sampler samplers[SAMPLERS_MAX];
+    GLint storages[STORAGES_MAX]; /* bindings of storage blocks */
 };
 static struct listed kept[KEPT_MAX];
+
+static void list_storages(struct listed *listed)
+{
+    const GLuint program = (GLuint)listed->program;
+    const GLenum asked = GL_BUFFER_BINDING;
+    glGetProgramInterfaceiv(program, GL_SHADER_STORAGE_BLOCK, GL_ACTIVE_RESOURCES, &listed->storage_count);
+    listed->storage_count = listed->storage_count < STORAGES_MAX ? listed->storage_count : STORAGES_MAX;
+    for (GLint i = 0; i < listed->storage_count; i++)
+        glGetProgramResourceiv(program, GL_SHADER_STORAGE_BLOCK, (GLuint)i, 1, &asked, 1, NULL,
+                               &listed->storages[i]);
+}
 
 static void list_samplers(struct listed *listed)
 {
@@ -78,6 +94,7 @@ static const struct listed *samplers_of(GLint program)
         listed->program = program;
         listed->uniform_count = uniform_count;
         list_samplers(listed);
+        list_storages(listed);
     }
     return listed;
 }
@@ -99,6 +116,14 @@ static void check_sampler(const struct sampler *sampler)
                                         : "compares depths");
 }
 
+static void check_storage(GLint program, GLint binding)
+{
+    GLint buffer;
+    glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, (GLuint)binding, &buffer);
+    if (!buffer && faults++ < PRINTED_MAX)
+        print_error("bindings: program %d reads storage buffer %d, which is none\n", program, binding);
+}
+
 static void check_draw(void)
 {
     GLint program, active;
@@ -109,6 +134,8 @@ static void check_draw(void)
     const struct listed *listed = samplers_of(program);
     for (GLint i = 0; i < listed->count; i++)
         check_sampler(&listed->samplers[i]);
+    for (GLint i = 0; i < listed->storage_count; i++)
+        check_storage(program, listed->storages[i]);
     glActiveTexture((GLenum)active);
 }
 
@@ -124,14 +151,28 @@ static void watched_elements(GLenum mode, GLsizei count, GLenum type, const void
     draw_elements(mode, count, type, indices);
 }
 
-/* Writes the text of a shader to FOLDER/HASH.vert or .frag, as glslangValidator tells them. */
+static void watched_dispatch(GLuint x, GLuint y, GLuint z)
+{
+    check_draw();
+    dispatch(x, y, z);
+}
+
+static void watched_dispatch_indirect(GLintptr offset)
+{
+    check_draw();
+    dispatch_indirect(offset);
+}
+
+/* Writes the text of a shader to FOLDER/HASH.vert, .frag or .comp, as glslangValidator tells them. */
 static void keep_shader(const char *folder, GLuint shader, const char *text)
 {
     GLint type;
     glGetShaderiv(shader, GL_SHADER_TYPE, &type);
     char *path =
         tl_format("%s/%016llx.%s", folder, (unsigned long long)tl_hash(TL_HASH_START, text, strlen(text)),
-                  type == GL_VERTEX_SHADER ? "vert" : "frag");
+                  type == GL_VERTEX_SHADER    ? "vert"
+                  : type == GL_COMPUTE_SHADER ? "comp"
+                                              : "frag");
     FILE *file = fopen(path, "w");
     if (file) {
         fputs(text, file);
@@ -155,8 +196,12 @@ void test_bindings_watch(void)
     /* epoxy's own pointers are set to these at their first call, which would take the watch away. */
     draw_arrays = (PFNGLDRAWARRAYSPROC)eglGetProcAddress("glDrawArrays");
     draw_elements = (PFNGLDRAWELEMENTSPROC)eglGetProcAddress("glDrawElements");
+    dispatch = (PFNGLDISPATCHCOMPUTEPROC)eglGetProcAddress("glDispatchCompute");
+    dispatch_indirect = (PFNGLDISPATCHCOMPUTEINDIRECTPROC)eglGetProcAddress("glDispatchComputeIndirect");
     shader_source = (PFNGLSHADERSOURCEPROC)eglGetProcAddress("glShaderSource");
     epoxy_glShaderSource = watched_source;
+    epoxy_glDispatchCompute = watched_dispatch;
+    epoxy_glDispatchComputeIndirect = watched_dispatch_indirect;
     epoxy_glDrawArrays = watched_arrays;
     epoxy_glDrawElements = watched_elements;
 }

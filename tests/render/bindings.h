@@ -1,9 +1,11 @@
-/* A check of every draw that drivers do not make alike: samplers that compare depths read textures that do,
- * and no other sampler does. What GL leaves undefined there, software GL draws in silence.
+/* A check of every draw and dispatch that drivers do not make alike: samplers that compare depths read
+ * textures that do, and no other sampler does; every storage block has a buffer. What GL leaves undefined
+ * there, software GL draws in silence.
  *
  * Where TOILE_SHADERS_TO names a folder, the text of every shader is kept there, for `./dev lint`.
  *
- * It stands before GL's functions that draw, for the whole program, from test_bindings_watch on. One thread.
+ * It stands before GL's functions that draw and dispatch, for the whole program, from test_bindings_watch on.
+ * One thread.
  */
 #ifndef TOILE_TESTS_RENDER_BINDINGS_H
 #define TOILE_TESTS_RENDER_BINDINGS_H
@@ -11,7 +13,7 @@
 #include <stddef.h>
 
 void test_bindings_watch(void);
-/* How many samplers of draws were bound so since the last call; the first few were printed. */
+/* How many samplers and storage blocks were bound so since the last call; the first few were printed. */
 size_t test_bindings_take_faults(void);
 
 #endif

@@ -5,6 +5,7 @@ target_compile_definitions(toile_test_scenes PRIVATE
   TOILE_SCRATCH_DIR="${CMAKE_CURRENT_BINARY_DIR}")
 
 toile_test(gpu/gpu gpu toile_render PkgConfig::EPOXY)
+toile_test(gpu/compute gpu toile_test_scenes PkgConfig::EPOXY)
 toile_test(light/light gpu toile_test_scenes)
 toile_test(light/pem_layouts gpu toile_test_scenes)
 toile_test(gbuffer/cull gpu toile_test_scenes)

@@ -261,7 +261,7 @@ int test_device_close(void **state)
 {
     struct test_device *device = *state;
     tl_renderer_destroy(&device->renderer);
-    size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_texture_bytes(device->gpu);
+    size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_bytes(device->gpu);
     size_t bindings = test_bindings_take_faults();
     tl_gpu_destroy(&device->gpu);
     tl_cache_use(NULL, 0);
@@ -271,7 +271,7 @@ int test_device_close(void **state)
     free(device);
     if (messages || bytes || bindings)
         print_error(
-            "%zu GL messages, %zu bytes of textures left, %zu samplers bound to what they cannot read\n",
+            "%zu GL messages, %zu bytes of textures and buffers left, %zu bindings that cannot be read\n",
             messages, bytes, bindings);
     return messages || bytes || bindings ? -1 : 0;
 }

@@ -152,7 +152,7 @@ static void test_memory(void **state)
     struct test_scene scene;
     tl_error error = {0};
     scene_open(&scene, test_daylight);
-    size_t others = tl_gpu_texture_bytes(device->gpu); /* of the group's renderer */
+    size_t others = tl_gpu_bytes(device->gpu); /* of the group's renderer */
     tl_renderer *renderer = tl_renderer_create(device->gpu, &error);
     scene.settings.image.supersample = 2;
     for (int regions = 24; regions <= 48; regions += 24) {
@@ -175,10 +175,10 @@ static void test_memory(void **state)
         assert_int_equal(memory.total,
                          memory.pems + memory.maps + memory.targets + memory.surfaces + memory.other);
         assert_int_equal(memory.total - memory.surfaces - kept - culled,
-                         tl_gpu_texture_bytes(device->gpu) - others);
+                         tl_gpu_bytes(device->gpu) - others);
     }
     tl_renderer_destroy(&renderer);
-    assert_int_equal(tl_gpu_texture_bytes(device->gpu), others);
+    assert_int_equal(tl_gpu_bytes(device->gpu), others);
     test_scene_close(&scene);
 }
 

@@ -38,7 +38,7 @@ static int close_device(void **state)
     tl_envmap_release(&device->envmap);
     tl_lighting_release(&device->lighting);
     tl_light_buffer_release(&device->light);
-    size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_texture_bytes(device->gpu);
+    size_t messages = tl_gpu_message_count(device->gpu), bytes = tl_gpu_bytes(device->gpu);
     tl_gpu_destroy(&device->gpu);
     free(device);
     if (messages || bytes)

@@ -91,7 +91,7 @@ static void test_devices(void **state)
 static void test_texture_bytes(void **state)
 {
     tl_gpu *gpu = *state;
-    assert_int_equal(tl_gpu_texture_bytes(gpu), 0);
+    assert_int_equal(tl_gpu_bytes(gpu), 0);
     tl_texture flat = tl_texture_create(gpu, GL_TEXTURE_2D, GL_RGBA8, 5, 3, 1, tl_texture_full_levels(5, 3));
     assert_int_equal(flat.levels, 3);
     assert_int_equal(tl_texture_bytes(&flat), 4 * (5 * 3 + 2 * 1 + 1 * 1));
@@ -102,12 +102,12 @@ static void test_texture_bytes(void **state)
     tl_target target = tl_target_create(gpu, 7, 9, formats, 2, true);
     assert_int_equal(tl_target_bytes(&target), 7 * 9 * (16 + 8 + 4));
     assert_int_equal(glCheckNamedFramebufferStatus(target.id, GL_FRAMEBUFFER), GL_FRAMEBUFFER_COMPLETE);
-    assert_int_equal(tl_gpu_texture_bytes(gpu),
+    assert_int_equal(tl_gpu_bytes(gpu),
                      tl_texture_bytes(&flat) + tl_texture_bytes(&cubes) + tl_target_bytes(&target));
     tl_texture_destroy(&flat);
     tl_texture_destroy(&cubes);
     tl_target_destroy(&target);
-    assert_int_equal(tl_gpu_texture_bytes(gpu), 0);
+    assert_int_equal(tl_gpu_bytes(gpu), 0);
 }
 
 #define FILE_ENTRY(name, text)                                                                               \

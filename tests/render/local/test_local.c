@@ -224,7 +224,7 @@ static void costs_nothing_without_lamps(void **state)
     scene.frame.lamp_count = 0;
     tl_image dark = test_scene_draw(&scene, device->renderer);
     size_t bytes = tl_renderer_memory(device->renderer).total,
-           texture_bytes = tl_gpu_texture_bytes(device->gpu);
+           texture_bytes = tl_gpu_bytes(device->gpu);
     const tl_plan *plan = tl_renderer_last_plan(device->renderer);
     static const char *const jobs[] = {"lamps", "lamp_maps", "lamp_rays"};
     for (size_t i = 0; i < 3; i++)
@@ -245,7 +245,7 @@ static void costs_nothing_without_lamps(void **state)
     scene.lamps[0].irradiance = (vec3s){{0, 0, 0}}; /* a lamp that is out is none */
     tl_image out = test_scene_draw(&scene, device->renderer);
     assert_int_equal(tl_renderer_memory(device->renderer).total, bytes);
-    assert_int_equal(tl_gpu_texture_bytes(device->gpu), texture_bytes);
+    assert_int_equal(tl_gpu_bytes(device->gpu), texture_bytes);
     assert_memory_equal(out.texels, dark.texels, (size_t)32 * 32 * 4 * sizeof(float));
     tl_image_release(&out);
     tl_image_release(&dark);

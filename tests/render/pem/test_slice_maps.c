@@ -28,7 +28,7 @@ static int open_gpu(void **state)
 static int close_gpu(void **state)
 {
     tl_gpu *gpu = *state;
-    int leaked = tl_gpu_texture_bytes(gpu) != 0 || tl_gpu_message_count(gpu) != 0;
+    int leaked = tl_gpu_bytes(gpu) != 0 || tl_gpu_message_count(gpu) != 0;
     tl_gpu_destroy(&gpu);
     return leaked;
 }
@@ -207,7 +207,7 @@ static void paraboloids_take_what_is_computed(void **state)
             tl_regions_cut_sphere(&cube, REGIONS, &regions);
         else
             tl_regions_cut(&cube, REGIONS, &regions);
-        size_t before = tl_gpu_texture_bytes(gpu) - tl_pems_bytes(&pems), stored = 0;
+        size_t before = tl_gpu_bytes(gpu) - tl_pems_bytes(&pems), stored = 0;
         tl_pems_build(&pems, gpu, &cube, &regions, TL_CHAIN_SQRT_COSINE,
                       (struct tl_pem_storage){7, TL_PEM_PARABOLOID});
         for (int i = 0; i < pems.array_count; i++)
@@ -215,7 +215,7 @@ static void paraboloids_take_what_is_computed(void **state)
         size_t computed = tl_memory_paraboloids(&cube, &regions, TL_CHAIN_SQRT_COSINE, 7);
         assert_int_equal(tl_pems_bytes(&pems), computed);
         assert_int_equal(stored, computed);
-        assert_int_equal(tl_gpu_texture_bytes(gpu) - before, computed);
+        assert_int_equal(tl_gpu_bytes(gpu) - before, computed);
         assert_true(computed < tl_memory_chains(REGIONS, SIZE));
         printf("%zu bytes, cubes take %zu\n", computed, tl_memory_chains(REGIONS, SIZE));
     }

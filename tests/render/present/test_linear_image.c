@@ -53,11 +53,11 @@ static void test_sides(void **state)
 {
     tl_gpu *gpu = *state;
     struct tl_linear_image linear = {0};
-    size_t textures = tl_gpu_texture_bytes(gpu);
+    size_t textures = tl_gpu_bytes(gpu);
     fill(tl_linear_image_begin_cpu(&linear, 5, 3), 5, 3, 0);
     assert_int_equal((uintptr_t)linear.texels % TL_CACHE_LINE, 0);
     expect_read(&linear, 5, 3, 0);
-    assert_int_equal(tl_gpu_texture_bytes(gpu), textures); /* nothing has asked for a texture */
+    assert_int_equal(tl_gpu_bytes(gpu), textures); /* nothing has asked for a texture */
     expect_texture(&linear, gpu, 5, 3, 0);
     fill(tl_linear_image_begin_cpu(&linear, 5, 3), 5, 3,
          1000); /* the same size: the texture is out of date */
@@ -77,7 +77,7 @@ static void test_sides(void **state)
     fill(tl_linear_image_begin_cpu(&linear, 4, 2), 4, 2, 3000);
     expect_read(&linear, 4, 2, 3000);
     tl_linear_image_release(&linear);
-    assert_int_equal(tl_gpu_texture_bytes(gpu), textures);
+    assert_int_equal(tl_gpu_bytes(gpu), textures);
 }
 
 static int open_gpu(void **state)

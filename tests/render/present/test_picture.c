@@ -104,7 +104,7 @@ static int open_gpu(void **state)
 static int close_gpu(void **state)
 {
     tl_gpu *gpu = *state;
-    int fault = tl_gpu_message_count(gpu) > 0 || tl_gpu_texture_bytes(gpu) > 0;
+    int fault = tl_gpu_message_count(gpu) > 0 || tl_gpu_bytes(gpu) > 0;
     tl_gpu_destroy(&gpu);
     return fault;
 }
