@@ -60,7 +60,7 @@ TL_INLINE void count_hit(struct tl_bounced *sum, const struct bounce_ray *ray, v
 {
     float basis[TL_BOUNCED_TERMS];
     const float angle = 1 / spread_pdf(ray->cosine);
-    tl_bounced_basis(ray->direction, basis);
+    bounced_basis(ray->direction, basis);
     sum->arrives = glms_vec3_muladds(light, ray->cosine * angle / (float)M_PI, sum->arrives);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < TL_BOUNCED_TERMS; i++)
@@ -78,7 +78,7 @@ static void count_sky(const struct tl_bounce *bounce, const struct tl_bounce_req
     sums->all = glms_vec3_muladds(sky, cosine, sums->all);
     sums->open = glms_vec3_muladds(sky, cosine * share, sums->open);
     const float luminance = tl_luminance(sky.raw);
-    tl_bounced_basis(direction, basis);
+    bounced_basis(direction, basis);
     for (int i = 0; i < TL_BOUNCED_TERMS; i++) {
         sums->light.terms[TL_BOUNCED_ALL_SKY][i] += basis[i] * luminance;
         sums->light.terms[TL_BOUNCED_OPEN_SKY][i] += basis[i] * luminance * share;
@@ -304,7 +304,7 @@ TL_INLINE void see_sky(const struct tl_bounce *bounce, const struct tl_bounce_re
     float shown[16];
     for (uint32_t k = 0; k < TL_BOUNCE_SKY_RAYS; k++) {
         vec3s direction;
-        vec2s at = tl_spread(~vertex, round * TL_BOUNCE_SKY_RAYS + k);
+        vec2s at = spread_place(~vertex, round * TL_BOUNCE_SKY_RAYS + k);
         at.x = ((float)k + at.x) / TL_BOUNCE_SKY_RAYS;
         if (!tl_bounce_sky_sample(&bounce->sky, at, &direction))
             return;
@@ -385,9 +385,10 @@ TL_CLONES void tl_bounce_trace(struct tl_bounce *bounce, const struct tl_bounce_
     const uint32_t round = adds ? bounce->states[at] - TL_BOUNCE_FIRST + 1 : 0;
     struct gathered sums = {0};
     for (uint32_t k = 0; k < TL_BOUNCE_RAYS; k++) {
-        struct bounce_ray ray = {.origin = origin,
-                                 .direction = spread_direction(
-                                     normal, tangent, tl_spread((uint32_t)at, round * TL_BOUNCE_RAYS + k))};
+        struct bounce_ray ray = {
+            .origin = origin,
+            .direction =
+                spread_direction(normal, tangent, spread_place((uint32_t)at, round * TL_BOUNCE_RAYS + k))};
         ray.cosine = glms_vec3_dot(normal, ray.direction);
         follow_ray(bounce, request, &ray, &sums);
     }

@@ -1,7 +1,7 @@
 #include "render/brdf/brdf.h"
 
+#include "render/brdf/facets.h"
 #include "render/brdf/fresnel.h"
-#include "render/brdf/lobe_set.h"
 #include "render/env/exponent.h"
 
 #include <math.h>
@@ -37,18 +37,17 @@ static void widen(struct tl_brdf *brdf, float own, float by_glossiness, float ha
                   const float widening[3])
 {
     struct tl_gloss *gloss = &brdf->gloss;
-    float c = cosf(gloss->rotation), s = copysignf(1, handedness) * sinf(gloss->rotation);
-    float u = finite_or(widening[0], 0), v = finite_or(widening[1], 0), uv = finite_or(widening[2], 0);
-    bool is_ward = gloss->model == TL_REFLECT_WARD;
-    float weft = is_ward ? c * c * u + s * s * v + 2 * c * s * uv : by_glossiness;
-    float warp = is_ward ? s * s * u + c * c * v - 2 * c * s * uv : by_glossiness;
-    float product = is_ward ? c * s * (v - u) + (c * c - s * s) * uv : 0;
-    weft = tl_facet_square(given_square(gloss->width_weft, own), finite_or(weft, 0));
-    warp = tl_facet_square(given_square(gloss->width_warp, own), finite_or(warp, 0));
-    product = tl_facet_product(weft, warp, product);
-    const struct tl_facet_axes axes = tl_facet_axes_of(weft, warp, product);
-    gloss->width_weft = sqrtf(axes.square[0]);
-    gloss->width_warp = sqrtf(axes.square[1]);
+    FacetWidening wider = {by_glossiness, by_glossiness, 0};
+    if (gloss->model == TL_REFLECT_WARD)
+        wider =
+            facet_widening(cosf(gloss->rotation), sinf(gloss->rotation), handedness,
+                           finite_or(widening[0], 0), finite_or(widening[1], 0), finite_or(widening[2], 0));
+    float weft = facet_square(given_square(gloss->width_weft, own), finite_or(wider.weft, 0));
+    float warp = facet_square(given_square(gloss->width_warp, own), finite_or(wider.warp, 0));
+    float product = facet_product(weft, warp, wider.product);
+    const FacetAxes axes = facet_axes(weft, warp, product);
+    gloss->width_weft = sqrtf(axes.square_x);
+    gloss->width_warp = sqrtf(axes.square_y);
     brdf->turn = axes.sine;
 }
 

@@ -1,5 +1,7 @@
 #include "render/brdf/fresnel.h"
 
+#include "render/brdf/facets.h"
+
 #include <math.h>
 
 static float clamp01(float x)
@@ -9,8 +11,7 @@ static float clamp01(float x)
 
 float tl_fresnel_schlick(float f0, float cosine)
 {
-    float away = 1 - clamp01(cosine), fifth = away * away * away * away * away;
-    return f0 + (fminf(50 * f0, 1) - f0) * fifth;
+    return schlick_reflectance(f0, schlick_share(clamp01(cosine)));
 }
 
 /* Fresnel's equations [Born and Wolf 1999, 1.5.2]. An index below 1 reflects totally beyond the critical

@@ -17,17 +17,13 @@
 
 #include "assets/base/material.h"
 #include "config/base/simd.h"
-#include "render/gpu/glsl.h"
+#include "render/gpu/vectors.h"
 
-#define TERM TL_INLINE
-#define max  term_max
-#define sqrt sqrtf
-#define exp  expf
+#include "render/gpu/terms_begin.h"
+
 #include "render/brdf/fuzz_terms.glsl"
-#undef TERM
-#undef max
-#undef sqrt
-#undef exp
+
+#include "render/gpu/terms_end.h"
 
 #define TL_FUZZ_POWERS 4
 /* Indices of the exponents in env/lobes.h. */

@@ -1,7 +1,7 @@
 #include "render/brdf/lobe_fit.h"
 
+#include "render/brdf/facets.h"
 #include "render/brdf/ggx/ggx_lobes.h"
-#include "render/brdf/lobe_set.h"
 #include "render/brdf/ward_lanes.h"
 
 #include <math.h>
@@ -62,16 +62,16 @@ static vec3s value_of_slope(const struct tl_brdf *brdf, const struct tl_brdf_fra
 
 /* Nodes and weights for the mean over a normal distribution between middle - half and middle + half. The
  * weights sum to `mass`. */
-static void sample_normal(float middle, float half, float mass, float at[TL_SLOPE_POINTS],
-                          float share[TL_SLOPE_POINTS])
+static void sample_normal(float middle, float half, float mass, float at[SLOPE_POINTS],
+                          float share[SLOPE_POINTS])
 {
     float sum = 0;
-    for (int i = 0; i < TL_SLOPE_POINTS; i++) {
-        at[i] = middle + half * tl_slope_points[i];
-        share[i] = tl_slope_weight(i, at[i]);
+    for (int i = 0; i < SLOPE_POINTS; i++) {
+        at[i] = middle + half * slope_points[i];
+        share[i] = slope_weight(i, at[i]);
         sum += share[i];
     }
-    for (int i = 0; i < TL_SLOPE_POINTS; i++)
+    for (int i = 0; i < SLOPE_POINTS; i++)
         share[i] *= mass / sum;
 }
 
@@ -80,11 +80,10 @@ static vec3s albedo_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *f
                        const struct slopes *slopes, vec3s v)
 {
     vec3s local = local_of(frame, v), sum = {{0, 0, 0}};
-    struct tl_slope_quadrature nodes =
-        tl_slope_quadrature_of(slopes->weft, slopes->warp, local.x, local.y, local.z);
-    float at[TL_SLOPE_POINTS], share[TL_SLOPE_POINTS];
-    sample_normal(nodes.middle, nodes.half, nodes.share, at, share);
-    for (int i = 0; i < TL_SLOPE_POINTS; i++)
+    const SlopeQuadrature nodes = slope_quadrature(slopes->weft, slopes->warp, local.x, local.y, local.z);
+    float at[SLOPE_POINTS], share[SLOPE_POINTS];
+    sample_normal(nodes.middle, nodes.half_width, nodes.share, at, share);
+    for (int i = 0; i < SLOPE_POINTS; i++)
         for (int sign = -1; sign <= 1; sign += 2) {
             vec2s slope = {{at[i] * nodes.along_x + (float)sign * nodes.across_x,
                             at[i] * nodes.along_y + (float)sign * nodes.across_y}};
@@ -99,7 +98,7 @@ static void scale_to_albedo(vec3s albedo, const struct tl_brdf_frame *frame, int
 {
     vec3s sum = {{0, 0, 0}};
     for (int k = 0; k < count; k++) {
-        float above = tl_slope_above(glms_vec3_dot(lobes[k].direction, frame->normal), lobes[k].exponent);
+        float above = slope_above(glms_vec3_dot(lobes[k].direction, frame->normal), lobes[k].exponent);
         sum = glms_vec3_add(sum, glms_vec3_scale(lobes[k].weight, above));
     }
     for (int k = 0; k < count; k++)
@@ -112,15 +111,15 @@ static int fit_facets(const struct tl_brdf *brdf, const struct tl_brdf_frame *fr
 {
     struct slopes slopes = slopes_of(brdf);
     vec3s local = local_of(frame, v);
-    struct tl_lobe_set set =
-        tl_lobe_set_of(slopes.weft, slopes.warp, local.x, local.y, local.z, minimum, maximum);
+    const LobeSet set =
+        lobe_set(slopes.weft, slopes.warp, local.x, local.y, local.z, (float)minimum, (float)maximum);
     int count = (int)set.count;
     for (int k = 0; k < count; k++) {
-        struct tl_slope_lobe lobe = tl_slope_lobe_of(&set, (float)k, local.x, local.y, local.z);
+        const SlopeLobe lobe = slope_lobe(set, (float)k, local.x, local.y, local.z);
         vec2s slope = {{lobe.slope_x, lobe.slope_y}};
         vec3s value = value_of_slope(brdf, frame, &slopes, v, slope);
         lobes[k] = (struct tl_fitted_lobe){.direction = mirrored(facet_of(frame, slope), v),
-                                           .exponent = tl_slope_exponent(lobe.variance),
+                                           .exponent = slope_exponent(lobe.variance),
                                            .weight = glms_vec3_scale(value, lobe.share)};
     }
     scale_to_albedo(albedo_of(brdf, frame, &slopes, v), frame, count, lobes);
@@ -174,12 +173,12 @@ static int fit_ggx(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame
 static vec3s albedo_of_cosine_lobe(const struct tl_brdf *brdf, float facing)
 {
     float spread = 1 / sqrtf(brdf->exponent + 2), across = sqrtf(fmaxf(1 - facing * facing, 0));
-    float at[TL_SLOPE_POINTS], share[TL_SLOPE_POINTS];
+    float at[SLOPE_POINTS], share[SLOPE_POINTS];
     vec3s sum = {{0, 0, 0}};
-    float from = fmaxf(-TL_SLOPE_RANGE, -asinf(fminf(facing, 1)) / spread);
-    float mass = (erff(TL_SLOPE_RANGE * GLM_SQRT1_2f) - erff(from * GLM_SQRT1_2f)) / 2;
-    sample_normal((TL_SLOPE_RANGE + from) / 2, (TL_SLOPE_RANGE - from) / 2, mass, at, share);
-    for (int i = 0; i < TL_SLOPE_POINTS; i++) {
+    float from = fmaxf(-SLOPE_RANGE, -asinf(fminf(facing, 1)) / spread);
+    float mass = (erff(SLOPE_RANGE * GLM_SQRT1_2f) - erff(from * GLM_SQRT1_2f)) / 2;
+    sample_normal((SLOPE_RANGE + from) / 2, (SLOPE_RANGE - from) / 2, mass, at, share);
+    for (int i = 0; i < SLOPE_POINTS; i++) {
         float turn = spread * at[i], cosine = facing * cosf(turn) + across * sinf(turn);
         float from_half = cosf((2 * acosf(fminf(facing, 1)) - turn) / 2);
         vec3s reflectance = tl_brdf_fresnel(brdf, from_half);
@@ -230,10 +229,9 @@ static int fit_threads(const struct tl_brdf *brdf, const struct tl_brdf_frame *f
         vec3s d = glms_vec3_scale(frame->tangent, along);
         d = glms_vec3_add(d, glms_vec3_scale(frame->normal, sine * ahead));
         d = glms_vec3_add(d, glms_vec3_scale(frame->bitangent, sine * aside));
-        lobes[k] =
-            (struct tl_fitted_lobe){.direction = glms_vec3_normalize(d),
-                                    .exponent = tl_slope_exponent(thread_variance(brdf, max_count, sine)),
-                                    .weight = {{1, 1, 1}}};
+        lobes[k] = (struct tl_fitted_lobe){.direction = glms_vec3_normalize(d),
+                                           .exponent = slope_exponent(thread_variance(brdf, max_count, sine)),
+                                           .weight = {{1, 1, 1}}};
     }
     scale_to_albedo(albedo, frame, max_count, lobes);
     return max_count;
@@ -348,12 +346,12 @@ void tl_lobe_fit_exponents(const struct tl_brdf *brdf, float *min, float *max)
         *max = brdf->exponent + 1;
         break;
     case TL_REFLECT_BANKS:
-        *min = tl_slope_exponent(thread_variance(brdf, 1, 1));
+        *min = slope_exponent(thread_variance(brdf, 1, 1));
         *max = brdf->exponent;
         break;
     default:
-        *min = tl_slope_exponent(4 * wide * wide);
-        *max = tl_slope_exponent(4 * thin * thin * TL_SLOPE_MIN_COSINE * TL_SLOPE_MIN_COSINE);
+        *min = slope_exponent(4 * wide * wide);
+        *max = slope_exponent(4 * thin * thin * SLOPE_MIN_COSINE * SLOPE_MIN_COSINE);
     }
 }
 

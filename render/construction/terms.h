@@ -3,7 +3,7 @@
 #define TOILE_RENDER_CONSTRUCTION_TERMS_H
 
 #include "render/construction/tables.h"
-#include "render/gpu/glsl.h"
+#include "render/gpu/vectors.h"
 
 #include <stdbool.h>
 
@@ -11,34 +11,21 @@ typedef struct ConstructionPlace ConstructionPlace;
 typedef struct ConstructionProfile ConstructionProfile;
 typedef struct ConstructionLook ConstructionLook;
 
-/* Names of GLSL, while the file is read. */
-#define TERM                   static inline
 #define CONSTRUCTION_TABLES    tables,
 #define CONSTRUCTION_TABLES_IN const struct tl_construction_tables *tables,
 #define construction_sizes     (tables->sizes)
 #define construction_rows      (tables->rows)
-#define max                    term_max
-#define clamp                  term_clamp
-#define abs                    fabsf
-#define floor                  floorf
-#define sqrt                   sqrtf
-#define exp                    expf
-#define sin                    sinf
-#define cos                    cosf
+
+#include "render/gpu/terms_begin.h"
+
 #include "render/construction/construction_terms.glsl"
-#undef TERM
+
+#include "render/gpu/terms_end.h"
+
 #undef CONSTRUCTION_TABLES
 #undef CONSTRUCTION_TABLES_IN
 #undef construction_sizes
 #undef construction_rows
-#undef max
-#undef clamp
-#undef abs
-#undef floor
-#undef sqrt
-#undef exp
-#undef sin
-#undef cos
 
 /* Interpolates a table; beyond its end the last entry counts. */
 static inline ConstructionProfile construction_profile(const struct tl_construction_tables *tables,

@@ -4,12 +4,6 @@
 
 #include <math.h>
 
-static vec3s direction_or(vec3s v, vec3s fallback)
-{
-    float square = glms_vec3_norm2(v);
-    return square > 1e-30f && isfinite(square) ? glms_vec3_scale(v, 1 / sqrtf(square)) : fallback;
-}
-
 vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v)
 {
     float area = glms_vec3_dot(normal, glms_vec3_cross(p_u, p_v));

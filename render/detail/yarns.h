@@ -5,26 +5,24 @@
 #define TOILE_RENDER_DETAIL_YARNS_H
 
 #include "assets/base/material.h"
-#include "render/gpu/glsl.h"
+#include "render/gpu/vectors.h"
 
 static inline float yarn_sum(const float *sums, float entry)
 {
     return sums[(int)entry];
 }
 
-#define TERM           static inline
 #define YARN_TABLES    sums,
 #define YARN_TABLES_IN const float *sums,
-#define max            term_max
-#define min            term_min
-#define floor          floorf
+
+#include "render/gpu/terms_begin.h"
+
 #include "render/detail/yarn_terms.glsl"
-#undef TERM
+
+#include "render/gpu/terms_end.h"
+
 #undef YARN_TABLES
 #undef YARN_TABLES_IN
-#undef max
-#undef min
-#undef floor
 
 /* The factor on colour at a point of a surface whose UV unit is `uv_metres`; `across` and `down`: how UV
  * changes to the next samples. */

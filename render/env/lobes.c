@@ -342,8 +342,7 @@ void tl_lobes_release(struct tl_lobes *lobes)
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend)
 {
     assert(lobes->maps[blend.index].side);
-    tl_quad colour =
-        tl_lobes_fetch_quad(lobes, tl_octahedral_place(direction.x, direction.y, direction.z), blend);
+    tl_quad colour = tl_lobes_fetch_quad(lobes, octahedral_place(direction), blend);
     return (vec3s){{colour[0], colour[1], colour[2]}};
 }
 

@@ -5,26 +5,13 @@
 
 #include "render/env/lobes.h"
 #include "render/env/quad.h"
+#include "render/gpu/vectors.h"
 
-#include <assert.h>
-#include <math.h>
+#include "render/gpu/terms_begin.h"
 
-/* A point of the unfolded octahedron, u and v in [0, 1]. */
-struct tl_octahedral_place {
-    float u, v;
-};
+#include "render/env/lobes_terms.glsl"
 
-/* Fetches for a direction of any length. */
-TL_INLINE struct tl_octahedral_place tl_octahedral_place(float x, float y, float z)
-{
-    float scale = 0.5f / (fabsf(x) + fabsf(y) + fabsf(z));
-    float u = x * scale, v = z * scale;
-    /* Below the horizon 1 - |v| = |u| + |y|. */
-    float outwards = tl_maxf(-y, 0) * scale;
-    u += copysignf(outwards, u);
-    v += copysignf(outwards, v);
-    return (struct tl_octahedral_place){u + 0.5f, v + 0.5f};
-}
+#include "render/gpu/terms_end.h"
 
 /* The four texels about a place: the index of the first, and the shares of the second column and row. */
 struct tl_lobe_texels {
@@ -32,11 +19,9 @@ struct tl_lobe_texels {
     float right, below;
 };
 
-TL_INLINE struct tl_lobe_texels tl_lobe_texels_about(int side, struct tl_octahedral_place place)
+TL_INLINE struct tl_lobe_texels tl_lobe_texels_about(int side, vec2s place)
 {
-    float x = place.u * (float)side + 0.5f, y = place.v * (float)side + 0.5f, last = (float)side + 0.5f;
-    x = tl_minf(tl_maxf(x, 0), last); /* NaN becomes 0, too */
-    y = tl_minf(tl_maxf(y, 0), last);
+    float x = lobe_texel(place.x, (float)side), y = lobe_texel(place.y, (float)side);
     int column = (int)x, row = (int)y;
     return (struct tl_lobe_texels){row * (side + 2) + column, x - (float)column, y - (float)row};
 }
@@ -50,13 +35,13 @@ TL_INLINE tl_quad tl_lobe_texels_mean(const struct tl_lobe_map *map, struct tl_l
     return upper + at.below * (lower - upper);
 }
 
-TL_INLINE tl_quad tl_lobe_map_fetch(const struct tl_lobe_map *map, struct tl_octahedral_place place)
+TL_INLINE tl_quad tl_lobe_map_fetch(const struct tl_lobe_map *map, vec2s place)
 {
     return tl_lobe_texels_mean(map, tl_lobe_texels_about(map->side, place));
 }
 
 /* The exponents of the blend must exist. RGB, 0. */
-TL_INLINE tl_quad tl_lobes_fetch_quad(const struct tl_lobes *lobes, struct tl_octahedral_place place,
+TL_INLINE tl_quad tl_lobes_fetch_quad(const struct tl_lobes *lobes, vec2s place,
                                       struct tl_exponent_blend blend)
 {
     tl_quad colour = tl_lobe_map_fetch(&lobes->maps[blend.index], place);

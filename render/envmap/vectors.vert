@@ -1,7 +1,7 @@
 #version 450 core
 // The directions of look-ups at the vertices of a surface, as OpenGL generates texture coordinates: interpolated and not
 // renormalised [Heidrich and Seidel 1999, 4.1].
-#include "direction.glsl"
+#include "vectors.glsl"
 
 const int REFRACTION = 2, TRANSMISSION = 5;
 

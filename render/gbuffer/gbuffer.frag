@@ -105,7 +105,7 @@ void main()
     vec4 colour = surface_colour(place.uv);
     if (place.outside || (material_scalars.w > 0.0 && surface_cut_away(colour.a)))
         discard;
-    float cover = fading_disc.w > 0.0 ? ground_cover(fading_disc, point.xz) : 1.0;
+    float cover = fading_disc.w > 0.0 ? ground_opacity(fading_disc, point.x, point.z) : 1.0;
     if (cover <= 0.0)
         discard;
     uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;

@@ -97,11 +97,11 @@ TL_INLINE void add_group(struct accumulator *sums, const struct tl_region_group 
         float cosine = x * normal.x + y * normal.y + z * normal.z;
         if (kind.bumped)
             both = tl_minf(above / tl_maxf(disc_share(cosine * inverse), 1e-6f), 1);
-        diffuse[lane] = tl_region_lobe_diffuse(cosine, sine, inverse) * both * visibility[lane];
+        diffuse[lane] = region_lobe_diffuse(cosine, sine, inverse) * both * visibility[lane];
         float gloss_cosine = x * gloss.x + y * gloss.y + z * gloss.z;
-        glossy[lane] = kind.glossy ? tl_region_lobe(gloss_cosine, sine, inverse, exponents[lane]) * above *
-                                         visibility[lane]
-                                   : 0;
+        glossy[lane] =
+            kind.glossy ? region_lobe(gloss_cosine, sine, inverse, exponents[lane]) * above * visibility[lane]
+                        : 0;
     }
     for (int c = 0; c < 3; c++) {
         add_weights(sums->seen[DIFFUSE][c], group->power[c], diffuse);

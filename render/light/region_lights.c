@@ -53,8 +53,8 @@ TL_INLINE void sum_lobes(const struct tl_region_lights *lights, vec3s d, float s
             float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
             float exponent = lobe_broadened_exponent(s, group->spread[lane]);
             lobe[lane] = diffuse
-                             ? tl_region_lobe_diffuse(cosine, group->sine[lane], group->inverse_sine[lane])
-                             : tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
+                             ? region_lobe_diffuse(cosine, group->sine[lane], group->inverse_sine[lane])
+                             : region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
         }
         for (int c = 0; c < 3; c++)
             for (int lane = 0; lane < TL_LANES; lane++)

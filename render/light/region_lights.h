@@ -76,18 +76,4 @@ TL_INLINE void tl_region_broaden(struct tl_region_exponents *exponents, const st
                 lobe_broadened_exponent(tl_minf(s, TL_REGION_LOBE_MAX), lights->groups[g].spread[lane]);
 }
 
-/* The lobe of one region at a direction with this cosine to it, without its power: K_s averaged over the
- * region. */
-TL_INLINE float tl_region_lobe(float cosine, float sine, float inverse_sine, float exponent)
-{
-    float base = sine * disc_height(cosine * inverse_sine);
-    return 0.159154943f * (exponent + 1.0f) * tl_power(base, exponent);
-}
-
-/* ... and of K_1, which needs no power. */
-TL_INLINE float tl_region_lobe_diffuse(float cosine, float sine, float inverse_sine)
-{
-    return 0.318309886f * sine * disc_height(cosine * inverse_sine);
-}
-
 #endif

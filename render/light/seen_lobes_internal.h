@@ -72,7 +72,7 @@ TL_INLINE void tl_add_group_of_lobes(float sums[3][TL_LANES], const struct tl_re
         for (int lane = 0; lane < TL_LANES; lane++) {
             float cosine = group->x[lane] * d.x + group->y[lane] * d.y + group->z[lane] * d.z;
             float exponent = lobe_broadened_exponent(terms[k].exponent, group->spread[lane]);
-            float lobe = tl_region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
+            float lobe = region_lobe(cosine, group->sine[lane], group->inverse_sine[lane], exponent);
             through[0][lane] += r * lobe;
             through[1][lane] += g * lobe;
             through[2][lane] += b * lobe;

@@ -35,6 +35,20 @@ TERM float disc_cosine(float cosine, float sine)
     return radius * disc_height(cosine / radius);
 }
 
+// K_s averaged over a region, at a direction with this cosine to it, without its power. `sine`: of the half-angle over
+// which its light is spread; `exponent`: broadened.
+TERM float region_lobe(float cosine, float sine, float inverse_sine, float exponent)
+{
+    float base = sine * disc_height(cosine * inverse_sine);
+    return 0.159154943f * (exponent + 1.0f) * exp2(exponent * log2(max(base, 1e-30f)));
+}
+
+// ... and of K_1, which needs no power.
+TERM float region_lobe_diffuse(float cosine, float sine, float inverse_sine)
+{
+    return 0.318309886f * sine * disc_height(cosine * inverse_sine);
+}
+
 // Share of a disc above a line that runs at -u radii from its centre: 1/2 + (u sqrt(1 - u^2) + asin u) / pi, within
 // 0.0013, as a polynomial.
 TERM float disc_share(float u)

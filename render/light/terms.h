@@ -2,19 +2,12 @@
 #ifndef TOILE_RENDER_LIGHT_TERMS_H
 #define TOILE_RENDER_LIGHT_TERMS_H
 
-#include "render/gpu/glsl.h"
+#include "render/gpu/vectors.h"
 
-/* GLSL's names, while the file is read. */
-#define TERM  static inline
-#define max   term_max
-#define clamp term_clamp
-#define pow   powf
-#define sin   sinf
+#include "render/gpu/terms_begin.h"
+
 #include "render/light/terms.glsl"
-#undef TERM
-#undef max
-#undef clamp
-#undef pow
-#undef sin
+
+#include "render/gpu/terms_end.h"
 
 #endif

@@ -29,7 +29,7 @@ float depth_visibility(sampler2DArrayShadow depths, int layer, Region region, ve
         return 0.0;
     vec3 place = on_map(region, point);
     risen *= texture(depths, vec4(place.xy, float(layer), min(place.z, 1.0)));
-    return risen * ground_visibility(ground_disc, point, region.direction.xyz);
+    return risen * ground_passes(ground_disc, point, region.direction.xyz);
 }
 
 float visibility(int layer, Region region, vec3 point, vec3 smooth_normal)
@@ -39,7 +39,7 @@ float visibility(int layer, Region region, vec3 point, vec3 smooth_normal)
     vec2 moments = textureLod(maps, vec3(place.xy, float(layer)), 0.0).xy;
     bool inside = all(greaterThan(place.xy, vec2(0.0))) && all(lessThan(place.xy, vec2(1.0)));
     float vis = inside ? vsm_visibility(moments, place.z - map_limits.x, map_limits.y, map_limits.z) : 1.0;
-    return vis * ground_visibility(ground_disc, point, region.direction.xyz);
+    return vis * ground_passes(ground_disc, point, region.direction.xyz);
 #elif defined(DEPTH)
     return depth_visibility(maps, layer, region, point, smooth_normal);
 #else

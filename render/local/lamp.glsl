@@ -1,5 +1,5 @@
 // The current lamp, and the cosines with which a reflectance model is evaluated.
-#include "direction.glsl"
+#include "vectors.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
 layout(location = 65) uniform vec3 eye;

@@ -100,7 +100,7 @@ float visibility(vec3 l)
 #if defined(SHADOW_RAYS)
     return texelFetch(lamp_visibility, ivec3(gl_FragCoord.xy, lamp_layer), 0).r;
 #elif defined(SHADOW_MAP)
-    float shown = ground_visibility(lamp_ground, point, l);
+    float shown = ground_passes(lamp_ground, point, l);
     vec4 place = lamp_view * vec4(point + lamp_bias * l, 1.0);
     if (place.w <= 0.0) // behind the lamp
         return shown;

@@ -46,12 +46,6 @@ struct sample_place {
                    over */
 };
 
-static vec3s direction_or(vec3s v, vec3s fallback)
-{
-    float square = glms_vec3_norm2(v);
-    return square > 1e-30f && isfinite(square) ? glms_vec3_scale(v, 1 / sqrtf(square)) : fallback;
-}
-
 static struct tl_footprint through_rows(const struct tl_footprint *at, const float *rows)
 {
     const vec2s given[3] = {at->uv, at->across, at->down};

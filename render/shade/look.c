@@ -213,14 +213,14 @@ TL_INLINE vec3s bent(vec3s normal, vec3s tangent, float handedness, vec3s mapped
     vec3s b = glms_vec3_scale(glms_vec3_cross(normal, tangent), handedness);
     vec3s n = glms_vec3_add(glms_vec3_scale(normal, mapped.z),
                             glms_vec3_add(glms_vec3_scale(tangent, mapped.x), glms_vec3_scale(b, mapped.y)));
-    return tl_unit_or(n, otherwise);
+    return direction_or(n, otherwise);
 }
 
 /* The viewer in the tangent space of the front. */
 TL_INLINE vec3s local_viewer(vec3s viewer, vec3s n, vec3s t, float handedness)
 {
     const vec3s none = {{0, 0, 0}};
-    t = tl_unit_or(glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t))), none);
+    t = direction_or(glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t))), none);
     vec3s b = glms_vec3_scale(glms_vec3_cross(n, t), handedness < 0 ? -1.0f : 1.0f);
     return (vec3s){{glms_vec3_dot(viewer, t), glms_vec3_dot(viewer, b), glms_vec3_dot(viewer, n)}};
 }
@@ -327,7 +327,7 @@ TL_INLINE void face_viewers(struct tl_look_lanes *lanes)
     for (int i = 0; i < TL_LANES; i++) {
         vec3s n = tl_lane_vector(lanes->shown, i), viewer = tl_lane_vector(lanes->viewer, i);
         float lift = detail_facing(glms_vec3_dot(n, viewer));
-        vec3s facing = tl_unit_or(glms_vec3_add(n, glms_vec3_scale(viewer, lift)), n);
+        vec3s facing = direction_or(glms_vec3_add(n, glms_vec3_scale(viewer, lift)), n);
         for (int c = 0; c < 3; c++)
             lanes->shown[c][i] = lift > 0 ? facing.raw[c] : n.raw[c];
     }
@@ -341,7 +341,7 @@ TL_CLONES void tl_look_evaluate(const struct tl_detail_params *detail, struct tl
     const tl_quad f0 = {material->specular.x, material->specular.y, material->specular.z, 0};
     const vec3s up = {{0, 1, 0}};
     for (int i = 0; i < TL_LANES; i++) {
-        vec3s smooth = tl_unit_or(tl_lane_vector(lanes->normal, i), up);
+        vec3s smooth = direction_or(tl_lane_vector(lanes->normal, i), up);
         tl_lane_store(lanes->smooth, i, smooth);
         tl_lane_store(lanes->shown, i, glms_vec3_scale(smooth, lanes->side[i]));
     }

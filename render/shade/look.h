@@ -48,12 +48,4 @@ TL_INLINE void tl_lane_store(float to[3][TL_LANES], int lane, vec3s v)
     to[2][lane] = v.z;
 }
 
-TL_INLINE vec3s tl_unit_or(vec3s v, vec3s otherwise)
-{
-    float square = glms_vec3_dot(v, v), scale = 1 / sqrtf(square);
-    bool is_long = square > 1e-30f;
-    return (vec3s){{is_long ? scale * v.x : otherwise.x, is_long ? scale * v.y : otherwise.y,
-                    is_long ? scale * v.z : otherwise.z}};
-}
-
 #endif

@@ -8,26 +8,16 @@
 #include <math.h>
 #include <string.h>
 
-/* Blends of exponents by the base-2 logarithm of the exponent, in steps that a blend is linear over. */
-#define BLEND_STEPS   64 /* an octave */
-#define BLEND_OCTAVES 10
-
 struct tl_pixel_blends {
-    struct tl_exponent_blend items[BLEND_STEPS * BLEND_OCTAVES + 1];
+    struct tl_exponent_blend items[LOBE_BLENDS];
 };
 
 struct tl_pixel_blends *tl_pixel_blends_make(void)
 {
     struct tl_pixel_blends *blends = TL_NEW(struct tl_pixel_blends);
-    for (int i = 0; i <= BLEND_STEPS * BLEND_OCTAVES; i++)
-        blends->items[i] = tl_exponent_blend(exp2f((float)i / BLEND_STEPS));
+    for (int i = 0; i < LOBE_BLENDS; i++)
+        blends->items[i] = tl_exponent_blend(exp2f((float)i / LOBE_BLEND_STEPS));
     return blends;
-}
-
-TL_INLINE struct tl_exponent_blend blend_of(const struct tl_pixel_scene *scene, float log_exponent)
-{
-    float at = tl_maxf(tl_minf(log_exponent, BLEND_OCTAVES), 0) * BLEND_STEPS;
-    return scene->blends->items[(int)(at + 0.5f)];
 }
 
 /* ---- Exact light ---- */
@@ -38,7 +28,7 @@ struct fetch_lanes {
     float right[TL_LANES], below[TL_LANES];
 };
 
-TL_INLINE void place_fetch(struct fetch_lanes *fetch, int lane, int side, struct tl_octahedral_place place)
+TL_INLINE void place_fetch(struct fetch_lanes *fetch, int lane, int side, vec2s place)
 {
     struct tl_lobe_texels at = tl_lobe_texels_about(side, place);
     fetch->first[lane] = at.first;
@@ -64,7 +54,8 @@ TL_INLINE void choose_maps(const struct tl_pixel_scene *scene, const float log_e
 {
     const struct tl_lobe_map *maps = scene->request->lobes->maps;
     for (int i = 0; i < TL_LANES; i++) {
-        struct tl_exponent_blend blend = blend_of(scene, log_exponents[i < count ? i : 0]);
+        const struct tl_exponent_blend blend =
+            scene->blends->items[lobe_blend_number(log_exponents[i < count ? i : 0])];
         blends->low[i] = &maps[blend.index];
         blends->high[i] = &maps[blend.index + (blend.weight > 0)]; /* need not exist otherwise */
         blends->low_side[i] = blends->low[i]->side;
@@ -80,7 +71,7 @@ struct pair_lanes {
 
 TL_INLINE void place_pair(const struct blend_lanes *blends, int lane, vec3s direction, struct pair_lanes *to)
 {
-    struct tl_octahedral_place place = tl_octahedral_place(direction.x, direction.y, direction.z);
+    vec2s place = octahedral_place(direction);
     place_fetch(&to->low, lane, blends->low_side[lane], place);
     place_fetch(&to->high, lane, blends->high_side[lane], place);
 }
@@ -98,7 +89,7 @@ TL_INLINE void add_diffuse(const struct tl_pixel_scene *scene, const struct tl_p
     struct fetch_lanes fetch;
     for (int i = 0; i < TL_LANES; i++) {
         vec3s d = tl_pixel_turned(scene, tl_lane_vector(lanes->look.shown, i));
-        place_fetch(&fetch, i, map->side, tl_octahedral_place(d.x, d.y, d.z));
+        place_fetch(&fetch, i, map->side, octahedral_place(d));
     }
     for (int i = 0; i < lanes->look.count; i++)
         light[i] = lanes->look.diffuse[i] * fetch_lane(map, &fetch, i) * lanes->diffuse_ratio[i];
@@ -113,7 +104,7 @@ TL_INLINE void add_transmitted(const struct tl_pixel_scene *scene, const struct 
     struct fetch_lanes fetch;
     for (int i = 0; i < TL_LANES; i++) {
         vec3s d = tl_pixel_turned(scene, glms_vec3_negate(tl_lane_vector(lanes->look.shown, i)));
-        place_fetch(&fetch, i, map->side, tl_octahedral_place(d.x, d.y, d.z));
+        place_fetch(&fetch, i, map->side, octahedral_place(d));
     }
     for (int i = 0; i < lanes->look.count; i++)
         light[i] += colour * fetch_lane(map, &fetch, i) * lanes->other_ratio[i];
@@ -133,17 +124,12 @@ struct gloss_lanes {
     float thread_square[TL_THREADS_MAX][3][TL_LANES]; /* ... of each system of threads */
 };
 
-/* Schlick's factor of what is missing from F0 to its greatest value. */
-TL_INLINE float schlick_share(float cosine)
-{
-    float away = 1 - tl_maxf(tl_minf(cosine, 1), 0);
-    return away * away * away * away * away;
-}
-
 TL_INLINE tl_quad schlick(tl_quad f0, float share)
 {
-    const tl_quad maximum = {tl_minf(50 * f0[0], 1), tl_minf(50 * f0[1], 1), tl_minf(50 * f0[2], 1), 0};
-    return f0 + (maximum - f0) * share;
+    tl_quad reflectance = f0;
+    for (int c = 0; c < 3; c++)
+        reflectance[c] = schlick_reflectance(f0[c], share);
+    return reflectance;
 }
 
 /* The frame of tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
@@ -167,31 +153,26 @@ TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, vec3s 
 TL_INLINE void find_frames(const struct tl_pixel_lanes *lanes, struct gloss_lanes *gloss)
 {
     const struct tl_look_lanes *look = &lanes->look;
-    const float cc = look->part->turn_cosine * look->part->turn_cosine;
-    const float ss = look->part->turn_sine * look->part->turn_sine;
     for (int i = 0; i < TL_LANES; i++) {
         struct tl_brdf_frame frame =
             frame_of(look->part, tl_lane_vector(look->shown, i), tl_lane_vector(look->tangent, i),
                      look->tangent[3][i], look->side[i]);
         vec3s viewer = tl_lane_vector(look->viewer, i);
-        float along_u = look->widening[0][i], along_v = look->widening[1][i], both = look->widening[2][i];
-        const float cs = look->part->turn_cosine * look->part->turn_sine *
-                         (look->tangent[3][i] < 0 ? -1.0f : 1.0f); /* as in tl_brdf_bumped */
         gloss->viewer[0][i] = glms_vec3_dot(viewer, frame.tangent);
         gloss->viewer[1][i] = glms_vec3_dot(viewer, frame.bitangent);
         gloss->viewer[2][i] = glms_vec3_dot(viewer, frame.normal);
         tl_lane_store(gloss->tangent, i, frame.tangent);
         tl_lane_store(gloss->bitangent, i, frame.bitangent);
         tl_lane_store(gloss->normal, i, frame.normal);
-        const float weft = cc * along_u + ss * along_v + 2 * cs * both;
-        const float warp = ss * along_u + cc * along_v - 2 * cs * both;
-        const float product = cs * (along_v - along_u) + (cc - ss) * both;
+        const FacetWidening wider =
+            facet_widening(look->part->turn_cosine, look->part->turn_sine, look->tangent[3][i],
+                           look->widening[0][i], look->widening[1][i], look->widening[2][i]);
         for (int k = -1; k < look->part->material->thread_count; k++) {
             const float *own = k < 0 ? look->part->ward_squares : look->part->thread_squares[k];
             float(*square)[TL_LANES] = k < 0 ? gloss->square : gloss->thread_square[k];
-            square[0][i] = tl_facet_square(own[0], weft);
-            square[1][i] = tl_facet_square(own[1], warp);
-            square[2][i] = tl_facet_product(square[0][i], square[1][i], product);
+            square[0][i] = facet_square(own[0], wider.weft);
+            square[1][i] = facet_square(own[1], wider.warp);
+            square[2][i] = facet_product(square[0][i], square[1][i], wider.product);
         }
     }
 }
@@ -268,10 +249,10 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
     const float(*square)[TL_LANES] = thread < 0 ? gloss->square : gloss->thread_square[thread];
     float cosine[TL_LANES], sine[TL_LANES]; /* into the axes of the widths, and back */
     for (int i = 0; i < TL_LANES; i++) {
-        const struct tl_facet_axes axes = tl_facet_axes_of(square[0][i], square[1][i], square[2][i]);
+        const FacetAxes axes = facet_axes(square[0][i], square[1][i], square[2][i]);
         const float x = gloss->viewer[0][i], y = gloss->viewer[1][i];
         cosine[i] = axes.cosine, sine[i] = axes.sine;
-        ward.square[0][i] = axes.square[0], ward.square[1][i] = axes.square[1];
+        ward.square[0][i] = axes.square_x, ward.square[1][i] = axes.square_y;
         ward.viewer[0][i] = cosine[i] * x + sine[i] * y;
         ward.viewer[1][i] = cosine[i] * y - sine[i] * x;
         ward.viewer[2][i] = tl_maxf(gloss->viewer[2][i], minimum);
@@ -352,7 +333,7 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
         vec3s normal = tl_lane_vector(look->shown, i), viewer = tl_lane_vector(look->viewer, i);
         float cosine = glms_vec3_dot(normal, viewer);
         vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * tl_maxf(cosine, 0)), viewer);
-        tl_lane_store(gloss->mirror, i, tl_unit_or(mirror, normal));
+        tl_lane_store(gloss->mirror, i, direction_or(mirror, normal));
         shares[i] = schlick_share(cosine);
         gloss->exponent[i] = 1 / tl_maxf(1 - look->glossiness[i], 1e-6f);
         log_exponents[i] = tl_log2(gloss->exponent[i]);
@@ -385,17 +366,11 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         vec3s normal = tl_lane_vector(gloss->normal, i);
         vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
         float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
-        float u = square_of[0][i] + wider, v = square_of[1][i] + wider, uv = square_of[2][i];
-        float determinant = tl_maxf(u * v - uv * uv, 1e-12f);
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
               y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
         float square = glms_vec3_dot(sum, sum); /* 4 cos^2 t */
-        float published = sqrtf(cos_a / cos_b), bounded = 4 * cos_a * square / (z * z * z * z);
-        float value =
-            tl_exp2(-1.44269504f * (x * x * v - 2 * x * y * uv + y * y * u) / (determinant * z * z)) *
-            (is_bounded ? bounded : published) / (4 * (float)M_PI * sqrtf(determinant));
-        bool is_seen = (cos_a > 0) & (cos_b > 0);
-        lobe[i] = is_seen ? value : 0;
+        lobe[i] = ward_lobe(is_bounded, x, y, z, square, cos_a, cos_b, square_of[0][i] + wider,
+                            square_of[1][i] + wider, square_of[2][i]);
         share[i] = schlick_share(0.5f * sqrtf(square));
     }
     for (int i = 0; i < lanes->look.count; i++) {
@@ -492,7 +467,7 @@ TL_INLINE float fibres_under(const struct tl_fuzz *fuzz, vec3s n, vec3s viewer, 
 {
     float x = tl_maxf(tl_minf(glms_vec3_dot(n, viewer), 1), 0);
     vec3s flat = glms_vec3_sub(viewer, glms_vec3_scale(n, glms_vec3_dot(n, viewer)));
-    float towards = glms_vec3_dot(tl_unit_or(flat, (vec3s){{0, 0, 0}}), sun);
+    float towards = glms_vec3_dot(direction_or(flat, (vec3s){{0, 0, 0}}), sun);
     return fuzz_albedo(x, fuzz->roughness) * fuzz_lobe(glms_vec3_dot(n, sun), towards, x, fuzz->roughness);
 }
 
@@ -527,7 +502,7 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
         const struct tl_fuzz_lobes lobes =
             tl_fuzz_lobes_of(fuzz, glms_vec3_dot(n, tl_lane_vector(look->viewer, i)));
         const vec3s d = tl_pixel_turned(scene, n);
-        const struct tl_octahedral_place place = tl_octahedral_place(d.x, d.y, d.z);
+        const vec2s place = octahedral_place(d);
         tl_lane_store(normal, i, n);
         under[i] = lobes.under;
         for (int k = 0; k < TL_FUZZ_POWERS; k++) {
@@ -558,7 +533,7 @@ TL_INLINE void find_viewers(const struct tl_pixel_scene *scene, struct tl_pixel_
     for (int i = 0; i < TL_LANES; i++) {
         vec3s ray = glms_vec3_add(scene->first, glms_vec3_add(glms_vec3_scale(scene->across, lanes->x[i]),
                                                               glms_vec3_scale(scene->up, lanes->y[i])));
-        tl_lane_store(lanes->look.viewer, i, glms_vec3_negate(tl_unit_or(ray, up)));
+        tl_lane_store(lanes->look.viewer, i, glms_vec3_negate(direction_or(ray, up)));
     }
 }
 

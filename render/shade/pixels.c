@@ -38,7 +38,7 @@ static void flatten(const struct tl_pixel_scene *scene, struct pixel_run *run)
     const tl_material *material = run->part->material;
     tl_quad colour = tl_pixel_quad(run->triangle->back && material->back.is_given ? material->back.diffuse
                                                                                   : material->diffuse);
-    tl_quad light = colour * tl_lobe_map_fetch(&request->lobes->maps[0], tl_octahedral_place(d.x, d.y, d.z));
+    tl_quad light = colour * tl_lobe_map_fetch(&request->lobes->maps[0], octahedral_place(d));
     for (int i = 0; i < 3; i++)
         run->diffuse[i] *= light;
     for (int i = 0; i < request->suns->count; i++) {

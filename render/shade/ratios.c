@@ -73,7 +73,7 @@ static void add_corner(struct corner_lanes *lanes, const struct tl_ratios_reques
     lanes->items[lane].surface_index = surface_index;
     tl_lane_store(look->normal, lane, surface->normals[vertex]);
     tl_lane_store(look->viewer, lane,
-                  tl_unit_or(glms_vec3_sub(request->eye, surface->positions[vertex]), up));
+                  direction_or(glms_vec3_sub(request->eye, surface->positions[vertex]), up));
     const vec4s tangent = surface->tangents ? surface->tangents[vertex] : (vec4s){{0, 0, 0, 0}};
     for (int c = 0; c < 4; c++)
         look->tangent[c][lane] = tangent.raw[c];
@@ -102,7 +102,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
     const float minimum = 0.02f;
     vec3s seen_from = viewer;
     if (cosine < minimum)
-        seen_from = tl_unit_or(
+        seen_from = direction_or(
             glms_vec3_add(viewer, glms_vec3_scale(normal, minimum - glms_vec3_dot(normal, viewer))), normal);
     const tl_quad diffuse = look->diffuse[lane], f0 = look->f0[lane];
     size_t i = ratios->count++;
@@ -113,7 +113,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
                     .point = glms_vec3_sub(request->eye, seen_from), /* compose takes the viewer from it */
                     .normal = normal,
                     .smooth = normal,
-                    .mirror = tl_unit_or(mirror, normal),
+                    .mirror = direction_or(mirror, normal),
                     .glossiness = look->glossiness[lane],
                     .diffuse = {{diffuse[0], diffuse[1], diffuse[2]}},
                     .specular = {{f0[0], f0[1], f0[2]}},

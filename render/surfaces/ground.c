@@ -1,11 +1,18 @@
 #include "render/surfaces/ground.h"
 
+#include "render/gpu/vectors.h"
+
+#include "render/gpu/terms_begin.h"
+
+#include "render/surfaces/ground.glsl"
+
+#include "render/gpu/terms_end.h"
+
 #include <math.h>
 #include <string.h>
 
 #define RADIUS_ORDINARY   0.5f /* metres */
 #define RADIUS_PER_FIGURE 3.0f /* the disc's radius over the figure's height */
-#define WHOLE_TO          0.5f /* share of the radius up to which nothing has faded; as in ground.glsl */
 /* Rings lie at sinh(GROWTH t) / sinh(GROWTH): under a figure of 1.8 m they are 2 to 3 cm apart, at the rim
  * 70 cm. */
 #define GROWTH 4.0f
@@ -119,33 +126,33 @@ void tl_ground_make(const struct tl_casters *casters, vec3s colour, struct tl_gr
                                     (float[]){out->centre.x, out->centre.y, out->centre.z, out->radius}, 4)};
 }
 
+static vec4s disc_of(const struct tl_ground *ground)
+{
+    return ground ? (vec4s){{ground->centre.x, ground->centre.y, ground->centre.z, ground->radius}}
+                  : (vec4s){{0, 0, 0, 0}};
+}
+
 float tl_ground_cover(const struct tl_ground *ground, float x, float z)
 {
-    if (!ground || !(ground->radius > 0))
-        return 0;
-    float share = hypotf(x - ground->centre.x, z - ground->centre.z) / ground->radius;
-    float t = fminf(fmaxf((share - WHOLE_TO) / (1 - WHOLE_TO), 0), 1);
-    return 1 - t * t * (3 - 2 * t);
+    return ground_opacity(disc_of(ground), x, z);
 }
 
 float tl_ground_distance(const struct tl_ground *ground, vec3s origin, vec3s direction)
 {
-    bool is_hit = ground && direction.y < 0 && origin.y >= ground->centre.y;
-    return is_hit ? (origin.y - ground->centre.y) / -direction.y : INFINITY;
+    const float way = ground ? ground_way(disc_of(ground), origin, direction) : -1;
+    return way >= 0 ? way : INFINITY;
+}
+
+float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction)
+{
+    return ground_passes(disc_of(ground), point, direction);
 }
 
 float tl_ground_visibility_to(const struct tl_ground *ground, vec3s point, vec3s direction, float distance_m)
 {
     const float rounding = 1e-6f; /* of light that shines from the ground's plane */
-    float distance = tl_ground_distance(ground, point, direction);
-    if (distance == INFINITY || distance >= distance_m * (1 - rounding))
-        return 1;
-    return 1 - tl_ground_cover(ground, point.x + direction.x * distance, point.z + direction.z * distance);
-}
-
-float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction)
-{
-    return tl_ground_visibility_to(ground, point, direction, INFINITY);
+    const bool is_nearer = tl_ground_distance(ground, point, direction) < distance_m * (1 - rounding);
+    return is_nearer ? tl_ground_visibility(ground, point, direction) : 1;
 }
 
 /* Weights of (x, z) in a triangle, seen from above; what rounding leaves outside, by 1e-4 at most, is put on

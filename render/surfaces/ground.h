@@ -49,7 +49,7 @@ struct tl_ground {
 /* Fills `out` in place; it must not be moved while its surface is used. `colour` is its reflectance. */
 void tl_ground_make(const struct tl_casters *casters, vec3s colour, struct tl_ground *out);
 
-/* The functions of ground.glsl: the opacity of the disc at a point of its plane; and its transmittance for
+/* The terms of ground.glsl: the opacity of the disc at a point of its plane; and its transmittance for
  * light from `direction` at `point`. NULL: there is no ground. */
 float tl_ground_cover(const struct tl_ground *ground, float x, float z);
 float tl_ground_visibility(const struct tl_ground *ground, vec3s point, vec3s direction);

@@ -2,7 +2,7 @@
 // and the tangent are those that rasterisation interpolated, as long as they come out.
 #include "detail.glsl"
 #include "construction.glsl"
-#include "direction.glsl"
+#include "vectors.glsl"
 
 // A pass that draws something else than what is seen states which side it draws.
 #ifndef SEES_FRONT

@@ -278,8 +278,8 @@ static vec3s sum_lights(const struct tl_resources *inside, vec3s direction, int 
                 group->x[lane] * direction.x + group->y[lane] * direction.y + group->z[lane] * direction.z;
             float broad = lobe_broadened_exponent(tl_exponent(exponent), group->spread[lane]);
             float sine = group->sine[lane], inverse = group->inverse_sine[lane];
-            float lobe = exponent == 0 ? tl_region_lobe_diffuse(cosine, sine, inverse)
-                                       : tl_region_lobe(cosine, sine, inverse, broad);
+            float lobe = exponent == 0 ? region_lobe_diffuse(cosine, sine, inverse)
+                                       : region_lobe(cosine, sine, inverse, broad);
             for (int c = 0; c < 3; c++)
                 sum[c] += (double)(lobe * group->power[c][lane]);
         }

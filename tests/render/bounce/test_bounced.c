@@ -26,7 +26,7 @@ static void add_products(vec3s direction, float angle, void *context)
 {
     double(*sums)[TL_BOUNCED_TERMS] = context;
     float basis[TL_BOUNCED_TERMS];
-    tl_bounced_basis(direction, basis);
+    bounced_basis(direction, basis);
     for (int i = 0; i < TL_BOUNCED_TERMS; i++)
         for (int j = 0; j < TL_BOUNCED_TERMS; j++)
             sums[i][j] += (double)(angle * basis[i] * basis[j]);
@@ -60,7 +60,7 @@ static void add_light(vec3s direction, float angle, void *context)
     const float share = angle * tl_lobe_cosine(lit->exponent, glms_vec3_dot(lit->lobe, direction));
     const float sky = 1 + direction.x; /* uneven */
     float basis[TL_BOUNCED_TERMS];
-    tl_bounced_basis(direction, basis);
+    bounced_basis(direction, basis);
     for (int i = 0; i < TL_BOUNCED_TERMS; i++) {
         lit->terms.terms[0][i] += is_lit ? angle * basis[i] : 0;
         lit->terms.terms[TL_BOUNCED_OPEN_SKY][i] += is_lit ? 0 : angle * sky * basis[i];
@@ -94,10 +94,10 @@ static void test_even(void **state)
         for (float degrees = 0; degrees <= 90; degrees += 7.5f) {
             const struct lit lit = light_of(exponents[e], degrees, 0, -2, 2);
             const struct tl_bounced_lobe lobe = tl_bounced_lobe_of(lit.normal, lit.lobe, lit.exponent);
-            const double share = (double)tl_share_above(lit.lobe.z, lit.exponent);
+            const double share = (double)share_above(lit.lobe.z, lit.exponent);
             const double light = (double)tl_bounced_through(&lit.terms, &lobe).x;
             worst_share = fmax(worst_share, fabs(share - lit.through));
-            worst = fmax(worst, fabs(light - (double)lobe.above));
+            worst = fmax(worst, fabs(light - (double)lobe.shares.above));
         }
     printf("even light: at most %.4f off; shares above the horizon %.3f\n", worst, worst_share);
     assert_true(worst < 2e-3);
@@ -119,7 +119,8 @@ static void test_from_below(void **state)
                 const double open = (double)tl_bounced_open_share(&lit.terms, &lobe),
                              exact = lit.seen / (lit.all > 1e-6 ? lit.all : 1);
                 squares += (through - lit.through) * (through - lit.through);
-                shares += (open - exact * (double)lobe.above) * (open - exact * (double)lobe.above);
+                shares +=
+                    (open - exact * (double)lobe.shares.above) * (open - exact * (double)lobe.shares.above);
             }
         printf("light from below, exponent %3.0f: rms %.3f, the share of the sky %.3f\n",
                (double)exponents[e], sqrt(squares / count), sqrt(shares / count));
@@ -145,11 +146,11 @@ static void test_spot(void **state)
     const struct tl_bounced_lobe lobe = tl_bounced_lobe_of(normal, (vec3s){{0.28f, 0, 0.96f}}, 20);
     for (int seen = 0; seen < 2; seen++) {
         struct tl_bounced spot = {0};
-        tl_bounced_basis(left, spot.terms[TL_BOUNCED_ALL_SKY]);
+        bounced_basis(left, spot.terms[TL_BOUNCED_ALL_SKY]);
         if (seen)
-            tl_bounced_basis(left, spot.terms[TL_BOUNCED_OPEN_SKY]);
+            bounced_basis(left, spot.terms[TL_BOUNCED_OPEN_SKY]);
         assert_true(tl_bounced_sum(spot.terms[TL_BOUNCED_ALL_SKY], &lobe) == 0);
-        assert_near((double)tl_bounced_open_share(&spot, &lobe), seen * (double)lobe.above, 1e-6);
+        assert_near((double)tl_bounced_open_share(&spot, &lobe), seen * (double)lobe.shares.above, 1e-6);
     }
 }
 

@@ -1,0 +1,30 @@
+// Fetches from the maps of lobes (lobes.h), for GLSL and C.
+#ifndef TERM
+#define TERM
+#endif
+
+// A point of the octahedron unfolded about +Y, in [0, 1]: that of a direction of any length. Below the horizon
+// 1 - |v| = |u| + |y|.
+TERM vec2 octahedral_place(vec3 d)
+{
+    float scale = 0.5f / (abs(d.x) + abs(d.y) + abs(d.z));
+    float u = d.x * scale, v = d.z * scale, outwards = max(-d.y, 0.0f) * scale;
+    u += u < 0.0f ? -outwards : outwards;
+    v += v < 0.0f ? -outwards : outwards;
+    return vec2(u + 0.5f, v + 0.5f);
+}
+
+// The texel of a map with a border of one, at u or v; whole numbers are centres. NaN becomes 0.
+TERM float lobe_texel(float at, float side)
+{
+    return min(max(at * side + 0.5f, 0.0f), side + 0.5f);
+}
+
+// Blends of exponents (tl_exponent_blend) by the base-2 logarithm of the exponent, in steps that a blend is linear over.
+#define LOBE_BLEND_STEPS 64.0f // an octave
+#define LOBE_BLEND_OCTAVES 10.0f
+#define LOBE_BLENDS 641 // steps in all, and one
+TERM int lobe_blend_number(float log_exponent)
+{
+    return int(max(min(log_exponent, LOBE_BLEND_OCTAVES), 0.0f) * LOBE_BLEND_STEPS + 0.5f);
+}

@@ -1,0 +1,17 @@
+#version 450 core
+// Column: the number of a term; row: a trial.
+#include "bounced_terms.glsl"
+#include "facets_terms.glsl"
+#include "ground.glsl"
+#include "lobes_terms.glsl"
+#include "spread_terms.glsl"
+#include "terms.glsl"
+#include "vectors.glsl"
+#include "one_text.glsl"
+
+layout(location = 0) out float value;
+
+void main()
+{
+    value = one_text(int(gl_FragCoord.x), uint(gl_FragCoord.y));
+}

@@ -1,0 +1,90 @@
+// One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
+// compute to the bit.
+#define ONE_TEXT_NUMBERS 64
+#define ONE_TEXT_TRIALS 512
+
+TERM float one_text(int number, uint trial)
+{
+    vec2 a = spread_place(0u, trial), b = spread_place(1u, trial), c = spread_place(2u, trial);
+    vec2 d = spread_place(3u, trial), e = spread_place(4u, trial);
+    vec3 n = direction_or(vec3(2.0f * a.x - 1.0f, 2.0f * a.y - 1.0f, 2.0f * b.x - 1.0f), vec3(0.0f, 1.0f, 0.0f));
+    vec3 v = direction_or(vec3(2.0f * b.y - 1.0f, 2.0f * c.x - 1.0f, 2.0f * c.y - 1.0f), n);
+    float s = 1.0f + 200.0f * d.x * d.x;
+    float cosine = dot(n, v);
+    // Vectors.
+    vec3 mixed = vec3_add(vec3_scale(n, d.y), vec3_subtract(cross(n, v), vec3_multiply(n, v)));
+    if (number < 3)
+        return number == 0 ? mixed.x : number == 1 ? mixed.y : mixed.z;
+    vec3 short_one = direction_or(vec3_scale(n, 1e-20f), v);
+    if (number < 6)
+        return number == 3 ? short_one.x : number == 4 ? short_one.y : short_one.z;
+    // The light's terms.
+    if (number < 12)
+        return number == 6   ? lobe_cosine(s, cosine)
+               : number == 7 ? lobe_broadened_exponent(s, d.y)
+               : number == 8 ? disc_cosine(cosine, e.x)
+               : number == 9 ? horizon_share(cosine, e.x)
+               : number == 10 ? region_lobe(cosine, 0.1f + e.x, 1.0f / (0.1f + e.x), s)
+                              : region_lobe_diffuse(cosine, 0.1f + e.x, 1.0f / (0.1f + e.x));
+    // Maps of lobes.
+    vec2 place = octahedral_place(n);
+    if (number < 16)
+        return number == 12   ? place.x
+               : number == 13 ? place.y
+               : number == 14 ? lobe_texel(place.x, 32.0f)
+                              : float(lobe_blend_number(12.0f * d.y - 1.0f));
+    // The ground.
+    vec4 disc = vec4(0.2f, -0.1f, 0.3f, number == 17 ? 0.0f : 1.0f);
+    if (number < 20)
+        return number < 18 ? ground_opacity(disc, 2.0f * e.x, 2.0f * e.y) : ground_passes(disc, vec3(e.x, d.y, e.y), n);
+    // Bounced light.
+    float basis[BOUNCED_TERMS];
+    BouncedShares shares = bounced_lobe(v, n, s, basis);
+    if (number < 24) {
+        float sum = 0.0f;
+        for (int i = 0; i < BOUNCED_TERMS; i++)
+            sum += basis[i] * float(i + 1);
+        return number == 20 ? sum : number == 21 ? shares.even : number == 22 ? shares.above : share_above(cosine, s);
+    }
+    // Facets, seen from above.
+    float weft = 0.03f + 0.6f * d.x, warp = 0.03f + 0.6f * e.x, z = 0.02f + 0.98f * abs(n.z);
+    float level = sqrt(max(1.0f - z * z, 0.0f)), x = level * sin(6.0f * e.y), y = level * cos(6.0f * e.y);
+    FacetWidening wider = facet_widening(0.8f, 0.6f, d.y - 0.5f, 0.1f * a.x, 0.1f * a.y, 0.1f * b.x - 0.05f);
+    FacetAxes axes = facet_axes(facet_square(weft * weft, wider.weft), facet_square(warp * warp, wider.warp),
+                                facet_product(weft * weft, warp * warp, wider.product));
+    if (number < 31)
+        return number == 24   ? wider.weft
+               : number == 25 ? wider.warp
+               : number == 26 ? wider.product
+               : number == 27 ? axes.square_x
+               : number == 28 ? axes.square_y
+               : number == 29 ? axes.cosine
+                              : axes.sine;
+    LobeSet set = lobe_set(weft, warp, x, y, z, 1.0f, 7.0f);
+    SlopeLobe lobe = slope_lobe(set, 1.0f, x, y, z);
+    SlopeQuadrature nodes = slope_quadrature(weft, warp, x, y, z);
+    WardSlope slope = ward_slope(d.y < 0.5f, x, y, z, lobe.slope_x, lobe.slope_y);
+    if (number < 40)
+        return number == 31   ? set.count
+               : number == 32 ? set.first
+               : number == 33 ? set.step_by
+               : number == 34 ? set.across_x
+               : number == 35 ? lobe.slope_x
+               : number == 36 ? lobe.slope_y
+               : number == 37 ? lobe.share
+               : number == 38 ? sqrt(lobe.variance)
+                              : slope_above(cosine, slope_exponent(lobe.variance));
+    if (number < 47)
+        return number == 40   ? nodes.along_x
+               : number == 41 ? nodes.across_y
+               : number == 42 ? nodes.middle
+               : number == 43 ? nodes.share
+               : number == 44 ? slope_weight(int(5.0f * e.y), 3.0f * a.x)
+               : number == 45 ? min(slope.value, 10.0f)
+                              : slope.cosine + slope.towards;
+    if (number < 49)
+        return number == 47 ? schlick_reflectance(e.x, schlick_share(cosine))
+                            : min(ward_lobe(d.y < 0.5f, 0.3f * a.x, 0.3f * a.y, 1.0f + z, 2.0f, b.x - 0.1f, z, weft * weft,
+                                            warp * warp, 0.5f * weft * warp), 100.0f);
+    return 0.0f;
+}
