@@ -22,6 +22,13 @@ void *tl_alloc_lines(size_t count, size_t size);
 /* realloc of an array to `count` elements; new memory is not zeroed. Never NULL. */
 void *tl_resize(void *memory, size_t count, size_t size);
 
+/* The elements for which an array of `count` is given room: so many at first, as for a still image, and a
+ * quarter more once it has grown, because it may grow again. */
+static inline size_t tl_room_for(size_t count, size_t capacity)
+{
+    return count <= capacity ? capacity : capacity > 0 ? count + count / 4 : count;
+}
+
 /* Copy of a string; never NULL. */
 char *tl_copy_string(const char *text);
 

@@ -102,7 +102,7 @@
 
 #define TL_JOB_lobes(IO)                                                                                     \
     IO(READS, cube) IO(READS, shapes) IO(READS, detail_options) IO(WRITES, exact)                            \
-    IO(USES, light_cache) IO(USES, gpu)
+    IO(USES, light_cache)
 
 #define TL_JOB_slices(IO)                                                                                    \
     IO(READS, cube) IO(READS, regions) IO(READS, shapes) IO(READS, detail_options)                           \

@@ -37,11 +37,6 @@ static size_t pixel_triangles_bytes(const struct tl_pixel_triangles *triangles)
     return triangles->capacity * sizeof *triangles->items;
 }
 
-static void exact_light_release(struct tl_exact_light *exact)
-{
-    tl_texture_destroy(&exact->maps.lobes);
-}
-
 static size_t region_slices_bytes(const struct tl_region_slices *slices)
 {
     return tl_slice_maps_bytes(&slices->maps);
@@ -99,7 +94,7 @@ static void count_bytes(const struct tl_resources *from, size_t bytes[TL_RESOURC
     bytes[TL_MADE_LOBE] +=
         tl_texture_bytes(&from->lighting.exponent_levels) + tl_texture_bytes(&from->lighting.no_depths);
     bytes[TL_MADE_LOBES] +=
-        tl_lobes_bytes(&from->light_cache.lobes) + tl_texture_bytes(&from->exact.maps.lobes);
+        tl_lobes_bytes(&from->light_cache.lobes) + tl_texture_bytes(&from->lighting.exact.lobes);
     bytes[TL_MADE_LIGHTS] += lights_bytes(&from->light_cache);
     bytes[TL_MADE_LAMP_MAPS] += tl_lamp_shadows_bytes(&from->local.shadows);
     bytes[TL_MADE_LAMPLIGHT] += tl_local_bytes(&from->local);

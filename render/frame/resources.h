@@ -30,9 +30,7 @@
 /* The exact light of the whole environment. */
 struct tl_exact_light {
     const struct tl_lobes *lobes; /* those of the cache; NULL: none */
-    struct tl_exact_maps maps;    /* ... on the GPU */
-    uint32_t sent;                /* exponents that are there, of the cube of this revision: */
-    uint64_t sent_revision;
+    uint64_t revision;            /* of the cube that they are of */
 };
 
 /* Exact light of the regions, and the same on the GPU. */
@@ -96,7 +94,7 @@ struct tl_envmap_source {
     VALUE(regions_revision, TL_MADE_REGIONS, uint64_t)                                                       \
     OWNED(lobe_levels, TL_MADE_LOBE, tl_texture, tl_texture_bytes, tl_texture_destroy)                       \
     OWNED(pems, TL_MADE_PEMS, struct tl_pems, tl_pems_bytes, tl_pems_release)                                \
-    OWNED(exact, TL_MADE_LOBES, struct tl_exact_light, no_bytes, exact_light_release)                        \
+    VALUE(exact, TL_MADE_LOBES, struct tl_exact_light)                                                       \
     OWNED(slices, TL_MADE_SLICES, struct tl_region_slices, region_slices_bytes, region_slices_release)       \
     VALUE(lights, TL_MADE_LIGHTS, const struct tl_region_lights *) /* among those of the cache */            \
     HANDLE(surfaces, TL_MADE_SURFACES, tl_surfaces, tl_surfaces_bytes, tl_surfaces_destroy)                  \

@@ -49,12 +49,8 @@ bool tl_run_lobes(const struct tl_lobes_job *job, tl_error *error)
     const struct tl_shapes_input *shapes = job->shapes;
     tl_light_cache_need(cache, job->cube,
                         tl_exponents_of(shapes->surfaces, shapes->surface_count, job->detail_options));
-    struct tl_exact_light *exact = job->exact;
-    exact->lobes = &cache->lobes;
-    if (exact->sent != cache->lobes.made || exact->sent_revision != cache->revision)
-        tl_exact_maps_upload(&exact->maps, job->gpu, &cache->lobes);
-    exact->sent = cache->lobes.made;
-    exact->sent_revision = cache->revision;
+    job->exact->lobes = &cache->lobes;
+    job->exact->revision = cache->revision;
     return true;
 }
 

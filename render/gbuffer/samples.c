@@ -89,7 +89,7 @@ void tl_samples_reserve(struct tl_samples *samples, size_t count)
 {
     if (count <= samples->capacity && samples->items)
         return;
-    samples->capacity = count + count / 4 + 1;
+    samples->capacity = tl_room_for(count, samples->capacity);
     samples->items = tl_resize(samples->items, samples->capacity, sizeof *samples->items);
 }
 

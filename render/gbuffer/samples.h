@@ -32,7 +32,7 @@ struct tl_samples {
     size_t behind_count, other_count;
     size_t count, capacity;
     tl_sample *items;
-    void *staging; /* the G-buffer as it was read */
+    void *staging; /* rows of the G-buffer as they were read */
     size_t staging_bytes;
 };
 

@@ -9,16 +9,20 @@
 #include <stdlib.h>
 
 #define TILE 4 /* texels a side: 16 samples, as many as a bundle of rays */
+#define BAND                                                                                                 \
+    128 /* rows of texels that are read at a time, whole tiles: a copy of all would be as large as the       \
+           samples */
 
-/* The G-buffer's textures as GL keeps them. */
+/* The G-buffer's textures as GL keeps them: rows of the target from `first_row`, but all of the triangles. */
 struct layers {
-    int width, height;
-    const float *points;       /* [height][width][4] */
+    int width, height; /* of the target */
+    int first_row;
+    const float *points;       /* [rows][width][4] */
     const uint16_t *normals;   /* [height][width][4] */
     const uint16_t *diffuses;  /* ... */
     const uint16_t *speculars; /* ... */
+    const uint16_t *widenings; /* ..., or NULL */
     const uint32_t *triangles; /* [height][width] */
-    const uint16_t *widenings; /* [height][width][4], or NULL */
 };
 
 /* Barycentric weights of the point of the triangle's plane that is nearest to `p`, inside the triangle. */
@@ -71,9 +75,10 @@ static vec3s smooth_normal(const tl_surface *surface, const uint32_t corners[3],
 static tl_sample read_sample(const struct layers *layers, size_t texel,
                              const struct tl_triangle_ranges *ranges, vec3s eye)
 {
-    const float *point = layers->points + 4 * texel;
-    const uint16_t *normal = layers->normals + 4 * texel, *diffuse = layers->diffuses + 4 * texel,
-                   *specular = layers->speculars + 4 * texel;
+    const size_t in_band = texel - (size_t)layers->first_row * (size_t)layers->width;
+    const float *point = layers->points + 4 * in_band;
+    const uint16_t *normal = layers->normals + 4 * in_band, *diffuse = layers->diffuses + 4 * in_band,
+                   *specular = layers->speculars + 4 * in_band;
     uint32_t stored = layers->triangles[texel];
     tl_sample sample = {.texel = (uint32_t)texel,
                         .triangle = ((stored & ~TL_SAMPLE_BACK) - 1) | (stored & TL_SAMPLE_BACK),
@@ -83,7 +88,7 @@ static tl_sample read_sample(const struct layers *layers, size_t texel,
                         .diffuse = half_vector(diffuse),
                         .specular = half_vector(specular)};
     for (size_t i = 0; layers->widenings && i < 3; i++)
-        sample.widening[i] = from_half(layers->widenings[4 * texel + i]);
+        sample.widening[i] = from_half(layers->widenings[4 * in_band + i]);
     uint32_t corners[3];
     size_t index;
     const tl_surface *surface = tl_triangle_find(ranges, sample.triangle & ~TL_SAMPLE_BACK, corners, &index);
@@ -123,34 +128,63 @@ static size_t read_tile_row(const struct layers *layers, int row, const struct t
     return count;
 }
 
-static void gather(const struct layers *layers, const struct tl_triangle_ranges *ranges, vec3s eye,
-                   struct tl_samples *out)
+/* Counts the covered texels above each row of tiles and makes room for all of them. */
+static size_t *count_rows(const struct layers *layers, int row_count, struct tl_samples *out)
 {
-    int row_count = (layers->height + TILE - 1) / TILE;
     size_t *first = TL_NEW_ARRAY(size_t, (size_t)row_count + 1);
 #pragma omp parallel for
     for (int row = 0; row < row_count; row++)
-        first[row + 1] = read_tile_row(layers, row, ranges, eye, NULL);
+        first[row + 1] = read_tile_row(layers, row, NULL, (vec3s){{0, 0, 0}}, NULL);
     for (int row = 0; row < row_count; row++)
         first[row + 1] += first[row];
     out->count = out->primary_count = first[row_count];
     out->behind_count = out->other_count = 0;
     tl_samples_reserve(out, out->count);
-#pragma omp parallel for schedule(dynamic)
-    for (int row = 0; row < row_count; row++)
-        read_tile_row(layers, row, ranges, eye, out->items + first[row]);
-    free(first);
+    return first;
 }
 
+/* Rows of a layer, into the staging memory from `at` on. */
+struct layer_rows {
+    int first, count;
+    char *at;
+};
+
 static const void *read_layer(const struct tl_gbuffer *gbuffer, int layer, GLenum format, GLenum type,
-                              size_t texel_bytes, char **at)
+                              size_t texel_bytes, struct layer_rows *rows)
 {
     const tl_target *target = &gbuffer->target;
-    size_t bytes = (size_t)target->width * (size_t)target->height * texel_bytes;
-    void *data = *at;
-    glGetTextureImage(target->colours[layer].id, 0, format, type, (GLsizei)bytes, data);
-    *at += bytes;
+    size_t bytes = (size_t)target->width * (size_t)rows->count * texel_bytes;
+    void *data = rows->at;
+    glGetTextureSubImage(target->colours[layer].id, 0, 0, rows->first, 0, target->width, rows->count, 1,
+                         format, type, (GLsizei)bytes, data);
+    rows->at += bytes;
     return data;
+}
+
+static void read_band(const struct tl_gbuffer *gbuffer, struct layer_rows rows, struct layers *layers)
+{
+    const bool faceted = gbuffer->target.colour_count > TL_GBUFFER_WIDENING;
+    layers->first_row = rows.first;
+    layers->points = read_layer(gbuffer, TL_GBUFFER_POINT, GL_RGBA, GL_FLOAT, 16, &rows);
+    layers->normals = read_layer(gbuffer, TL_GBUFFER_NORMAL, GL_RGBA, GL_HALF_FLOAT, 8, &rows);
+    layers->diffuses = read_layer(gbuffer, TL_GBUFFER_DIFFUSE, GL_RGBA, GL_HALF_FLOAT, 8, &rows);
+    layers->speculars = read_layer(gbuffer, TL_GBUFFER_SPECULAR, GL_RGBA, GL_HALF_FLOAT, 8, &rows);
+    layers->widenings =
+        faceted ? read_layer(gbuffer, TL_GBUFFER_WIDENING, GL_RGBA, GL_HALF_FLOAT, 8, &rows) : NULL;
+}
+
+/* The triangles of the whole target and the other layers of a band. */
+static void reserve_staging(const tl_target *target, struct tl_samples *out)
+{
+    const bool faceted = target->colour_count > TL_GBUFFER_WIDENING;
+    const size_t width = (size_t)target->width, height = (size_t)target->height;
+    const size_t band = height < BAND ? height : BAND;
+    const size_t bytes = width * height * 4 + width * band * (faceted ? 16 + 4 * 8 : 16 + 3 * 8);
+    if (bytes == out->staging_bytes)
+        return;
+    free(out->staging);
+    out->staging = tl_alloc(bytes, 1);
+    out->staging_bytes = bytes;
 }
 
 void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_ranges *ranges, vec3s eye,
@@ -159,25 +193,19 @@ void tl_samples_read(const struct tl_gbuffer *gbuffer, const struct tl_triangle_
     const tl_target *target = &gbuffer->target;
     out->width = target->width;
     out->height = target->height;
-    bool faceted = target->colour_count > TL_GBUFFER_WIDENING;
-    size_t texel_bytes = faceted ? 16 + 3 * 8 + 4 + 8 : 16 + 3 * 8 + 4;
-    size_t bytes = (size_t)target->width * (size_t)target->height * texel_bytes;
-    if (bytes != out->staging_bytes) {
-        free(out->staging);
-        out->staging = tl_alloc(bytes, 1);
-        out->staging_bytes = bytes;
+    reserve_staging(target, out);
+    struct layer_rows rows = {.count = target->height, .at = out->staging};
+    struct layers layers = {.width = target->width, .height = target->height};
+    layers.triangles = read_layer(gbuffer, TL_GBUFFER_TRIANGLE, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &rows);
+    const int row_count = (target->height + TILE - 1) / TILE;
+    size_t *first = count_rows(&layers, row_count, out);
+    for (int top = 0; top < target->height; top += BAND) {
+        rows.first = top;
+        rows.count = target->height - top < BAND ? target->height - top : BAND;
+        read_band(gbuffer, rows, &layers);
+#pragma omp parallel for schedule(dynamic)
+        for (int row = top / TILE; row < (top + rows.count + TILE - 1) / TILE; row++)
+            read_tile_row(&layers, row, ranges, eye, out->items + first[row]);
     }
-    char *at = out->staging;
-    const struct layers layers = {
-        .width = target->width,
-        .height = target->height,
-        .points = read_layer(gbuffer, TL_GBUFFER_POINT, GL_RGBA, GL_FLOAT, 16, &at),
-        .normals = read_layer(gbuffer, TL_GBUFFER_NORMAL, GL_RGBA, GL_HALF_FLOAT, 8, &at),
-        .diffuses = read_layer(gbuffer, TL_GBUFFER_DIFFUSE, GL_RGBA, GL_HALF_FLOAT, 8, &at),
-        .speculars = read_layer(gbuffer, TL_GBUFFER_SPECULAR, GL_RGBA, GL_HALF_FLOAT, 8, &at),
-        .triangles = read_layer(gbuffer, TL_GBUFFER_TRIANGLE, GL_RED_INTEGER, GL_UNSIGNED_INT, 4, &at),
-        .widenings =
-            faceted ? read_layer(gbuffer, TL_GBUFFER_WIDENING, GL_RGBA, GL_HALF_FLOAT, 8, &at) : NULL,
-    };
-    gather(&layers, ranges, eye, out);
+    free(first);
 }

@@ -33,8 +33,7 @@ TL_INLINE void add_group(const struct tl_seen_group *group, int number, const ui
         float light = group->weight[lane] * tl_maxf(cosine, 0);
         float visibility = weights[0] * (float)rows[0][first + (size_t)lane] +
                            weights[1] * (float)rows[1][first + (size_t)lane] +
-                           weights[2] * (float)rows[2][first + (size_t)lane] +
-                           weights[3] * (float)rows[3][first + (size_t)lane];
+                           weights[2] * (float)rows[2][first + (size_t)lane];
         float arriving = light * visibility;
         lanes->all[lane] += light;
         lanes->seen[lane] += arriving;

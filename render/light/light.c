@@ -115,6 +115,7 @@ void tl_lighting_release(struct tl_lighting *lighting)
             tl_program_destroy(&lighting->programs[source][kind]);
     tl_texture_destroy(&lighting->exponent_levels);
     tl_texture_destroy(&lighting->no_depths);
+    tl_texture_destroy(&lighting->exact.lobes);
     if (lighting->regions_buffer)
         glDeleteBuffers(1, &lighting->regions_buffer);
     lighting->regions_buffer = 0;
@@ -159,7 +160,7 @@ void tl_lobe_levels_upload(tl_texture *levels, tl_gpu *gpu, const struct tl_lobe
     glTextureSubImage2D(levels->id, 0, 0, 0, TL_LOBE_STEPS, 1, GL_RED, GL_FLOAT, table->level);
 }
 
-void tl_exact_maps_upload(struct tl_exact_maps *maps, tl_gpu *gpu, const struct tl_lobes *lobes)
+static void send_lobes(struct tl_exact_maps *maps, tl_gpu *gpu, const struct tl_lobes *lobes)
 {
     int width = 0, height = 0;
     for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
@@ -179,6 +180,16 @@ void tl_exact_maps_upload(struct tl_exact_maps *maps, tl_gpu *gpu, const struct 
             glTextureSubImage2D(maps->lobes.id, 0, 0, (int)maps->places[i][0], side + 2, side + 2, GL_RGBA,
                                 GL_FLOAT, lobes->maps[i].texels);
     }
+}
+
+/* Sends the lobes of the request, unless they are there. */
+static void follow_lobes(struct tl_exact_maps *maps, tl_gpu *gpu, const struct tl_light_request *request)
+{
+    if (maps->sent == request->exact->made && maps->revision == request->exact_revision)
+        return;
+    send_lobes(maps, gpu, request->exact);
+    maps->sent = request->exact->made;
+    maps->revision = request->exact_revision;
 }
 
 static vec4s vec4_of(vec3s v, float w)
@@ -279,13 +290,14 @@ static bool draw_regions(struct tl_lighting *lighting, tl_gpu *gpu, const struct
         program_of(lighting, gpu, source, (enum tl_visibility)params->visibility, error);
     if (!program)
         return false;
+    follow_lobes(&lighting->exact, gpu, request);
     use_program(program, request);
     glUniform2i(COUNTS, request->regions->count, request->suns->count);
     glUniform1i(COMPOSITION, (int)composition_of(params));
     glUniform1i(LAST_EXPONENT, TL_EXPONENT_COUNT);
-    glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, request->exact->places[0]);
+    glUniform2fv(LOBE_PLACES, TL_EXPONENT_COUNT + 1, lighting->exact.places[0]);
     glBindTextureUnit(LEVELS_UNIT, lighting->exponent_levels.id);
-    glBindTextureUnit(LOBES_UNIT, request->exact->lobes.id);
+    glBindTextureUnit(LOBES_UNIT, lighting->exact.lobes.id);
     if (source == TL_LIGHT_SLICES)
         tl_slice_maps_bind(request->slices);
     const unsigned sun_maps = shadowed ? tl_shadow_maps_sun_texture(request->maps) : 0;

@@ -44,14 +44,14 @@ struct tl_lighting {
     tl_texture exponent_levels; /* fractional number of an exponent by the logarithm of s */
     /* One texel, for samplers that compare where there are no maps: what else they read is undefined. */
     tl_texture no_depths;
+    /* The exact light of the whole environment on the GPU, for passes that read it. */
+    struct tl_exact_maps {
+        tl_texture lobes;                       /* maps of the lobes, stacked */
+        float places[TL_EXPONENT_COUNT + 1][2]; /* first row and side of each */
+        uint32_t sent;                          /* exponents that are there, of the cube of this revision: */
+        uint64_t revision;
+    } exact;
 };
-
-/* The exact light of the whole environment (env/lobes.h) on the GPU. */
-struct tl_exact_maps {
-    tl_texture lobes;                       /* maps of the lobes, stacked */
-    float places[TL_EXPONENT_COUNT + 1][2]; /* first row and side of each */
-};
-void tl_exact_maps_upload(struct tl_exact_maps *maps, tl_gpu *gpu, const struct tl_lobes *lobes);
 
 /* The chain level by glossiness, as a texture: made at the first call. */
 void tl_lobe_levels_upload(tl_texture *levels, tl_gpu *gpu, const struct tl_lobe_table *table);
@@ -60,7 +60,8 @@ struct tl_light_request {
     const struct tl_gbuffer *gbuffer;
     const struct tl_pems *pems;         /* of CHAIN */
     const tl_texture *lobe_levels;      /* ... */
-    const struct tl_exact_maps *exact;  /* where tl_light_needs_exact */
+    const struct tl_lobes *exact;       /* where tl_light_needs_exact */
+    uint64_t exact_revision;            /* ... of their cube */
     const struct tl_slice_maps *slices; /* of SLICES */
     const struct tl_regions *regions;
     const struct tl_suns *suns;

@@ -185,7 +185,7 @@ static void reserve(struct tl_mirrors *mirrors, size_t count)
 {
     if (count <= mirrors->capacity && mirrors->items)
         return;
-    mirrors->capacity = count + count / 4 + 1;
+    mirrors->capacity = tl_room_for(count, mirrors->capacity);
     mirrors->items = tl_resize(mirrors->items, mirrors->capacity, sizeof *mirrors->items);
 }
 

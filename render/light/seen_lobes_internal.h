@@ -21,7 +21,7 @@ TL_INLINE void tl_read_visibility(const uint16_t *values, size_t stride, const s
     }
     for (int lane = 0; lane < TL_LANES; lane++)
         visibility[lane] = weights[0] * (float)rows[0][lane] + weights[1] * (float)rows[1][lane] +
-                           weights[2] * (float)rows[2][lane] + weights[3] * (float)rows[3][lane];
+                           weights[2] * (float)rows[2][lane];
 }
 
 /* Values of each lobe for the loops over the regions. */

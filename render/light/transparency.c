@@ -21,7 +21,7 @@ static void reserve_shares(struct tl_transparency *transparency, size_t count)
 {
     if (count <= transparency->share_capacity)
         return;
-    transparency->share_capacity = count + count / 4;
+    transparency->share_capacity = tl_room_for(count, transparency->share_capacity);
     transparency->shares = tl_resize(transparency->shares, transparency->share_capacity, sizeof(float));
 }
 

@@ -119,7 +119,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
                     .specular = {{f0[0], f0[1], f0[2]}},
                     .widening = {look->widening[0][lane], look->widening[1][lane], look->widening[2][lane]}};
     uint32_t value = tl_points_of_vertex(request->points, surface_index, vertex, back);
-    ratios->taps[i] = (struct tl_taps){.point = {value, value, value, value}, .weight = {1}};
+    ratios->taps[i] = (struct tl_taps){.point = {value, value, value}, .weight = {1}};
     ratios->places[i] = (uint32_t)(2 * (ratios->first_vertex[surface_index] + vertex) + back);
 }
 

@@ -226,7 +226,6 @@ static void mark_sample(tl_points *points, const struct tl_points_request *reque
         /* Threads may mark one probe at once: they write the same. */
         __atomic_store_n(&points->seen[taps->point[i]], points->frame, __ATOMIC_RELAXED);
     }
-    taps->point[3] = taps->point[0];
 }
 
 /* The corners of the triangles, or the vertices from which these take their light. */
@@ -251,7 +250,7 @@ static void mark_samples(tl_points *points, const struct tl_points_request *requ
 {
     points->sample_count = request->samples->count;
     if (points->sample_count > points->sample_capacity) {
-        points->sample_capacity = points->sample_count + points->sample_count / 4;
+        points->sample_capacity = tl_room_for(points->sample_count, points->sample_capacity);
         free(points->taps);
         points->taps = TL_NEW_ARRAY(struct tl_taps, points->sample_capacity);
     }
@@ -272,7 +271,8 @@ static void reserve_slots(tl_points *points, size_t count)
 {
     if (count <= points->slot_capacity)
         return;
-    size_t used = points->slot_count, capacity = count + count / 4, stride = points->stride;
+    size_t used = points->slot_count, capacity = tl_room_for(count, points->slot_capacity);
+    size_t stride = points->stride;
     size_t row = TL_CLUSTER * stride;
     points->slot_capacity = capacity;
     points->values = grow(points->values, used * row, capacity * row, sizeof(uint16_t));
@@ -466,6 +466,13 @@ static size_t repaired_at_rest(const struct tl_points_request *request)
     return share_of(fmaxf(request->params->repair, request->params->repair_rest), request);
 }
 
+/* The samples that this update, and those after it that make one still image, may give points of their own.
+ */
+static size_t repaired_now(const struct tl_points_request *request)
+{
+    return request->moved && !request->whole_rounds ? repaired_in_motion(request) : repaired_at_rest(request);
+}
+
 /* So many bundles of samples take as many rays as the points do in a frame. */
 static size_t bundles_of_a_frame(const tl_points *points, const struct tl_refresh *refresh)
 {
@@ -509,8 +516,7 @@ static void read_repaired(tl_points *points)
     size_t first = points->slot_count * TL_CLUSTER;
     for (size_t i = 0; repair->rounds > 0 && i < repair->count; i++) {
         uint32_t point = (uint32_t)(first + i);
-        points->taps[repair->samples[i]] =
-            (struct tl_taps){.point = {point, point, point, point}, .weight = {1}};
+        points->taps[repair->samples[i]] = (struct tl_taps){.point = {point, point, point}, .weight = {1}};
     }
 }
 
@@ -518,8 +524,7 @@ static void read_repaired(tl_points *points)
 static bool follow_samples(tl_points *points, const struct tl_points_request *request)
 {
     bool has_suns = request->samples && request->suns && request->suns->count > 0;
-    size_t repaired =
-        request->moved && !request->whole_rounds ? repaired_in_motion(request) : repaired_at_rest(request);
+    size_t repaired = repaired_now(request);
     uint64_t before = points->origins.samples;
     points->origins.samples = 0;
     if (!has_suns && repaired == 0)
@@ -603,7 +608,7 @@ void tl_points_update(tl_points *points, const struct tl_points_request *request
         mark_samples(points, request);
     else
         mark_triangles(points, request);
-    activate_clusters(points, request->moved ? repaired_in_motion(request) : repaired_at_rest(request));
+    activate_clusters(points, repaired_now(request));
     resolve_taps(points);
     begin_with_means(points, request);
     trace_all(points, request);

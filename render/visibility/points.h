@@ -3,7 +3,7 @@
  * (docs/notes/visibility.md).
  *
  * A point is a render vertex seen from one side, or an extra point that a sample owns (repair). A sample
- * reads up to four points with weights. In motion R regions of each visible point are traced again each
+ * reads up to three points with weights. In motion R regions of each visible point are traced again each
  * frame, in directions jittered inside the region, and replace what was there; at rest as many are averaged
  * in, until every region has had its rounds. Results do not depend on the number of threads. */
 #ifndef TOILE_RENDER_VISIBILITY_POINTS_H

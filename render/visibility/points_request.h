@@ -10,7 +10,7 @@
 #include "render/trace/trace.h"
 #include "render/visibility/options.h"
 
-#define TL_TAPS 4
+#define TL_TAPS 3
 
 /* The taps of a sample: values of `point[i]` times `weight[i]`; weights sum to 1, unused ones are 0. */
 struct tl_taps {

@@ -23,7 +23,7 @@ void tl_ray_origins_make(const struct tl_points_request *request, struct tl_ray_
     size_t count = request->samples->count, block_count = (count + BLOCK - 1) / BLOCK;
     float offset_m = tl_trace_offset(request->trace);
     if (count > out->capacity) {
-        out->capacity = count + count / 4;
+        out->capacity = tl_room_for(count, out->capacity);
         free(out->points);
         out->points = TL_NEW_ARRAY(vec3s, out->capacity);
     }

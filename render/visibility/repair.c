@@ -100,18 +100,19 @@ static uint32_t find_limit(const float *doubts, size_t count, size_t wanted, siz
     return bin;
 }
 
-static void collect(struct tl_repair *repair, size_t sample_count, size_t wanted)
+/* `doubts` by sample: how much light its corners disagree about. */
+static void collect(struct tl_repair *repair, const float *doubts, size_t sample_count, size_t wanted)
 {
     size_t left;
-    uint32_t limit = find_limit(repair->doubts, sample_count, wanted, &left);
+    uint32_t limit = find_limit(doubts, sample_count, wanted, &left);
     if (wanted > repair->capacity) {
-        repair->capacity = wanted + wanted / 4;
+        repair->capacity = tl_room_for(wanted, repair->capacity);
         free(repair->samples);
         repair->samples = TL_NEW_ARRAY(uint32_t, repair->capacity);
     }
     repair->count = 0;
     for (size_t i = 0; i < sample_count; i++) {
-        uint32_t bin = bin_of(repair->doubts[i]);
+        uint32_t bin = bin_of(doubts[i]);
         bool last = bin == limit && limit > 0 && left > 0;
         left -= last;
         if (last || bin > limit)
@@ -126,17 +127,14 @@ void tl_repair_choose(struct tl_repair *repair, const struct tl_refresh *refresh
     struct weights weights = make_weights(refresh);
     repair->rounds = 0;
     repair->next = 0;
-    if (samples->count > repair->doubt_capacity) {
-        repair->doubt_capacity = samples->count + samples->count / 4;
-        free(repair->doubts);
-        repair->doubts = TL_NEW_ARRAY(float, repair->doubt_capacity);
-    }
+    float *doubts = TL_NEW_ARRAY(float, samples->count);
 #pragma omp parallel for schedule(dynamic)
     for (size_t first = 0; first < samples->count; first += BLOCK) {
         size_t end = first + BLOCK < samples->count ? first + BLOCK : samples->count;
-        measure_block(&weights, samples, taps, values, refresh->stride, first, end, repair->doubts);
+        measure_block(&weights, samples, taps, values, refresh->stride, first, end, doubts);
     }
-    collect(repair, samples->count, wanted);
+    collect(repair, doubts, samples->count, wanted);
+    free(doubts);
 }
 
 static size_t trace_bundle(const struct tl_repair *repair, const struct tl_refresh *refresh,
@@ -173,13 +171,12 @@ size_t tl_repair_trace(struct tl_repair *repair, const struct tl_refresh *refres
 void tl_repair_release(struct tl_repair *repair)
 {
     free(repair->samples);
-    free(repair->doubts);
     *repair = (struct tl_repair){0};
 }
 
 size_t tl_repair_bytes(const struct tl_repair *repair)
 {
-    return repair->capacity * sizeof(uint32_t) + repair->doubt_capacity * sizeof(float);
+    return repair->capacity * sizeof(uint32_t);
 }
 
 static bool is_covered(const uint16_t *covered, uint32_t point)

@@ -17,8 +17,6 @@
 struct tl_repair {
     size_t capacity, count;
     uint32_t *samples; /* [count]: rising */
-    size_t doubt_capacity;
-    float *doubts; /* by sample: how much light its corners disagree about */
     int rounds;    /* in the mean */
     size_t next;   /* bundle of samples at which the current round continues */
     bool at_rest;  /* chosen when nothing moved */

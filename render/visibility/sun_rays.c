@@ -20,16 +20,19 @@ static void reserve(struct tl_sun_rays *rays, const struct tl_points_request *re
     const struct tl_samples *samples = request->samples;
     size_t texel_count = (size_t)samples->width * (size_t)samples->height;
     if (samples->count > rays->capacity) {
-        rays->capacity = samples->count + samples->count / 4;
+        rays->capacity = tl_room_for(samples->count, rays->capacity);
         for (int i = 0; i < TL_SUNS_MAX; i++) {
             free(rays->visible[i]);
-            rays->visible[i] = TL_NEW_ARRAY(float, rays->capacity);
+            rays->visible[i] = NULL;
         }
         free(rays->seen);
         rays->seen = TL_NEW_ARRAY(float, rays->capacity);
         free(rays->doubtful);
         rays->doubtful = TL_NEW_ARRAY(uint32_t, rays->capacity);
     }
+    for (int i = 0; i < rays->count; i++)
+        if (!rays->visible[i])
+            rays->visible[i] = TL_NEW_ARRAY(float, rays->capacity);
     if (texel_count > rays->texel_capacity) {
         rays->texel_capacity = texel_count;
         free(rays->marks);
@@ -206,5 +209,8 @@ void tl_sun_rays_release(struct tl_sun_rays *rays)
 
 size_t tl_sun_rays_bytes(const struct tl_sun_rays *rays)
 {
-    return rays->capacity * ((TL_SUNS_MAX + 1) * sizeof(float) + sizeof(uint32_t)) + 2 * rays->texel_capacity;
+    size_t kept = 0;
+    for (int i = 0; i < TL_SUNS_MAX; i++)
+        kept += rays->visible[i] ? sizeof(float) : 0;
+    return rays->capacity * (kept + sizeof(float) + sizeof(uint32_t)) + 2 * rays->texel_capacity;
 }

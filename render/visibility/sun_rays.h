@@ -10,7 +10,8 @@
 
 struct tl_sun_rays {
     size_t capacity;             /* samples */
-    float *visible[TL_SUNS_MAX]; /* [samples]: the mean over rounds, in [0, 1] */
+    float *visible[TL_SUNS_MAX]; /* [samples]: the mean over rounds, in [0, 1]; NULL beyond the suns there
+                                    were */
     float *seen;                 /* [samples]: in this round */
     int count;                   /* suns of the last update */
     int rounds;                  /* frames in the means */

@@ -164,7 +164,7 @@ static void visibility_is_the_sum_over_regions(void **state)
     }
     struct tl_seen_regions lights;
     tl_seen_regions_make(regions, 0, &lights);
-    const struct tl_taps taps = {.point = {3, 0, 4, 0}, .weight = {0.5f, 0.3f, 0.2f, 0}};
+    const struct tl_taps taps = {.point = {3, 0, 4}, .weight = {0.5f, 0.3f, 0.2f}};
     for (int n = 0; n < 20; n++) {
         vec3s normal = glms_vec3_normalize(
             (vec3s){{(float)hash(n, 5) - 0.5f, (float)hash(n, 6) - 0.5f, (float)hash(n, 7) - 0.5f}});
