@@ -383,7 +383,8 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     const struct tl_plan_input input = plan_input(renderer, facts, changed, read_of(frame));
     bool fine = run_plan(renderer, &input, &renderer->plan, error);
     const bool waits = resources->facts & TL_BIT(TL_SCENE_BOUNCE) && !resources->bounce.is_done;
-    renderer->rest.is_done = resources->points_are_done && !waits;
+    const bool traces = resources->facts & TL_BIT(TL_SCENE_SHADOWS);
+    renderer->rest.is_done = (resources->points_are_done || !traces) && !waits;
     return fine;
 }
 

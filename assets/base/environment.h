@@ -15,6 +15,8 @@
 
 #include <cglm/struct.h>
 
+#include <stdbool.h>
+
 enum tl_env_layout { TL_ENV_LATLONG, TL_ENV_CUBE, TL_ENV_SPHERE, TL_ENV_PARABOLOID, TL_ENV_OCTAHEDRAL };
 
 typedef struct tl_environment {
@@ -30,6 +32,11 @@ typedef struct tl_environment {
     vec3s shown;                                 /* factors of its light in pictures (assets/adaptation); 0:
                                                     1, as for what is built in */
 } tl_environment;
+
+/* Whether no texel of a picture has light. It looks until it finds some.
+ *
+ * Errors: none. Threads: any. */
+bool tl_environment_is_black(const tl_environment *environment);
 
 /* Frees what the environment owns and zeroes it; a zeroed environment is accepted.
  *

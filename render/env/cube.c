@@ -26,6 +26,15 @@ void tl_cube_release(tl_cube *cube)
     *cube = (tl_cube){0};
 }
 
+bool tl_cube_is_black(const tl_cube *cube)
+{
+    const size_t count = (size_t)18 * (size_t)cube->size * (size_t)cube->size;
+    for (size_t i = 0; i < count; i++)
+        if (cube->texels[i] > 0)
+            return false;
+    return true;
+}
+
 vec3s tl_cube_direction(int face, float s, float t)
 {
     float u = 2 * s - 1, v = 2 * t - 1;

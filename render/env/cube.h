@@ -6,6 +6,8 @@
 
 #include <cglm/struct.h>
 
+#include <stdbool.h>
+
 typedef struct tl_cube {
     int size;      /* texels per face side */
     float *texels; /* [6][size][size][3] */
@@ -15,6 +17,8 @@ typedef struct tl_cube {
 tl_cube tl_cube_create(int size);
 tl_cube tl_cube_copy(const tl_cube *cube);
 void tl_cube_release(tl_cube *cube);
+/* Whether no texel has light. */
+bool tl_cube_is_black(const tl_cube *cube);
 
 /* Direction (not normalised; its largest component is 1) of face coordinates s, t in [0, 1]. Outside of that
  * range the plane of the face is continued. Inverse of OpenGL 4.5, table 8.19. */

@@ -239,7 +239,8 @@ static void keep_map(struct tl_cache_key key, int index, const struct tl_lobe_ma
 void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
 {
     const uint32_t missing = needed & ~lobes->made;
-    const bool is_kept = tl_cache_is_used() && missing;
+    const bool is_black = missing && tl_cube_is_black(cube);
+    const bool is_kept = tl_cache_is_used() && missing && !is_black;
     const struct tl_cache_key key = is_kept ? key_of(cube) : tl_cache_key_begin();
     tl_emitter *texels = NULL;
     for (int i = 0; i <= TL_EXPONENT_COUNT; i++) {
@@ -248,6 +249,10 @@ void tl_lobes_make(struct tl_lobes *lobes, const tl_cube *cube, uint32_t needed)
         const int side = is_itself ? side_for_cube(cube) : side_for(tl_exponent(i));
         if (!(missing & 1u << i) || (is_kept && load_map(key, i, side, map)))
             continue;
+        if (is_black) { /* black is black at any size */
+            *map = create_map(1);
+            continue;
+        }
         if (!is_itself && !texels)
             texels = collect_all(cube);
         if (is_itself)

@@ -194,13 +194,21 @@ static bool has_mirrors(const tl_frame *frame, const struct tl_light_params *lig
            tl_mirror_ray_count(tl_lobe_exponent(max_glossiness(frame->surfaces, frame->surface_count))) > 0;
 }
 
+/* Whether no light comes from the environment. Shadow maps are then drawn all the same, of six regions:
+ * passes read them. */
+static bool is_dark(const tl_frame *frame)
+{
+    return frame->environment && tl_environment_is_black(frame->environment);
+}
+
 /* True when ratios at vertices can light the pixels: nothing in the scene needs samples. */
 static bool fits_vertices(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
     struct tl_lamp lamps[TL_LAMPS_MAX];
     return light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
-           light->lobe == TL_LOBE_DUAL && !frame->aovs && tl_lamps_lit(frame, lamps) == 0 &&
+           light->lobe == TL_LOBE_DUAL && !frame->aovs && !is_dark(frame) &&
+           tl_lamps_lit(frame, lamps) == 0 &&
            !tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits) &&
            tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail) &&
            !has_mirrors(frame, light);
@@ -248,7 +256,8 @@ static tl_bits sample_facts(const tl_frame *frame, const struct tl_render_settin
         return TL_BIT(TL_SCENE_RASTER) | TL_BIT(TL_SCENE_ENVMAP) | lamp_facts(frame, light) |
                (settings->maps.capture_every > 0 ? TL_BIT(TL_SCENE_CAPTURE) : 0) |
                (settings->maps.light_map > 0 ? TL_BIT(TL_SCENE_LIGHT_MAP) : 0);
-    bool shadowed = light->method != TL_METHOD_UNSHADOWED, rays = light->visibility == TL_VISIBILITY_RAYS;
+    bool rays = light->visibility == TL_VISIBILITY_RAYS;
+    bool shadowed = light->method != TL_METHOD_UNSHADOWED && !(rays && is_dark(frame));
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
         facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));

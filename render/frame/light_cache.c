@@ -19,18 +19,9 @@ void tl_light_cache_release(struct tl_light_cache *cache)
 
 #define BLACK_REGIONS 6 /* one for each face: the cut of the cube makes no fewer */
 
-static bool is_black(const tl_cube *cube)
-{
-    const size_t count = (size_t)18 * (size_t)cube->size * (size_t)cube->size;
-    for (size_t i = 0; i < count; i++)
-        if (cube->texels[i] > 0)
-            return false;
-    return true;
-}
-
 void tl_light_cut_regions(const tl_cube *cube, int regions, int cut, struct tl_regions *out)
 {
-    if (is_black(cube) && regions > BLACK_REGIONS)
+    if (tl_cube_is_black(cube) && regions > BLACK_REGIONS)
         regions = BLACK_REGIONS;
     if (cut == TL_CUT_SPHERE)
         tl_regions_cut_sphere(cube, regions, out);

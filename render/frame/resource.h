@@ -80,7 +80,7 @@
 /* FACT(fact, name). */
 #define TL_SCENE_FACTS(FACT)                                                                                 \
     FACT(TL_SCENE_RASTER, "drawn image") /* samples become the image */                                      \
-    FACT(TL_SCENE_SHADOWS, "shadows") /* the method needs visibility */                                      \
+    FACT(TL_SCENE_SHADOWS, "shadowed light of the environment") /* by the method, and there is light */      \
     FACT(TL_SCENE_MAPS, "shadow maps") /* visibility comes from shadow maps */                               \
     FACT(TL_SCENE_RAYS, "rays") /* visibility comes from rays */                                             \
     /* rays; something is seen through, or is lit from behind */                                             \

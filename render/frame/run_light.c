@@ -229,10 +229,12 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
 {
     (void)error;
     const struct tl_shapes_input *shapes = job->shapes;
+    static const struct tl_region_lights no_lights = {0};
+    const bool is_shadowed = *job->facts & TL_BIT(TL_SCENE_SHADOWS);
     tl_light_buffer_clear(job->light, job->samples->width, job->samples->height);
     struct tl_compose_request request = {
         .samples = job->samples,
-        .lights = *job->lights,
+        .lights = is_shadowed ? *job->lights : &no_lights,
         .suns = job->suns,
         .lobes = job->exact->lobes,
         .environment = job->environment->map,
@@ -245,11 +247,11 @@ bool tl_run_compose(const struct tl_compose_job *job, tl_error *error)
         request.bounce = job->bounce;
     if (*job->facts & TL_BIT(TL_SCENE_TRANSPARENCY))
         request.shares = job->transparency->shares;
-    if (job->light_options->method != TL_METHOD_UNSHADOWED) {
+    if (*job->facts & TL_BIT(TL_SCENE_MIRRORS))
+        request.mirrors = job->mirrors->items;
+    if (is_shadowed) {
         request.values = tl_points_values(job->points, &request.stride);
         request.taps = tl_points_taps(job->points);
-        if (*job->facts & TL_BIT(TL_SCENE_MIRRORS))
-            request.mirrors = job->mirrors->items;
         for (int i = 0; i < job->suns->count; i++)
             request.sun_visibility[i] = tl_points_sun(job->points, i);
     }

@@ -1,5 +1,6 @@
 /* Light made ready beside a renderer, and light that grows as materials ask for more of it: both give the
  * images that a new renderer gives, bit for bit. */
+#include "config/base/memory.h"
 #include "render/frame/light_cache.h"
 #include "render/renderer.h"
 
@@ -7,6 +8,7 @@
 
 #include "tests/testing.h"
 
+#include <math.h>
 #include <string.h>
 
 static vec3s evening(vec3s d)
@@ -281,10 +283,63 @@ static void black_environments_are_hardly_cut(void **state)
     }
 }
 
+static vec3s faint(vec3s d)
+{
+    (void)d;
+    return (vec3s){{1e-20f, 1e-20f, 1e-20f}};
+}
+
+static enum tl_job_action action_of(const tl_renderer *renderer, const char *job)
+{
+    const tl_plan *plan = tl_renderer_last_plan(renderer);
+    for (int i = 0; i < plan->count; i++)
+        if (strcmp(plan->rows[i].name, job) == 0)
+            return plan->rows[i].action;
+    fail_msg("no job %s", job);
+    return TL_JOB_DROP;
+}
+
+/* A lamp in the dark, whose light bounces: what regions, lights and rays towards them would add to the
+ * picture is shown by an environment so faint that its light is lost in the rounding of the lamp's. */
+static void black_environments_trace_nothing(void **state)
+{
+    const struct test_device *device = *state;
+    static const char *const dropped[] = {"regions", "lights", "points"};
+    struct scene scene;
+    scene_open(&scene);
+    set_glossiness(&scene, 0.7f);
+    const struct tl_lamp lamp = test_lamp_at((vec3s){{1, 2, 1}}, 3);
+    scene.frame.lamps = &lamp;
+    scene.frame.lamp_count = 1;
+    scene.settings.light.bounce = TL_BOUNCE_ALL;
+    tl_image images[2];
+    for (int k = 0; k < 2; k++) {
+        tl_environment_release(&scene.environments[k]);
+        scene.environments[k] = test_environment(64, 32, k == 0 ? faint : test_black);
+        set_environment(&scene, k);
+        tl_renderer *renderer = new_renderer(device);
+        images[k] = test_draw(renderer, &scene.frame, &scene.settings);
+        for (size_t i = 0; i < TL_COUNT(dropped); i++)
+            assert_int_equal(action_of(renderer, dropped[i]), k == 0 ? TL_JOB_RUN : TL_JOB_DROP);
+        tl_renderer_destroy(&renderer);
+    }
+    size_t lit = 0;
+    for (size_t i = 0; i < 4 * (size_t)images[0].width * (size_t)images[0].height; i++) {
+        const float with = tl_image_floats(&images[0])[i], without = tl_image_floats(&images[1])[i];
+        assert_true(fabsf(with - without) <= 1e-18f);
+        lit += i % 4 < 3 && without > 0.01f;
+    }
+    assert_true(lit > 300);
+    tl_image_release(&images[0]);
+    tl_image_release(&images[1]);
+    scene_close(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(black_environments_are_hardly_cut),
+        cmocka_unit_test(black_environments_trace_nothing),
         cmocka_unit_test(prepared_light_is_that_of_the_renderer),
         cmocka_unit_test(a_copy_serves_another_renderer),
         cmocka_unit_test(unfit_light_is_not_used),
