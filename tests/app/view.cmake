@@ -18,6 +18,6 @@ endif()
 foreach(script IN ITEMS view_drive view_drop view_lost view_place view_wipe)
   add_test(NAME ${script} COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/view/${script}.sh)
   set_tests_properties(${script} PROPERTIES LABELS cli TIMEOUT ${toile_script_timeout} SKIP_RETURN_CODE 77
-    ENVIRONMENT "TOILE=$<TARGET_FILE:toile>;DROP=${drop_files};${toile_cache}")
+    ENVIRONMENT "TOILE=$<TARGET_FILE:toile>;DROP=${drop_files};${toile_environment}")
   toile_place(${script} app/view toile)
 endforeach()

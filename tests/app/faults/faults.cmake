@@ -29,5 +29,5 @@ add_executable(test_faults faults/test_faults.c faults/fault_table.c)
 target_link_libraries(test_faults PRIVATE toile_config PkgConfig::CJSON)
 add_test(NAME faults COMMAND test_faults ${fault_table} $<TARGET_FILE:toile_faults>)
 set_tests_properties(faults PROPERTIES LABELS faults TIMEOUT ${toile_script_timeout}
-  ENVIRONMENT "OMP_WAIT_POLICY=passive;${toile_cache}")
+  ENVIRONMENT "${toile_small_environment}")
 toile_place(faults app/faults test_faults toile_faults)

@@ -6,6 +6,7 @@ if(NOT TOILE_SANITIZE)
   add_executable(test_inject inject/test_inject.c inject/supervise.c inject/folder.c)
   target_link_libraries(test_inject PRIVATE toile_config PkgConfig::CJSON)
   add_test(NAME inject COMMAND test_inject $<TARGET_FILE:toile> $<TARGET_FILE:inject_interpose>)
-  set_tests_properties(inject PROPERTIES LABELS inject TIMEOUT ${toile_script_timeout} SKIP_RETURN_CODE 77)
+  set_tests_properties(inject PROPERTIES LABELS inject TIMEOUT ${toile_script_timeout} SKIP_RETURN_CODE 77
+    ENVIRONMENT "${toile_small_environment}")
   toile_place(inject app/inject test_inject inject_interpose toile)
 endif()

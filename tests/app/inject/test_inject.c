@@ -372,7 +372,8 @@ static void make_bench(struct bench *bench)
     setenv("XDG_CACHE_HOME", cache, 1);
     free(cache);
     setenv("INJECT_REPORT", bench->report, 1);
-    setenv("OMP_WAIT_POLICY", "passive", 1);
+    setenv("OMP_WAIT_POLICY", "passive", 1); /* both as main.c sets them, or it would execute itself again */
+    setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 1);
     setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
 }
 
