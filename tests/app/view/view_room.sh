@@ -14,8 +14,9 @@ finish() {
 trap finish EXIT
 cd "$room"
 export XDG_STATE_HOME=$room/state # nothing of the user's is read, or written
-# Light and surfaces for windows whose pictures are compared with one another only: on the CPU they are most of the cost.
-cheap_light="--set light.regions=24 --set light.pem_size=16 --set light.rounds=4 --set light.bounce=off --set scene.smooth=false"
+# Light, surfaces and samples for windows whose pictures are compared with one another only: on the CPU they are most of
+# the cost.
+cheap_light="--set light.regions=24 --set light.pem_size=16 --set light.rounds=4 --set light.bounce=off --set scene.smooth=false --set image.scale=0.5"
 
 # first_size WIDTH HEIGHT: of the window, unless --fresh. The panel takes 380 pixels of the width.
 first_size() {
@@ -43,10 +44,10 @@ open_display() {
 # logged TEXT [TIMES]: waits until the log holds the text that many times. The five minutes are no performance bound: they
 # end the wait for a window that hangs, on a machine under any load.
 logged() {
-    for _ in $(seq 3000); do
+    for _ in $(seq 1200); do
         [ "$(grep -c -e "$1" log)" -ge "${2:-1}" ] && { echo "ok     $1"; return; }
         kill -0 "$viewer" 2>/dev/null || fail "the window closed before it logged: $1"
-        sleep 0.1
+        sleep 0.25
     done
     fail "never logged: $1"
 }
