@@ -3,10 +3,10 @@
 # preset and method that keeps something from frame to frame; shards of render, sheet and fly make the bytes of one run.
 set -eu
 . "$(dirname "$0")/cli.sh"
-small="--size 64x64 --set cloth.edge_m=0.06 --set cloth.settle_s=0.3 --set light.regions=24 --set light.pem_size=16 --quiet"
+small="--size 48x48 $cheap_cloth --set cloth.settle_s=0.05 --set light.regions=24 --set light.pem_size=16 --quiet"
 
 # What a frame keeps from those before it: visibility at points, bounced light, ratios at vertices, captures, a sequence
-# of environments, a clip. The dress falls and swings: frames differ.
+# of environments, a clip. The sheet falls on a ball: frames differ.
 same_frames() { # NAME ARGUMENTS...
     local name=$1 frame
     shift
