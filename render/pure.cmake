@@ -92,6 +92,7 @@ add_library(toile_light STATIC
   surfaces/ground.c
   trace/cutout.c
   trace/trace.c
+  trace/tree.c
   detail/transfer.c
   visibility/fit.c
   visibility/map_order.c

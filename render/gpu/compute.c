@@ -7,22 +7,22 @@
 
 /* ---- Limits ---- */
 
-static int ask(GLenum name)
+static int query_limit(GLenum name)
 {
     GLint value = 0;
     glGetIntegerv(name, &value);
     return value;
 }
 
-struct tl_compute_limits tl_compute_limits_ask(void)
+struct tl_compute_limits tl_compute_limits_query(void)
 {
-    const int per_stage = ask(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
-              all = ask(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
+    const int per_stage = query_limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
+              all = query_limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
     GLint64 bytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
     return (struct tl_compute_limits){.bindings = per_stage < all ? per_stage : all,
-                                      .shared_bytes = ask(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE),
-                                      .group_threads = ask(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
+                                      .shared_bytes = query_limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE),
+                                      .group_threads = query_limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
                                       .storage_bytes = (size_t)bytes};
 }
 

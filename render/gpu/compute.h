@@ -5,7 +5,7 @@
 
 #include "render/gpu/gpu.h"
 
-/* What every program of the renderer keeps to. */
+/* Every program of the renderer keeps to these limits. */
 #define TL_STORAGE_BINDINGS   16    /* buffers of one program */
 #define TL_GROUP_SHARED_BYTES 32768 /* shared memory of a group */
 #define TL_GROUP_THREADS      256
@@ -17,7 +17,7 @@ struct tl_compute_limits {
     size_t storage_bytes; /* of a buffer, as a shader sees it */
 };
 /* Asks the context that is current. */
-struct tl_compute_limits tl_compute_limits_ask(void);
+struct tl_compute_limits tl_compute_limits_query(void);
 /* Errors: TL_DEVICE, which names the first limit that is below what the renderer's programs need. */
 bool tl_compute_limits_check(const struct tl_compute_limits *limits, tl_error *error);
 struct tl_compute_limits tl_gpu_compute_limits(const tl_gpu *gpu);
@@ -30,7 +30,7 @@ typedef struct tl_buffer {
 } tl_buffer;
 
 /* Makes a buffer hold at least `bytes`, which must not be 0. It keeps its content where it is large enough,
- * and holds zeros where it is made anew. Errors: TL_DEVICE if GL allows no buffer of that size. */
+ * and holds zeros where it grows. Errors: TL_DEVICE if GL allows no buffer of that size. */
 bool tl_buffer_reserve(tl_buffer *buffer, tl_gpu *gpu, size_t bytes, tl_error *error);
 /* Reserves, and writes from the start. */
 bool tl_buffer_fill(tl_buffer *buffer, tl_gpu *gpu, const void *data, size_t bytes, tl_error *error);
@@ -52,7 +52,7 @@ static inline unsigned tl_gpu_groups(size_t threads, size_t size)
 {
     return (unsigned)((threads + size - 1) / size);
 }
-/* What is begun afterwards sees all that shaders have written before. */
+/* Work that is begun afterwards sees all that shaders have written before. */
 void tl_gpu_barrier(void);
 
 #endif

@@ -44,7 +44,7 @@ static bool take_over(tl_gpu *gpu, tl_error *error)
     glDebugMessageCallback(on_message, gpu);
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &gpu->texture_side_max);
     glGetIntegerv(GL_SUBPIXEL_BITS, &gpu->subpixel_bits);
-    gpu->compute = tl_compute_limits_ask();
+    gpu->compute = tl_compute_limits_query();
     glCreateVertexArrays(1, &gpu->empty_vertices);
     return true;
 }

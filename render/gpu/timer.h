@@ -13,7 +13,7 @@
 typedef struct tl_timer tl_timer;
 
 struct tl_timer_times {
-    uint64_t frame; /* as tl_timer_begin was told */
+    uint64_t frame; /* the number given to tl_timer_begin */
     int count;
     struct {
         int part;
@@ -28,7 +28,7 @@ void tl_timer_destroy(tl_timer **timer);
 
 /* Begins a frame. Where the times of several frames before have not been taken, the oldest are dropped. */
 void tl_timer_begin(tl_timer *timer, uint64_t frame);
-/* What was begun since the last mark, or since the frame was, is of this part. */
+/* The work begun since the last mark, or since the frame began, is of this part. */
 void tl_timer_mark(tl_timer *timer, int part);
 /* Takes the times of the oldest frame that has ended; the frame ends with the last mark before the next
  * begins. Returns false while GL has not done it. Waits for nothing. */
