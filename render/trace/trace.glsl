@@ -96,7 +96,7 @@ uint tree_first_slot(uint slots, uint octant)
 
 // TREE_NEAREST: the nearest hit. TREE_ANY: any one. TREE_THROUGH: any one of a closed triangle, and else what the open
 // ones leave. `what` is a constant wherever this is called, so that compilers leave out the other ways.
-TreeHit tree_walk(vec3 origin, vec3 direction, float from, float to, int what)
+TreeHit tree_walk(uint root, vec3 origin, vec3 direction, float from, float to, int what)
 {
     // A direction along an axis: so short a slope leaves each box where it is.
     const vec3 slope_min = vec3(1e-20);
@@ -105,7 +105,7 @@ TreeHit tree_walk(vec3 origin, vec3 direction, float from, float to, int what)
     TreeHit hit = TreeHit(to, TREE_NO_TRIANGLE, 0.0, 0.0, false, 1.0);
     uvec2 stack[TL_TREE_LEVELS_MAX]; // first child, and its siblings: those to be visited, below all that are nodes
     int height = 0;
-    uint first_child = 0u, slots = 1u, all_slots = 1u; // the root, as if it were a child
+    uint first_child = root, slots = 1u, all_slots = 1u; // as if it were an only child
     for (;;) {
         const uint slot = what == TREE_NEAREST ? tree_first_slot(slots, octant) : uint(findLSB(slots));
         slots &= ~(1u << slot);
@@ -142,16 +142,21 @@ TreeHit tree_walk(vec3 origin, vec3 direction, float from, float to, int what)
     return hit;
 }
 
+// Those that cast shadows; and all, as a camera sees them.
 TreeHit tree_nearest(vec3 origin, vec3 direction, float from, float to)
 {
-    return tree_walk(origin, direction, from, to, TREE_NEAREST);
+    return tree_walk(TL_TREE_CASTERS, origin, direction, from, to, TREE_NEAREST);
+}
+TreeHit tree_seen(vec3 origin, vec3 direction, float from, float to)
+{
+    return tree_walk(TL_TREE_ALL, origin, direction, from, to, TREE_NEAREST);
 }
 bool tree_occluded(vec3 origin, vec3 direction, float from, float to)
 {
-    return tree_walk(origin, direction, from, to, TREE_ANY).open <= 0.0;
+    return tree_walk(TL_TREE_CASTERS, origin, direction, from, to, TREE_ANY).open <= 0.0;
 }
-// The product of the openness of all that is hit, 0 where something is closed.
+// The product of the openness of all casters that are hit, 0 where one is closed.
 float tree_transmittance(vec3 origin, vec3 direction, float from, float to)
 {
-    return tree_walk(origin, direction, from, to, TREE_THROUGH).open;
+    return tree_walk(TL_TREE_CASTERS, origin, direction, from, to, TREE_THROUGH).open;
 }

@@ -14,8 +14,8 @@
 #define TRIANGLE_WORK 0.4f
 #define DIVISION_WORK 0.4f
 
-/* A tree of two children a node becomes one of eight: a level for three. */
-#define HEIGHT_MAX (3 * TL_TREE_LEVELS_MAX)
+/* A tree of two children a node becomes one of eight: a level for three. The root has a level of its own. */
+#define HEIGHT_MAX (3 * (TL_TREE_LEVELS_MAX - 1))
 
 struct box {
     vec3s low, high;
@@ -254,26 +254,42 @@ static uint32_t place_leaf(const struct builder *builder, const struct binary_no
     return word;
 }
 
-/* Numbers nodes in the order in which they come up, breadth first. `queue`: the binary node of each. */
-static void collapse(const struct builder *builder, int *queue, struct tl_tree *out)
+/* Makes the root: its children are the trees of the casters and of the others. Returns how many nodes there
+ * are. */
+static size_t place_root(const int *trees, size_t tree_count, int *queue, struct tl_tree *out)
 {
-    size_t end = 1, level_end = 1;
+    for (size_t s = 0; s < TL_TREE_WIDTH; s++) {
+        out->children[0][s] = s < tree_count ? (uint32_t)(1 + s) : TL_TREE_NO_CHILD;
+        if (s < tree_count)
+            queue[1 + s] = trees[s];
+    }
+    out->heads[0][0] = TL_TREE_CASTERS;
+    out->level_first[++out->level_count] = TL_TREE_CASTERS;
+    return 1 + tree_count;
+}
+
+/* Numbers nodes in the order in which they come up, breadth first. `queue`: the binary node of each, but the
+ * root's. */
+static void collapse(const struct builder *builder, const int *trees, size_t tree_count, int *queue,
+                     struct tl_tree *out)
+{
+    size_t end = place_root(trees, tree_count, queue, out), level_end = end;
     uint32_t placed = 0;
-    for (size_t number = 0; number < end; number++) {
+    for (size_t number = TL_TREE_CASTERS; number < end; number++) {
         int children[TL_TREE_WIDTH], at_slot[TL_TREE_WIDTH];
         if (number == level_end) {
             out->level_first[++out->level_count] = (uint32_t)number;
             level_end = end;
         }
         assert(out->level_count < TL_TREE_LEVELS_MAX);
-        const int height_max = HEIGHT_MAX - 3 * (out->level_count + 1);
+        const int height_max = HEIGHT_MAX - 3 * out->level_count;
         const int count = collect_children(builder, queue[number], height_max, children);
         assign_slots(builder, queue[number], children, count, at_slot);
         out->heads[number][0] = (uint32_t)end;
         out->heads[number][1] = placed;
         for (int s = 0; s < TL_TREE_WIDTH; s++) {
             const struct binary_node *child = at_slot[s] < 0 ? NULL : &builder->nodes[at_slot[s]];
-            if (!child) {
+            if (!child || child->count == 0) {
                 out->children[number][s] = TL_TREE_NO_CHILD;
             } else if (child->left < 0) {
                 out->children[number][s] = place_leaf(builder, child, &placed, out);
@@ -287,10 +303,12 @@ static void collapse(const struct builder *builder, int *queue, struct tl_tree *
     out->node_count = end;
 }
 
-struct tl_tree tl_tree_build(const vec3s *positions, const uint32_t *corners, size_t triangle_count)
+struct tl_tree tl_tree_build(const vec3s *positions, const uint32_t *corners, size_t triangle_count,
+                             size_t caster_count)
 {
-    assert(triangle_count <= TL_TREE_PLACE);
-    const size_t nodes = triangle_count + 1; /* each inner node parts triangles */
+    assert(triangle_count <= TL_TREE_PLACE && caster_count <= triangle_count);
+    const size_t nodes = triangle_count + 3; /* each inner node parts triangles; a root, and two trees */
+    const size_t tree_count = caster_count < triangle_count ? 2 : 1;
     struct tl_tree tree = {.triangle_count = triangle_count,
                            .children = tl_alloc(nodes, sizeof *tree.children),
                            .heads = tl_alloc(nodes, sizeof *tree.heads),
@@ -303,8 +321,10 @@ struct tl_tree tl_tree_build(const vec3s *positions, const uint32_t *corners, si
         builder.boxes[t] = box_of_triangle(positions, corners + 3 * t);
         builder.order[t] = (uint32_t)t;
     }
-    build_binary(&builder, 0, (uint32_t)triangle_count, HEIGHT_MAX);
-    collapse(&builder, queue, &tree);
+    const int casters = build_binary(&builder, 0, (uint32_t)caster_count, HEIGHT_MAX);
+    const int others =
+        build_binary(&builder, (uint32_t)caster_count, (uint32_t)(triangle_count - caster_count), HEIGHT_MAX);
+    collapse(&builder, (int[]){casters, others}, tree_count, queue, &tree);
     free(queue);
     free(builder.boxes);
     free(builder.order);
@@ -320,31 +340,36 @@ void tl_tree_release(struct tl_tree *tree)
     *tree = (struct tl_tree){0};
 }
 
+static struct box box_of_leaf(const struct tl_tree *tree, uint32_t child, const vec3s *positions,
+                              const uint32_t *corners)
+{
+    const uint32_t count = (child & ~TL_TREE_LEAF) >> TL_TREE_COUNT_SHIFT, place = child & TL_TREE_PLACE;
+    struct box box = empty_box();
+    for (uint32_t i = place; i < place + count; i++)
+        box = join(box, box_of_triangle(positions, corners + 3 * (size_t)tree->order[i]));
+    return box;
+}
+
 double tl_tree_cost(const struct tl_tree *tree, const vec3s *positions, const uint32_t *corners)
 {
     struct box *boxes = TL_NEW_ARRAY(struct box, tree->node_count);
-    double work = 0;                                    /* times area */
-    for (size_t node = tree->node_count; node-- > 0;) { /* children lie behind their parents */
+    double *work = TL_NEW_ARRAY(double, tree->node_count);            /* times area, of all below */
+    for (size_t node = tree->node_count; node-- > TL_TREE_CASTERS;) { /* children lie behind their parents */
         boxes[node] = empty_box();
         for (int s = 0; s < TL_TREE_WIDTH; s++) {
             const uint32_t child = tree->children[node][s];
             if (child == TL_TREE_NO_CHILD)
                 continue;
-            struct box box = empty_box();
-            if (child & TL_TREE_LEAF) {
-                const uint32_t count = (child & ~TL_TREE_LEAF) >> TL_TREE_COUNT_SHIFT,
-                               place = child & TL_TREE_PLACE;
-                for (uint32_t i = place; i < place + count; i++)
-                    box = join(box, box_of_triangle(positions, corners + 3 * (size_t)tree->order[i]));
-                work += (double)(TRIANGLE_WORK * area(box) * (float)count);
-            } else {
-                box = boxes[child];
-            }
+            const bool is_leaf = child & TL_TREE_LEAF;
+            const struct box box = is_leaf ? box_of_leaf(tree, child, positions, corners) : boxes[child];
+            const uint32_t count = (child & ~TL_TREE_LEAF) >> TL_TREE_COUNT_SHIFT;
+            work[node] += is_leaf ? (double)(TRIANGLE_WORK * area(box) * (float)count) : work[child];
             boxes[node] = join(boxes[node], box);
         }
-        work += (double)area(boxes[node]);
+        work[node] += (double)area(boxes[node]);
     }
-    const double whole = (double)area(boxes[0]);
+    const double whole = (double)area(boxes[TL_TREE_CASTERS]), all = work[TL_TREE_CASTERS];
     free(boxes);
-    return whole > 0 ? work / whole : 1;
+    free(work);
+    return whole > 0 ? all / whole : 1;
 }

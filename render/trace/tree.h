@@ -23,12 +23,16 @@ struct tl_tree {
     uint32_t level_first[TL_TREE_LEVELS_MAX + 1]; /* nodes */
 };
 
-/* `corners`: three vertices a triangle. Of vertices that are not finite the place is unknown. */
-struct tl_tree tl_tree_build(const vec3s *positions, const uint32_t *corners, size_t triangle_count);
+/* `corners`: three vertices a triangle. Triangles from `caster_count` on cast no shadow, as the ground: rays
+ * that begin at node TL_TREE_CASTERS do not meet them. Of vertices that are not finite the place is unknown.
+ */
+struct tl_tree tl_tree_build(const vec3s *positions, const uint32_t *corners, size_t triangle_count,
+                             size_t caster_count);
 void tl_tree_release(struct tl_tree *tree);
 
-/* The work of a ray that meets the whole box, in nodes, when the tree's boxes are fitted to these positions:
- * the surface area heuristic [Wald 2007, 2]. It grows as the mesh moves away from the pose of the build. */
+/* The work of a ray that meets the box of the casters, in nodes, when the tree's boxes are fitted to these
+ * positions: the surface area heuristic [Wald 2007, 2]. It grows as the mesh moves away from the pose of the
+ * build. */
 double tl_tree_cost(const struct tl_tree *tree, const vec3s *positions, const uint32_t *corners);
 
 #endif

@@ -45,7 +45,8 @@ static bool build(struct tl_tree_buffers *buffers, tl_gpu *gpu, const struct tl_
 {
     struct tl_tree *tree = &buffers->tree;
     tl_tree_release(tree);
-    *tree = tl_tree_build(request->positions, request->corners, request->triangle_count);
+    *tree =
+        tl_tree_build(request->positions, request->corners, request->triangle_count, request->caster_count);
     buffers->built_cost = tl_tree_cost(tree, request->positions, request->corners);
     buffers->topology_revision = request->topology_revision;
     buffers->since_check = 0;

@@ -26,6 +26,7 @@ struct tl_tree_request {
     const uint32_t *corners; /* [triangle_count][3] */
     const float *openness;   /* [triangle_count]: what passes through a triangle; NULL: nothing */
     size_t triangle_count;
+    size_t caster_count;        /* those from here on cast no shadow: see tl_tree_build */
     uint64_t topology_revision; /* changes when anything but positions does */
     /* The same positions (three floats each) and corners, already on the card. */
     const tl_buffer *position_buffer, *corner_buffer;

@@ -18,7 +18,7 @@ static const char rays_comp[] =
     "#include \"trace.glsl\"\n"
     "layout(local_size_x = 64) in;\n"
     "struct Ray { vec3 origin; float from; vec3 direction; float to; };\n"
-    "struct Found { float distance, u, v, through; uint triangle, back, occluded, unused; };\n"
+    "struct Found { float distance, u, v, through; uint triangle, back, occluded, seen; };\n"
     "layout(std430, binding = 0) restrict readonly buffer Rays { Ray rays[]; };\n"
     "layout(std430, binding = 1) restrict writeonly buffer All { Found all_found[]; };\n"
     "layout(location = 0) uniform uint count;\n"
@@ -29,13 +29,14 @@ static const char rays_comp[] =
     "        return;\n"
     "    Ray r = rays[i];\n"
     "#ifdef ONLY\n"
-    "    all_found[i].distance = tree_walk(r.origin, r.direction, r.from, r.to, ONLY).distance;\n"
+    "    all_found[i].distance = tree_walk(TL_TREE_CASTERS, r.origin, r.direction, r.from, r.to, "
+    "ONLY).distance;\n"
     "#else\n"
     "    TreeHit hit = tree_nearest(r.origin, r.direction, r.from, r.to);\n"
     "    all_found[i] = Found(hit.distance, hit.u, hit.v, tree_transmittance(r.origin, r.direction, r.from, "
     "r.to),\n"
     "                         hit.triangle, uint(hit.back), uint(tree_occluded(r.origin, r.direction, "
-    "r.from, r.to)), 0u);\n"
+    "r.from, r.to)), tree_seen(r.origin, r.direction, r.from, r.to).triangle);\n"
     "#endif\n"
     "}\n";
 
@@ -103,6 +104,7 @@ void card_update(struct card *card, const struct flat_mesh *mesh)
                                             .corners = mesh->corners,
                                             .openness = mesh->openness,
                                             .triangle_count = mesh->triangle_count,
+                                            .caster_count = mesh->triangle_count - mesh->other_count,
                                             .position_buffer = &card->positions,
                                             .corner_buffer = &card->corners};
     assert_ok(tl_tree_buffers_update(&card->tree, card->gpu, &request, &error), error);
@@ -129,11 +131,11 @@ void card_trace(struct card *card, const struct card_ray *rays, struct card_foun
 /* A ray that passes so near to an edge may be on either side of it: a place is rounded by 2^-24 of the two
  * metres at most that lie between it and the ray's start, sixteen times. */
 #define EDGE_M 2e-6
-struct certain card_try_all(const struct flat_mesh *mesh, const struct card_ray *ray)
+struct certain card_try_all(const struct flat_mesh *mesh, const struct card_ray *ray, size_t triangle_count)
 {
     struct certain best = {.distance = INFINITY, .through = 1, .triangle = TL_TREE_NO_CHILD};
     double second = INFINITY;
-    for (size_t t = 0; t < mesh->triangle_count; t++) {
+    for (size_t t = 0; t < triangle_count; t++) {
         vec3s c[3];
         double distance, u, v;
         for (size_t i = 0; i < 3; i++)
@@ -188,10 +190,11 @@ size_t card_count_faulty(struct card *card, const struct flat_mesh *mesh, const 
     size_t faulty = 0, doubtful = 0;
     card_trace(card, rays, found, count);
     for (size_t i = 0; i < count; i++) {
-        const struct certain certain = card_try_all(mesh, &rays[i]);
-        doubtful += certain.is_doubtful;
+        const struct certain certain = card_try_all(mesh, &rays[i], mesh->triangle_count - mesh->other_count),
+                             all = card_try_all(mesh, &rays[i], mesh->triangle_count);
+        doubtful += all.is_doubtful;
         *hits += certain.triangle != TL_TREE_NO_CHILD;
-        faulty += !certain.is_doubtful && !is_as_certain(&found[i], &certain);
+        faulty += !all.is_doubtful && (!is_as_certain(&found[i], &certain) || found[i].seen != all.triangle);
     }
     assert_true(doubtful <= count / 50);
     free(found);

@@ -17,7 +17,8 @@ struct card_ray {
 };
 struct card_found {
     float distance, u, v, through;
-    uint32_t triangle, back, occluded, unused;
+    uint32_t triangle, back, occluded; /* of casters */
+    uint32_t seen;                     /* triangle, of all */
 };
 
 /* A text in a shader file, and another in its place. */
@@ -32,6 +33,7 @@ struct flat_mesh {
     uint32_t *corners;
     float *openness; /* NULL: closed */
     size_t vertex_count, triangle_count;
+    size_t other_count; /* the last ones, which cast no shadow */
 };
 struct flat_mesh flat_mesh_of_soup(const struct soup *soup); /* borrows */
 
@@ -70,7 +72,8 @@ struct certain {
     bool back;
     bool is_doubtful; /* rounding may decide otherwise */
 };
-struct certain card_try_all(const struct flat_mesh *mesh, const struct card_ray *ray);
+/* Tries the first triangles. */
+struct certain card_try_all(const struct flat_mesh *mesh, const struct card_ray *ray, size_t triangle_count);
 /* Traces rays and tries all triangles. Returns how many rays differ that rounding cannot explain. */
 size_t card_count_faulty(struct card *card, const struct flat_mesh *mesh, const struct card_ray *rays,
                          size_t count, size_t *hits);

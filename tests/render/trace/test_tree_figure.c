@@ -152,7 +152,7 @@ static struct against_embree compare(struct card *card, const struct figure *fig
         if (!other_visibility && !other_nearest)
             continue;
         if (result.visibility + result.nearest < DOUBTS_MAX &&
-            card_try_all(&figure->mesh, &rays[i]).is_doubtful) {
+            card_try_all(&figure->mesh, &rays[i], figure->mesh.triangle_count).is_doubtful) {
             result.at_edges++;
             continue;
         }
@@ -237,6 +237,9 @@ static void test_faults_are_found(void **state)
         {"trace.glsl", "&& distance <= hit.distance", ""},
         {"trace.glsl", "distance >= from && ", ""},
         {"trace.glsl", "hit.open = second.w", "hit.open = 0.0"},
+        /* what casts no shadow */
+        {"tree_terms.glsl", "TL_TREE_ALL     0u", "TL_TREE_ALL     1u"},
+        {"tree_terms.glsl", "TL_TREE_CASTERS 1u", "TL_TREE_CASTERS 0u"},
     };
     static struct card_ray rays[SOUP_RAYS];
     struct figure *figure = open_figure();
@@ -245,6 +248,7 @@ static void test_faults_are_found(void **state)
     soup_create(&soup, SOUP_TRIANGLES, 1);
     struct flat_mesh mesh = flat_mesh_of_soup(&soup);
     mesh.openness = openness;
+    mesh.other_count = SOUP_TRIANGLES / 10;
     for (size_t t = 0; t < SOUP_TRIANGLES; t++)
         openness[t] = 0.5f;
     random_rays(rays, SOUP_RAYS, 3);
