@@ -16,6 +16,7 @@ toile_test(gbuffer/raster gpu toile_test_scenes)
 toile_test(gbuffer/rings unit toile_test_scenes)
 toile_test(trace/tree gpu toile_test_scenes)
 toile_test(trace/tree_figure gpu toile_test_scenes)
+toile_test(gbuffer/primary gpu toile_test_scenes PkgConfig::EPOXY)
 toile_test(visibility/maps gpu toile_test_scenes)
 toile_test(methods gpu toile_test_scenes)
 toile_test(envmap/capture gpu toile_test_scenes)
@@ -70,4 +71,4 @@ toile_test(shade/ratios truth toile_test_scenes)
 toile_test(shade/outlines truth toile_test_scenes)
 
 # cmocka's exit status leaves out a teardown that fails: messages of GL, memory that is left.
-set_tests_properties(compute tree tree_figure PROPERTIES FAIL_REGULAR_EXPRESSION "GROUP TEARDOWN")
+set_tests_properties(compute primary tree tree_figure PROPERTIES FAIL_REGULAR_EXPRESSION "GROUP TEARDOWN")

@@ -40,9 +40,8 @@ static const char rays_comp[] =
     "#endif\n"
     "}\n";
 
-/* The program's shaders, with edits, and the kernel. `texts` owns what was edited. */
-static struct tl_embedded *list_shaders(const struct card_edit edits[CARD_EDITS_MAX],
-                                        char *texts[CARD_EDITS_MAX])
+struct tl_embedded *card_list_shaders(const struct card_edit edits[CARD_EDITS_MAX],
+                                      char *texts[CARD_EDITS_MAX])
 {
     size_t count = 0;
     while (tl_embedded_shaders[count].name)
@@ -69,7 +68,7 @@ void card_open(struct card *card, tl_gpu *gpu, const struct card_edit edits[CARD
 {
     tl_error error = {0};
     *card = (struct card){.gpu = gpu};
-    card->shaders = list_shaders(edits, card->texts);
+    card->shaders = card_list_shaders(edits, card->texts);
     assert_ok(
         tl_program_create_compute(gpu, card->shaders, "rays.comp", defines, &card->rays_program, &error),
         error);
@@ -207,6 +206,30 @@ struct flat_mesh flat_mesh_of_soup(const struct soup *soup)
                               .corners = soup->indices,
                               .vertex_count = soup->surface.vertex_count,
                               .triangle_count = soup->surface.index_count / 3};
+}
+
+struct flat_mesh flat_mesh_join(const tl_surface *const *surfaces, size_t count)
+{
+    struct flat_mesh mesh = {0};
+    for (size_t s = 0; s < count; s++) {
+        const tl_surface *surface = surfaces[s];
+        const size_t vertices = mesh.vertex_count, corners = 3 * mesh.triangle_count;
+        mesh.positions = tl_resize(mesh.positions, vertices + surface->vertex_count, sizeof(vec3s));
+        mesh.corners = tl_resize(mesh.corners, corners + surface->index_count, sizeof(uint32_t));
+        memcpy(mesh.positions + vertices, surface->positions, surface->vertex_count * sizeof(vec3s));
+        for (size_t i = 0; i < surface->index_count; i++)
+            mesh.corners[corners + i] = (uint32_t)vertices + surface->indices[i];
+        mesh.vertex_count += surface->vertex_count;
+        mesh.triangle_count += surface->index_count / 3;
+    }
+    return mesh;
+}
+
+void flat_mesh_release(struct flat_mesh *mesh)
+{
+    free(mesh->positions);
+    free(mesh->corners);
+    *mesh = (struct flat_mesh){0};
 }
 
 void random_rays(struct card_ray *rays, size_t count, uint64_t seed)

@@ -26,6 +26,10 @@ struct card_edit {
     const char *file, *text, *replacement;
 };
 #define CARD_EDITS_MAX 4
+/* The program's shaders with edits, up to the first without a file; or NULL: as they are. A list to free;
+ * `texts` own what was edited. */
+struct tl_embedded *card_list_shaders(const struct card_edit edits[CARD_EDITS_MAX],
+                                      char *texts[CARD_EDITS_MAX]);
 
 /* A mesh of one list of vertices, with numbers of triangles as the tree has them. */
 struct flat_mesh {
@@ -36,6 +40,9 @@ struct flat_mesh {
     size_t other_count; /* the last ones, which cast no shadow */
 };
 struct flat_mesh flat_mesh_of_soup(const struct soup *soup); /* borrows */
+/* Copies: flat_mesh_release. */
+struct flat_mesh flat_mesh_join(const tl_surface *const *surfaces, size_t count);
+void flat_mesh_release(struct flat_mesh *mesh);
 
 /* A mesh on the card, its tree, and rays. */
 struct card {

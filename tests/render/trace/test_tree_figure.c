@@ -44,24 +44,12 @@ static struct figure *open_figure(void)
     assert_ok(tl_garment_cut("dress", 0.02f, &figure->garment, &error), error);
     figure->form = tl_avatar_form();
     const tl_model *models[] = {&figure->garment.model, &figure->form.model};
-    struct flat_mesh *mesh = &figure->mesh;
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; s++)
         figure->surfaces[s] =
             tl_surface_of_mesh(s == 0 ? "garment" : "avatar", &models[s]->mesh, models[s]->materials);
-        const tl_surface *surface = &figure->surfaces[s];
-        mesh->positions =
-            tl_resize(mesh->positions, mesh->vertex_count + surface->vertex_count, sizeof(vec3s));
-        mesh->corners =
-            tl_resize(mesh->corners, 3 * mesh->triangle_count + surface->index_count, sizeof(uint32_t));
-        memcpy(mesh->positions + mesh->vertex_count, surface->positions,
-               surface->vertex_count * sizeof(vec3s));
-        for (size_t i = 0; i < surface->index_count; i++)
-            mesh->corners[3 * mesh->triangle_count + i] = (uint32_t)mesh->vertex_count + surface->indices[i];
-        mesh->vertex_count += surface->vertex_count;
-        mesh->triangle_count += surface->index_count / 3;
-    }
-    figure->rest = TL_NEW_ARRAY(vec3s, mesh->vertex_count);
-    memcpy(figure->rest, mesh->positions, mesh->vertex_count * sizeof(vec3s));
+    figure->mesh = flat_mesh_join((const tl_surface *[]){&figure->surfaces[0], &figure->surfaces[1]}, 2);
+    figure->rest = TL_NEW_ARRAY(vec3s, figure->mesh.vertex_count);
+    memcpy(figure->rest, figure->mesh.positions, figure->mesh.vertex_count * sizeof(vec3s));
     figure->trace = tl_trace_create(&error);
     assert_non_null(figure->trace);
     update_trace(figure);
@@ -73,8 +61,7 @@ static void close_figure(struct figure *figure)
     tl_trace_destroy(&figure->trace);
     tl_garment_release(&figure->garment);
     tl_avatar_release(&figure->form);
-    free(figure->mesh.positions);
-    free(figure->mesh.corners);
+    flat_mesh_release(&figure->mesh);
     free(figure->rest);
     free(figure);
 }
