@@ -201,11 +201,11 @@ static double predict_job(const tl_renderer *renderer, int job, const struct tl_
 }
 
 static void make_plan(const tl_renderer *renderer, const struct tl_plan_input *input,
-                      const struct tl_render_settings *settings, tl_plan *plan)
+                      const struct tl_work_counts *counts, const struct tl_render_settings *settings,
+                      tl_plan *plan)
 {
     double predicted_ms[TL_JOBS_MAX];
-    const struct tl_work_sizes sizes =
-        tl_work_estimate_sizes(&renderer->resources, &renderer->counts, settings);
+    const struct tl_work_sizes sizes = tl_work_estimate_sizes(&renderer->resources, counts, settings);
     struct tl_work work[TL_JOB_COUNT];
     tl_work_estimate(&sizes, work);
     for (int i = 0; i < TL_JOB_COUNT; i++)
@@ -241,7 +241,7 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
 
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
-    make_plan(renderer, input, &renderer->settings, plan);
+    make_plan(renderer, input, &renderer->counts, &renderer->settings, plan);
     double new_regions =
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
     tl_gpu_reset_state(renderer->resources.gpu);
@@ -374,7 +374,7 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     if (resources->valid) /* the first frame has no earlier one to differ from */
         renderer->moving = changed;
     renderer->frame = *frame;
-    renderer->counts = tl_work_count(frame, facts);
+    renderer->counts = tl_work_count(frame, &used, facts, resources->light_cache.exponents);
     renderer->settings = used;
     memcpy(renderer->hashes, hashes, sizeof hashes);
     tl_inputs_set(resources, frame, &used, facts, &renderer->rest, hashes);
@@ -478,7 +478,9 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     tl_frame_hash_inputs(frame, &used, facts, renderer->hashes, &rest, hashes);
     const struct tl_plan_input input =
         plan_input(renderer, facts, changed_inputs(renderer, hashes), read_of(frame));
-    make_plan(renderer, &input, &used, out);
+    const struct tl_work_counts counts =
+        tl_work_count(frame, &used, facts, renderer->resources.light_cache.exponents);
+    make_plan(renderer, &input, &counts, &used, out);
 }
 
 /* Inputs that can change without the user: their change counts as motion. Options change only by hand. */

@@ -176,4 +176,7 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer);
  * Lifetime: the names are constants. */
 size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX]);
 
+/* Writes, for each job of the table, the bytes of the resources that it makes. Several jobs may make one. */
+void tl_renderer_job_bytes(const tl_renderer *renderer, size_t out[TL_JOBS_MAX]);
+
 #endif

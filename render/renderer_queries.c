@@ -1,5 +1,6 @@
 /* Queries about the last frame (inspection, legend, AOVs, memory), and the exchange of prepared environments
  * with a worker thread. */
+#include "render/frame/jobs.h"
 #include "render/frame/memory.h"
 #include "render/inside.h"
 #include "render/renderer_internal.h"
@@ -17,6 +18,17 @@ struct tl_render_memory tl_renderer_memory(const tl_renderer *renderer)
 size_t tl_renderer_resources(const tl_renderer *renderer, struct tl_resource_memory out[TL_RESOURCES_MAX])
 {
     return tl_resources_list(&renderer->resources, out);
+}
+
+void tl_renderer_job_bytes(const tl_renderer *renderer, size_t out[TL_JOBS_MAX])
+{
+    size_t bytes[TL_RESOURCE_COUNT];
+    tl_resources_count(&renderer->resources, bytes);
+    for (int i = 0; i < TL_JOBS_MAX; i++) {
+        out[i] = 0;
+        for (int bit = 0; i < tl_frame_job_count && bit < TL_RESOURCE_COUNT; bit++)
+            out[i] += tl_frame_jobs[i].writes & TL_BIT(bit) ? bytes[bit] : 0;
+    }
 }
 
 static bool has(const tl_renderer *renderer, enum tl_resource resource)

@@ -10,28 +10,72 @@
 #include <math.h>
 #include <stdio.h>
 
-static void print_plan(const tl_plan *plan)
+#define MEBIBYTE (1024.0 * 1024.0)
+
+/* What the jobs of the frame cost that levels leave out: measured, by a renderer of its own that draws the
+ * frame in full. */
+struct savings {
+    bool are_measured;
+    double ms[TL_JOBS_MAX];    /* by job; 0: it does not run in full either */
+    size_t bytes[TL_JOBS_MAX]; /* ... that the plan's renderer does not hold */
+};
+
+/* The cloth's step, which every frame begins with. */
+struct stepped {
+    bool is_stepped;
+    double ms;
+};
+
+static void print_cost(double ms)
 {
-    printf("%-12s %-6s %5s %10s  %s\n", "job", "action", "level", "ms", "reason");
+    if (isfinite(ms))
+        printf(" %10.2f", ms);
+    else
+        printf(" %10s", "-");
+}
+
+static const char *cloth_reason(const struct stepped *cloth, const struct tl_cloth_report *report)
+{
+    return cloth->is_stepped          ? "every frame: it moves"
+           : report->vertex_count > 0 ? "as it was settled or loaded"
+                                      : "no cloth here";
+}
+
+static const char *cloth_action(const struct stepped *cloth, const struct tl_cloth_report *report)
+{
+    return tl_job_action_names[cloth->is_stepped          ? TL_JOB_RUN
+                               : report->vertex_count > 0 ? TL_JOB_REUSE
+                                                          : TL_JOB_DROP];
+}
+
+static void print_plan(const tl_plan *plan, const struct savings *saved, const struct stepped *cloth,
+                       const struct tl_cloth_report *report)
+{
+    printf("%-12s %-6s %5s %10s", "job", "action", "level", "ms");
+    printf(saved->are_measured ? " %10s %10s  reason\n" : "  reason\n", "saves ms", "MiB");
+    printf("%-12s %-6s %5d", "cloth", cloth_action(cloth, report), 0);
+    print_cost(cloth->ms);
+    printf("%*s  %s\n", saved->are_measured ? 22 : 0, "", cloth_reason(cloth, report));
     for (int i = 0; i < plan->count; i++) {
         const struct tl_plan_row *row = &plan->rows[i];
-        char cost[16] = "-";
-        if (isfinite(row->predicted_ms))
-            snprintf(cost, sizeof cost, "%.2f", row->predicted_ms);
-        printf("%-12s %-6s %5d %10s  %s\n", row->name, tl_job_action_names[row->action], row->level, cost,
-               row->reason);
+        printf("%-12s %-6s %5d", row->name, tl_job_action_names[row->action], row->level);
+        print_cost(row->predicted_ms);
+        if (saved->ms[i] > 0)
+            printf(" %10.2f %10.2f", saved->ms[i], (double)saved->bytes[i] / MEBIBYTE);
+        else if (saved->are_measured)
+            printf("%22s", "");
+        printf("  %s\n", row->reason);
     }
 }
 
 static void print_memory(const tl_renderer *renderer)
 {
-    const double mebibyte = 1024.0 * 1024.0;
     struct tl_resource_memory rows[TL_RESOURCES_MAX];
     size_t count = tl_renderer_resources(renderer, rows);
     printf("\n%-26s %10s\n", "memory of", "MiB");
     for (size_t i = 0; i < count; i++)
-        printf("%-26s %10.2f\n", rows[i].name, (double)rows[i].bytes / mebibyte);
-    printf("%-26s %10.2f\n", "total", (double)tl_renderer_memory(renderer).total / mebibyte);
+        printf("%-26s %10.2f\n", rows[i].name, (double)rows[i].bytes / MEBIBYTE);
+    printf("%-26s %10.2f\n", "total", (double)tl_renderer_memory(renderer).total / MEBIBYTE);
 }
 
 /* ---- The budget ---- */
@@ -133,9 +177,20 @@ static void add_cloth(cJSON *object, const struct tl_settings *settings, const s
 
 /* ---- The report ---- */
 
-static void add_jobs(cJSON *object, const tl_plan *plan, const tl_plan *drawn)
+static void add_cloth_job(cJSON *jobs, const struct stepped *cloth, const struct tl_cloth_report *report)
 {
-    cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
+    cJSON *job = cJSON_CreateObject();
+    cJSON_AddStringToObject(job, "name", "cloth");
+    cJSON_AddNumberToObject(job, "level", 0);
+    cJSON_AddStringToObject(job, "action", cloth_action(cloth, report));
+    cJSON_AddStringToObject(job, "reason", cloth_reason(cloth, report));
+    cJSON_AddNumberToObject(job, "predicted_ms", cloth->ms);
+    cJSON_AddNumberToObject(job, "work_ms", 0);
+    cJSON_AddItemToArray(jobs, job);
+}
+
+static void add_jobs(cJSON *jobs, const tl_plan *plan, const tl_plan *drawn, const struct savings *saved)
+{
     for (int i = 0; i < plan->count; i++) {
         const struct tl_plan_row *row = &plan->rows[i];
         cJSON *job = cJSON_CreateObject();
@@ -145,6 +200,10 @@ static void add_jobs(cJSON *object, const tl_plan *plan, const tl_plan *drawn)
         cJSON_AddStringToObject(job, "reason", row->reason);
         tl_json_add_number(job, "predicted_ms", row->predicted_ms);
         cJSON_AddNumberToObject(job, "work_ms", drawn->rows[i].work_ms);
+        if (saved->ms[i] > 0) {
+            cJSON_AddNumberToObject(job, "saved_ms", saved->ms[i]);
+            cJSON_AddNumberToObject(job, "saved_bytes", (double)saved->bytes[i]);
+        }
         cJSON_AddItemToArray(jobs, job);
     }
 }
@@ -190,14 +249,16 @@ static void add_back_end(cJSON *object, const struct tl_back_end *back_end)
     tl_json_add_number(visibility, "maps_ms", back_end->maps_ms);
 }
 
-static void print_report(const struct tl_headless *headless, const tl_plan *plan,
-                         const struct budgeted *budgeted, const struct tl_back_end *back_end,
-                         const struct tl_gpu_clocks *clocks, bool json)
+static void print_report(const struct tl_headless *headless, const tl_plan *plan, const struct savings *saved,
+                         const struct stepped *cloth_step, const struct budgeted *budgeted,
+                         const struct tl_back_end *back_end, const struct tl_gpu_clocks *clocks, bool json)
 {
     struct tl_cloth_report report = tl_session_report(headless->session);
     if (json) {
         cJSON *object = cJSON_CreateObject();
-        add_jobs(object, plan, tl_renderer_last_plan(headless->renderer));
+        cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
+        add_cloth_job(jobs, cloth_step, &report);
+        add_jobs(jobs, plan, tl_renderer_last_plan(headless->renderer), saved);
         add_memory(object, headless->renderer);
         if (budgeted->budget_ms > 0)
             add_budget(object, budgeted);
@@ -208,7 +269,7 @@ static void print_report(const struct tl_headless *headless, const tl_plan *plan
         tl_json_print(object);
         return;
     }
-    print_plan(plan);
+    print_plan(plan, saved, cloth_step, &report);
     print_memory(headless->renderer);
     if (budgeted->budget_ms > 0)
         print_budget(budgeted);
@@ -258,6 +319,44 @@ static bool choose_levels(struct tl_headless *headless, int number, struct budge
     return done;
 }
 
+/* Draws the session's frame in full, twice, because the first draw also compiles and allocates, and notes
+ * what the jobs took and hold that `plan` leaves out. */
+static bool measure_savings(struct tl_headless *headless, const struct tl_settings *full, const tl_plan *plan,
+                            struct savings *out, tl_error *error)
+{
+    struct tl_headless whole = *headless;
+    size_t held[TL_JOBS_MAX];
+    whole.settings = *full;
+    whole.renderer = tl_renderer_create(headless->gpu, error);
+    bool done = whole.renderer != NULL;
+    for (int i = 0; done && i < 2; i++) {
+        tl_renderer_forget(whole.renderer);
+        done = tl_headless_draw(&whole, error);
+        const tl_plan *drawn = tl_renderer_last_plan(whole.renderer);
+        for (int job = 0; done && job < drawn->count; job++)
+            if (plan->rows[job].action == TL_JOB_DROP && drawn->rows[job].action == TL_JOB_RUN)
+                out->ms[job] = drawn->rows[job].took_ms;
+    }
+    if (done) {
+        tl_renderer_job_bytes(whole.renderer, out->bytes);
+        tl_renderer_job_bytes(headless->renderer, held);
+        for (int job = 0; job < plan->count; job++)
+            out->bytes[job] -= held[job] < out->bytes[job] ? held[job] : out->bytes[job];
+    }
+    out->are_measured = done;
+    tl_renderer_destroy(&whole.renderer);
+    return done;
+}
+
+/* Steps the cloth to the frame that is planned. */
+static bool step_cloth(struct tl_headless *headless, struct stepped *out, tl_error *error)
+{
+    struct tl_stopwatch watch = tl_stopwatch_start();
+    bool done = tl_session_advance(headless->session, error);
+    *out = (struct stepped){.is_stepped = true, .ms = tl_stopwatch_read(&watch).wall_ms};
+    return done;
+}
+
 static bool calibrate(struct tl_headless *headless, const struct tl_arguments *arguments,
                       struct tl_back_end *out, tl_error *error)
 {
@@ -289,21 +388,26 @@ bool tl_command_plan(const struct tl_arguments *arguments, tl_error *error)
     bool done = calibrate(&headless, arguments, &back_end, error);
     int frame =
         arguments->first_frame == 0 && budgeted.budget_ms > 0 ? BUDGETED_FRAME : arguments->first_frame;
+    const struct tl_settings full = headless.settings;
+    struct savings saved = {0};
+    struct stepped cloth = {0};
     if (done && budgeted.budget_ms > 0)
         done = choose_levels(&headless, frame, &budgeted, error);
     if (done && frame > 0)
         done = tl_session_go_to(headless.session, frame - 1, error) && tl_headless_draw(&headless, error) &&
-               tl_session_advance(headless.session, error);
+               step_cloth(&headless, &cloth, error);
     if (done) {
         tl_frame next = tl_session_frame(headless.session);
         const struct tl_render_settings settings = tl_settings_render(&headless.settings);
         tl_plan plan;
         tl_renderer_plan(headless.renderer, &next, &settings, &plan);
         done = tl_headless_draw(&headless, error); /* so that the memory is what the frame really takes */
+        if (done && budgeted.budget_ms > 0)
+            done = measure_savings(&headless, &full, &plan, &saved, error);
         struct tl_gpu_clocks clocks;
         done = done && tl_gpu_compare_clocks(headless.gpu, &clocks, error);
         if (done)
-            print_report(&headless, &plan, &budgeted, &back_end, &clocks, arguments->json);
+            print_report(&headless, &plan, &saved, &cloth, &budgeted, &back_end, &clocks, arguments->json);
     }
     tl_headless_release(&headless);
     return done;

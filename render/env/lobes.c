@@ -358,3 +358,13 @@ size_t tl_lobes_bytes(const struct tl_lobes *lobes)
         bytes += map_bytes(&lobes->maps[i]);
     return bytes;
 }
+
+size_t tl_lobes_texels(uint32_t exponents)
+{
+    size_t texels = 0;
+    for (int i = 0; i < TL_EXPONENT_COUNT; i++) {
+        const size_t side = (size_t)side_for(tl_exponent(i));
+        texels += exponents & 1u << i ? side * side : 0;
+    }
+    return texels;
+}

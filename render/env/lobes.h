@@ -62,5 +62,7 @@ void tl_lobes_merge(struct tl_lobes *lobes, struct tl_lobes *more);
 vec3s tl_lobes_fetch(const struct tl_lobes *lobes, vec3s direction, struct tl_exponent_blend blend);
 /* Size of all maps. */
 size_t tl_lobes_bytes(const struct tl_lobes *lobes);
+/* Texels of the maps of these exponents, without those of the environment itself. */
+size_t tl_lobes_texels(uint32_t exponents);
 
 #endif

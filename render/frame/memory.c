@@ -80,9 +80,7 @@ static size_t lights_bytes(const struct tl_light_cache *cache)
     return bytes;
 }
 
-/* Counts the bytes of every resource. Those of caches, and of the parts of a member that another job makes,
- * are added to the resource that they serve. */
-static void count_bytes(const struct tl_resources *from, size_t bytes[TL_RESOURCE_COUNT])
+void tl_resources_count(const struct tl_resources *from, size_t bytes[TL_RESOURCE_COUNT])
 {
     for (int i = 0; i < TL_RESOURCE_COUNT; i++)
         bytes[i] = 0;
@@ -104,7 +102,7 @@ static void count_bytes(const struct tl_resources *from, size_t bytes[TL_RESOURC
 size_t tl_resources_list(const struct tl_resources *from, struct tl_resource_memory out[TL_RESOURCES_MAX])
 {
     size_t bytes[TL_RESOURCE_COUNT], count = 0;
-    count_bytes(from, bytes);
+    tl_resources_count(from, bytes);
     for (int i = 0; i < TL_RESOURCE_COUNT; i++)
         if (bytes[i] > 0)
             out[count++] = (struct tl_resource_memory){tl_resource_names[i], bytes[i]};
@@ -115,7 +113,7 @@ struct tl_render_memory tl_resources_memory(const struct tl_resources *from)
 {
     size_t bytes[TL_RESOURCE_COUNT];
     struct tl_render_memory memory = {0};
-    count_bytes(from, bytes);
+    tl_resources_count(from, bytes);
 #define ADD(bit, name, use)                                                                                  \
     memory.use += bytes[bit];                                                                                \
     memory.total += bytes[bit];

@@ -21,12 +21,17 @@ static double texels_of(const struct tl_image_params *image)
     return (double)width * height;
 }
 
-/* Samples fall on points at random: with few of them some points are not seen. */
+/* Samples fall on points at random: with few of them some points are not seen. `points` were, by so many
+ * samples. */
 static double points_seen(double points, double samples_then, double samples)
 {
-    if (!(points > 0) || !(samples_then > 0))
-        return samples;
     return points * (1 - exp(-samples / points)) / (1 - exp(-samples_then / points));
+}
+
+/* Before the first frame: of every vertex one side. */
+static double points_seen_at_first(double vertices, double samples)
+{
+    return vertices > 0 ? points_seen(vertices, INFINITY, samples) : 0;
 }
 
 static double refreshed(const struct tl_light_params *light)
@@ -56,7 +61,8 @@ static bool is_bumpy(const tl_material *material)
     return material->weave || material->normal_map.image;
 }
 
-struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts)
+struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings,
+                                    tl_bits facts, uint32_t exponents)
 {
     const tl_surface *surfaces = frame->surfaces;
     size_t count = frame->surface_count;
@@ -66,8 +72,11 @@ struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts)
                                     .is_bumpy = tl_materials_have(surfaces, count, is_bumpy),
                                     .is_faceted = tl_materials_have(surfaces, count, tl_material_is_faceted),
                                     .fits_vertices = facts & TL_BIT(TL_SCENE_FITS_VERTICES)};
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         counts.triangles += (double)surfaces[i].index_count / 3;
+        counts.vertices += (double)surfaces[i].vertex_count;
+    }
+    counts.exponents = exponents ? exponents : tl_exponents_of(surfaces, count, &settings->detail);
     return counts;
 }
 
@@ -90,12 +99,14 @@ struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources
     double now = texels_of(&settings->image);
     bool at_vertices = counts->fits_vertices && light->ratio_at == TL_RATIO_AT_VERTICES;
     double covered = then > 0 ? covered_then / then * now : COVERED_AT_FIRST * now;
+    double visible = (double)tl_points_visible(resources->points);
     bool shadowed = light->method != TL_METHOD_UNSHADOWED;
     return (struct tl_work_sizes){
         .settings = settings,
         .texels = now,
         .covered = covered,
-        .points = points_seen((double)tl_points_visible(resources->points), covered_then, covered),
+        .points = visible > 0 && covered_then > 0 ? points_seen(visible, covered_then, covered)
+                                                  : points_seen_at_first(counts->vertices, covered),
         .lobes = lobes_of(counts, light),
         .groups = shadowed ? ceil(light->regions / (double)TL_LANES) : 0,
         .refreshed = refreshed(light) * rays_of_rest(resources, at_vertices),
@@ -104,7 +115,8 @@ struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources
         .suns = shadowed ? resources->suns.count : 0,
         .lamps = counts->lamps,
         .triangles = counts->triangles,
-        .new_regions = tl_light_cache_has(&resources->light_cache, light) ? 0 : light->regions};
+        .new_regions = tl_light_cache_has(&resources->light_cache, light) ? 0 : light->regions,
+        .lobe_texels = (double)tl_lobes_texels(counts->exponents)};
 }
 
 /* Pixels that have ids beside those of the samples; 0 where there are as many samples. */
@@ -136,7 +148,7 @@ void tl_work_estimate(const struct tl_work_sizes *s, struct tl_work out[TL_JOB_C
         {1e-4 * s->refreshed * s->triangles, 1e-5 * s->refreshed * side * side}};
     const struct tl_work table[TL_JOB_COUNT] = {
 #define ROW(job, ...) [TL_JOB_NUMBER_##job] = { {__VA_ARGS__} }
-        ROW(lights, 1e-3, s->new_regions > 0 ? 40 : 0, 2 * s->new_regions),
+        ROW(lights, 1e-3, 2e-3 * s->new_regions, 1.6e-6 * s->new_regions * s->lobe_texels),
         [TL_JOB_NUMBER_maps] = shadow_maps,
         [TL_JOB_NUMBER_blur] = shadow_maps,
         ROW(gbuffer, 0.5, 0.039 * sqrt(s->texels), 2e-6 * s->texels, 2e-5 * detail_steps(s) * s->covered),

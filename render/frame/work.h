@@ -29,13 +29,16 @@ struct tl_work_sizes {
     bool is_bumpy;
     /* Lamps that are lit, and suns that are separate from the regions. */
     double lamps, suns;
-    /* Regions whose light is not cached from an earlier frame; 0: all are. */
-    double new_regions;
+    /* Regions whose light is not cached from an earlier frame; 0: all are. And texels of the lobes that it is
+     * computed for. */
+    double new_regions, lobe_texels;
 };
 
 /* Counts of a frame, kept because its surfaces may be freed after the draw. */
 struct tl_work_counts {
-    double triangles;
+    double triangles, vertices;
+    /* Lobes that the materials need, as bits of env/lobes.h. */
+    uint32_t exponents;
     /* Lamps that are lit. */
     int lamps;
     /* Ratios at vertices could light the pixels. */
@@ -44,8 +47,10 @@ struct tl_work_counts {
     bool is_glossy, is_faceted, is_bumpy;
 };
 
-/* `facts` are the frame's (facts.h). */
-struct tl_work_counts tl_work_count(const tl_frame *frame, tl_bits facts);
+/* `facts` are the frame's (facts.h). `exponents` are those that an earlier frame needed; 0: they are found
+ * out. */
+struct tl_work_counts tl_work_count(const tl_frame *frame, const struct tl_render_settings *settings,
+                                    tl_bits facts, uint32_t exponents);
 /* `resources` and `counts` are those of the last frame; `settings` are those of the next. */
 struct tl_work_sizes tl_work_estimate_sizes(const struct tl_resources *resources,
                                             const struct tl_work_counts *counts,
