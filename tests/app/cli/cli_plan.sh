@@ -56,6 +56,28 @@ for control in tight["controls"]: # much error is not accepted for little time, 
     assert control["next_error"] is None or control["next_error"] < 0, control
 assert any(k["level"] > 0 for k in tight["controls"][1:])
 END
+# What was never measured depends on the scene: points on its vertices, lights on the lobes of its materials.
+first=${fast/--quiet/--quiet --set light.visibility=rays}
+$TOILE plan $first --fabric satin >satin.json
+$TOILE plan $first --garment sheet --avatar none --fabric none >matt.json
+check "unmeasured costs" python3 - <<'END'
+import json
+satin, matt = ({j["name"]: j for j in json.load(open(f))["jobs"]} for f in ("satin.json", "matt.json"))
+assert satin["cloth"]["action"] == "reuse", satin["cloth"]
+assert satin["lights"]["predicted_ms"] > 10 * matt["lights"]["predicted_ms"] > 0
+for job in ("points", "trace"):
+    assert satin[job]["predicted_ms"] > 1.2 * matt[job]["predicted_ms"] > 0, (job, satin[job], matt[job])
+END
+# What levels leave out says what it took when nothing was left out.
+$TOILE plan ${first/64x48/480x270} --fabric satin --budget 1 >levels.json
+check "savings" python3 - <<'END'
+import json
+jobs = {j["name"]: j for j in json.load(open("levels.json"))["jobs"]}
+for job in ("gbuffer", "samples", "compose"):
+    assert jobs[job]["action"] == "drop" and jobs[job]["saved_ms"] > 0 and jobs[job]["saved_bytes"] > 0, jobs[job]
+assert not any("saved_ms" in j for j in jobs.values() if j["action"] != "drop")
+assert jobs["cloth"]["action"] == "run" and jobs["cloth"]["predicted_ms"] > 0, jobs["cloth"]
+END
 check "text" grep -q "levels for 50 ms" <($TOILE plan ${fast%--json} --budget 50)
 fast=${fast/--json/--fabric cotton_plain --budget 50}
 check "rays without a measurement" grep -q "^visibility: rays: GL runs on the CPU" <($TOILE plan $fast)
