@@ -1,25 +1,16 @@
 #include "render/brdf/angles.h"
 
+#include "render/brdf/facets.h"
+
 #include <math.h>
 
 #define PI ((float)M_PI)
 
-/* An arbitrary unit tangent. */
-static vec3s any_tangent(vec3s n)
-{
-    vec3s axis = fabsf(n.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}};
-    return glms_vec3_normalize(glms_vec3_cross(axis, n));
-}
-
 struct tl_brdf_frame tl_brdf_frame_make(vec3s normal, vec3s tangent, float handedness, float rotation)
 {
-    vec3s t = glms_vec3_sub(tangent, glms_vec3_scale(normal, glms_vec3_dot(normal, tangent)));
-    float length = glms_vec3_norm(t);
-    t = length > 1e-6f ? glms_vec3_scale(t, 1 / length) : any_tangent(normal);
-    vec3s left = glms_vec3_cross(normal, t);
-    t = glms_vec3_add(glms_vec3_scale(t, cosf(rotation)), glms_vec3_scale(left, sinf(rotation)));
-    vec3s b = glms_vec3_scale(glms_vec3_cross(normal, t), handedness < 0 ? -1.0f : 1.0f);
-    return (struct tl_brdf_frame){normal, t, b};
+    const vec3s t = thread_direction(normal, tangent, cosf(rotation), sinf(rotation));
+    return (struct tl_brdf_frame){normal, t,
+                                  glms_vec3_scale(glms_vec3_cross(normal, t), handedness < 0 ? -1.0f : 1.0f)};
 }
 
 struct tl_brdf_angles tl_brdf_angles_of(const struct tl_brdf_frame *frame, vec3s l, vec3s v)

@@ -221,13 +221,10 @@ static float torrance_sparrow(const struct tl_brdf *brdf, const struct tl_brdf_a
 
 static float ward(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
 {
-    float u = brdf->gloss.width_weft, v = brdf->gloss.width_warp;
-    float x = at->h.x / (u * at->h.z), y = at->h.y / (v * at->h.z);
-    float facets = expf(-(x * x + y * y)) / (4 * PI * u * v);
-    if (brdf->gloss.ward != TL_WARD_BOUNDED)
-        return facets * sqrtf(at->cos_a / at->cos_b);
-    float steep = at->cos_t * at->h.z * at->h.z;
-    return facets > 0 ? facets * at->cos_a / (steep * steep) : 0;
+    const float u = brdf->gloss.width_weft, v = brdf->gloss.width_warp;
+    const float steep = at->cos_t * at->h.z * at->h.z;
+    return ward_lobe(brdf->gloss.ward == TL_WARD_BOUNDED, at->h.x / at->h.z, at->h.y / at->h.z, steep * steep,
+                     at->cos_a, at->cos_b, u * u, v * v, 0);
 }
 
 static float half_power(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)

@@ -61,7 +61,7 @@ struct tl_brdf {
  * add. Widths are clamped to [1e-3, 1]. Inputs that are not finite become 0. */
 struct tl_brdf tl_brdf_of(const tl_material *material, vec3s f0, float glossiness);
 /* The same where unresolved bumps have different spreads along u and v: WARD's squared widths change by
- * `widening` (tl_bump_statistics_widening, _shear) along u, along v and in their product instead. They are
+ * `widening` (bumps_widening) along u, along v and in their product instead. They are
  * the entries of a symmetric matrix, whose axes the widths then follow [Olano and Baker 2010]. `handedness`:
  * of the surface's tangents, which orients a rotated material's threads; its sign counts. */
 struct tl_brdf tl_brdf_bumped(const tl_material *material, vec3s f0, float glossiness, float handedness,

@@ -1,6 +1,9 @@
 // Facets whose slopes are Gaussian, and the lobes of a fit that stand for them (lobe_fit.h): their places, the
 // quadrature for their albedo, and Ward's facets. Written once for GLSL and C (facets.h); scalar arithmetic without
 // branches, which C evaluates for many lanes at a time. Directions are in the frame (tangent, bitangent, normal).
+#ifdef GL_core_profile
+#include "vectors.glsl"
+#endif
 #ifndef TERM
 #define TERM
 #endif
@@ -22,6 +25,22 @@ TERM float schlick_share(float cosine)
 TERM float schlick_reflectance(float f0, float share)
 {
     return f0 + (min(50.0f * f0, 1.0f) - f0) * share;
+}
+
+TERM vec3 schlick_colour(vec3 f0, float cosine)
+{
+    float share = schlick_share(cosine);
+    return vec3(schlick_reflectance(f0.x, share), schlick_reflectance(f0.y, share), schlick_reflectance(f0.z, share));
+}
+
+// Fresnel's equations for unpolarised light at one interface [Born and Wolf 1999, 1.5.2]; `cosine` from 0 to 1. An index
+// below 1 reflects totally beyond the critical angle.
+TERM float fresnel_dielectric(float index, float cosine)
+{
+    float inside_squared = index * index - (1.0f - cosine * cosine);
+    float g = sqrt(max(inside_squared, 0.0f)); // index times the refracted ray's cosine
+    float s = (cosine - g) / (cosine + g), p = (index * index * cosine - g) / (index * index * cosine + g);
+    return inside_squared > 0.0f && cosine > 0.0f ? clamp((s * s + p * p) / 2.0f, 0.0f, 1.0f) : 1.0f;
 }
 
 // ---- Widths ----
@@ -56,6 +75,18 @@ TERM FacetWidening facet_widening(float cosine, float sine, float handedness, fl
     widening.warp = ss * along_u + cc * along_v - 2.0f * cs * both;
     widening.product = cs * (along_v - along_u) + (cc - ss) * both;
     return widening;
+}
+
+// The direction of threads: a unit tangent at right angles to the unit normal, turned counter-clockwise as seen along
+// it. Any tangent where the given one is zero.
+TERM vec3 thread_direction(vec3 n, vec3 tangent, float cosine, float sine)
+{
+    vec3 t = vec3_subtract(tangent, vec3_scale(n, dot(n, tangent)));
+    bool is_given = dot(t, t) > 1e-12f, is_x = abs(n.x) < 0.6f;
+    t = vec3(is_given ? t.x : is_x ? 0.0f : n.z, is_given ? t.y : is_x ? -n.z : 0.0f, // else: an axis x n
+             is_given ? t.z : is_x ? n.y : -n.x);
+    t = vec3_scale(t, inversesqrt(dot(t, t)));
+    return vec3_add(vec3_scale(t, cosine), vec3_scale(cross(n, t), sine));
 }
 
 // The principal axes of facets whose slopes are correlated: squared widths along them, and the angle from x to the
@@ -316,14 +347,16 @@ TERM WardSlope ward_slope(bool is_bounded, float x, float y, float z, float slop
     return slope;
 }
 
-// f_r cos a without Fresnel's term. (x, y, z): the sum of the unit vectors to light and viewer, `square` long squared;
-// cosines a and b of light and viewer; squared widths and their product.
-TERM float ward_lobe(bool is_bounded, float x, float y, float z, float square, float cos_a, float cos_b, float weft,
+// f_r cos a without Fresnel's term, of facets with these squared widths and their product. (slope_x, slope_y): of the
+// facet halfway between light and viewer, whose cosines are a and b. `steep`: the squared cosine of facet and viewer
+// times the fourth power of that of facet and normal.
+TERM float ward_lobe(bool is_bounded, float slope_x, float slope_y, float steep, float cos_a, float cos_b, float weft,
                      float warp, float product)
 {
     float determinant = max(weft * warp - product * product, 1e-12f);
-    float published = sqrt(cos_a / cos_b), bounded = 4.0f * cos_a * square / (z * z * z * z);
-    float facets = exp2(-1.44269504f * (x * x * warp - 2.0f * x * y * product + y * y * weft) / (determinant * z * z));
-    float value = facets * (is_bounded ? bounded : published) / (4.0f * 3.14159265f * sqrt(determinant));
+    float published = sqrt(cos_a / cos_b), bounded = cos_a / max(steep, 1e-30f);
+    float squares = slope_x * slope_x * warp - 2.0f * slope_x * slope_y * product + slope_y * slope_y * weft;
+    float value = exp2(-1.44269504f * squares / determinant) * (is_bounded ? bounded : published) /
+                  (4.0f * 3.14159265f * sqrt(determinant));
     return cos_a > 0.0f && cos_b > 0.0f ? value : 0.0f;
 }

@@ -14,23 +14,14 @@ float tl_fresnel_schlick(float f0, float cosine)
     return schlick_reflectance(f0, schlick_share(clamp01(cosine)));
 }
 
-/* Fresnel's equations [Born and Wolf 1999, 1.5.2]. An index below 1 reflects totally beyond the critical
- * angle. */
 float tl_fresnel_dielectric(float index, float cosine)
 {
-    float c = clamp01(cosine), inside_squared = index * index - (1 - c * c);
-    if (!(inside_squared > 0))
-        return 1;
-    float g = sqrtf(inside_squared); /* index times the refracted ray's cosine */
-    if (c <= 0)
-        return 1;
-    float s = (c - g) / (c + g), p = (index * index * c - g) / (index * index * c + g);
-    return clamp01((s * s + p * p) / 2);
+    return fresnel_dielectric(index, clamp01(cosine));
 }
 
-/* The same with a complex index [Born and Wolf 1999, 14.4], in the real form: (p + iq)^2 = (n + ik)^2 -
- * sin^2. Computed in double, because n^2 + k^2 of metals is large compared with the differences taken from
- * it. */
+/* Fresnel's equations with a complex index [Born and Wolf 1999, 14.4], in the real form: (p + iq)^2 = (n +
+ * ik)^2 - sin^2. Computed in double, because n^2 + k^2 of metals is large compared with the differences taken
+ * from it. */
 float tl_fresnel_conductor(float index, float extinction, float cosine)
 {
     double c = (double)clamp01(cosine), s2 = 1 - c * c, n = (double)index, k = (double)extinction;

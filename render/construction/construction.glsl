@@ -60,20 +60,3 @@ void sew(uint number, vec2 uv, vec2 across, vec2 down)
     if (dart.near > 0.0)
         sewn = construction_add(sewn, dart, dx.x, dx.y, dy.x, dy.y);
 }
-
-Bumps sewn_bumps()
-{
-    vec3 normal = normalize(vec3(-sewn.slope_x, -sewn.slope_y, 1.0));
-    vec3 spread = vec3(sewn.spread_x, sewn.spread_y, sewn.spread_xy);
-    return Bumps(normal, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0)));
-}
-
-vec3 sewn_diffuse(vec3 colour)
-{
-    return mix(colour, construction_thread, min(sewn.thread, 1.0)) * max(1.0 - sewn.shade, 0.0);
-}
-
-vec3 sewn_specular(vec3 f0)
-{
-    return mix(f0, min(f0, CONSTRUCTION_THREAD_F0), min(sewn.thread, 1.0)) * max(1.0 - sewn.shade, 0.0);
-}

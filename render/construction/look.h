@@ -5,7 +5,6 @@
 
 #include "assets/topology/borders.h"
 #include "render/construction/terms.h"
-#include "render/detail/bump_statistics.h"
 
 /* `triangle` of the surface; `across` and `down`: how UV changes from sample to sample. */
 static inline ConstructionLook tl_construction_look(const struct tl_construction_tables *tables,
@@ -31,22 +30,6 @@ static inline ConstructionLook tl_construction_look(const struct tl_construction
             look = construction_add(tables, look, *places[i], scale * across.x, -scale * across.y,
                                     scale * down.x, -scale * down.y);
     return look;
-}
-
-static inline struct tl_bump_statistics tl_construction_bumps(const ConstructionLook *look)
-{
-    vec3s normal = glms_vec3_normalize((vec3s){{-look->slope_x, -look->slope_y, 1}});
-    return (struct tl_bump_statistics){
-        .normal = normal,
-        .spread = {look->spread_x, look->spread_y, look->spread_xy},
-        .length = sqrtf(tl_minf(tl_maxf(1 - look->spread_x - look->spread_y, 0.0025f), 1))};
-}
-
-/* A channel of the colours below: of the cloth, with the thread's over it where there is thread, in shade. */
-static inline float tl_construction_colour(const ConstructionLook *look, float cloth, float thread)
-{
-    float share = tl_minf(look->thread, 1);
-    return (cloth + share * (thread - cloth)) * tl_maxf(1 - look->shade, 0);
 }
 
 #endif

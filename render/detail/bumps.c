@@ -14,13 +14,6 @@ vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v)
     return area != 0 ? direction_or(sum, normal) : normal;
 }
 
-vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped, vec3s fallback)
-{
-    vec3s bitangent = glms_vec3_scale(glms_vec3_cross(normal, tangent), handedness);
-    vec3s sum = glms_vec3_add(glms_vec3_scale(tangent, mapped.x), glms_vec3_scale(bitangent, mapped.y));
-    return direction_or(glms_vec3_add(sum, glms_vec3_scale(normal, mapped.z)), fallback);
-}
-
 bool tl_uv_derivatives(const vec3s positions[3], const vec2s uvs[3], vec3s *p_u, vec3s *p_v)
 {
     vec3s p = glms_vec3_sub(positions[1], positions[0]), q = glms_vec3_sub(positions[2], positions[0]);

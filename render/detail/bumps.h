@@ -1,5 +1,5 @@
-/* Bumped normals: Blinn's form and the shorter forms that approximate it [Wimmer n.d.]. In any space; pure;
- * threads: any. */
+/* Bumped normals by Blinn's form; bumps_terms.glsl has the shorter one that approximates it. In any space;
+ * pure; threads: any. */
 #ifndef TOILE_RENDER_DETAIL_BUMPS_H
 #define TOILE_RENDER_DETAIL_BUMPS_H
 
@@ -11,11 +11,6 @@
  * down, mirrored UVs) its sign is applied to the offsets. Returns `normal` where the surface has no such
  * derivatives. */
 vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v);
-
-/* The square patch approximation: x tangent + y bitangent + z normal, normalised, for a tangent-space normal
- * (-h_x, -h_y, 1), or a multiple of it, with slopes in metres per metre. `handedness` as in MikkTSpace.
- * Returns `fallback` where the sum has no direction. */
-vec3s tl_patch_normal(vec3s normal, vec3s tangent, float handedness, vec3s mapped, vec3s fallback);
 
 /* The change of a point with its UV within a triangle: the derivatives of the point by u and by v,
  * metres per UV unit. False, and zeros, where the UVs span no area. */

@@ -3,7 +3,7 @@
 // Tangent space: x along u, y along minus v, z outwards. The back face sees the same sheet from below, with its heights
 // negated.
 #include "surface.glsl"
-#include "detail_terms.glsl"
+#include "bumps_terms.glsl"
 
 #ifndef DETAIL_MODE
 #define DETAIL_MODE 0
@@ -16,8 +16,6 @@
 #define DETAIL_RELIEF 4
 #define DETAIL_SHADOW_HORIZON 1
 #define DETAIL_SHADOW_RELIEF 2
-#define DETAIL_TOKSVIG 1
-#define DETAIL_LEAN 2
 
 // Bits of detail_flags: the maps that the part has, and the axes along which its field does not repeat.
 const int DETAIL_OWN_MOMENTS = 1, DETAIL_WEAVE_MOMENTS = 2, DETAIL_HEIGHTS = 4, DETAIL_HORIZONS = 8;
@@ -92,7 +90,7 @@ float detail_level(vec2 uv)
 {
     vec2 place = detail_field_uv(uv) * vec2(textureSize(detail_heights, 0));
     vec2 across = dFdx(place), down = dFdy(place);
-    return 0.5 * log2(max(max(dot(across, across), dot(down, down)), 1.0));
+    return texel_level(dot(across, across), dot(down, down));
 }
 
 // Clearance of a ray at height `rise` (m over the mesh) above the field. `along` is the UV per metre of height.
@@ -151,7 +149,7 @@ float detail_facing_level(float pixel_m)
 {
     vec2 size = vec2(textureSize(detail_heights, 0)) / detail_range.z;
     vec2 u = vec2(detail_rows[0].x, detail_rows[1].x) * size, v = vec2(detail_rows[0].y, detail_rows[1].y) * size;
-    return 0.5 * log2(max(max(dot(u, u), dot(v, v)) * pixel_m * pixel_m, 1.0));
+    return texel_level(dot(u, u) * pixel_m * pixel_m, dot(v, v) * pixel_m * pixel_m);
 }
 
 // A view ray over a curved surface.
@@ -388,7 +386,7 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
         vec2 texels = vec2(textureSize(detail_heights, 0));
         mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
         vec2 dx = turned * across * texels, dy = turned * down * texels;
-        float level = 0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1.0));
+        float level = texel_level(dot(dx, dx), dot(dy, dy));
         float stands = side * textureLod(detail_heights, detail_field_uv(place.uv), level).r;
         float from = stands + DETAIL_LIFT * (bounds.y - bounds.x);
         float rise = min(bounds.y - from, DETAIL_REACH / max(length(turned * along), 1e-6));
@@ -404,56 +402,6 @@ float detail_shadow(DetailPlace place, vec3 light, float side, vec2 across, vec2
 }
 
 #endif
-
-// ---- Averaged normals ----
-
-// Statistics of averaged normals: mean tangent-space normal, variances of its slopes along x and y and their
-// covariance, length of the mean.
-struct Bumps {
-    vec3 normal;
-    vec3 spread;
-    float mean_length;
-};
-
-// Statistics of averages of (x, y), their squares and x y. `scale`: of slopes along u and v.
-Bumps detail_bumps(vec2 first, vec2 squares, float product, vec2 scale)
-{
-    float z = sqrt(max(1.0 - squares.x - squares.y, 0.0));
-    vec3 mean = vec3(scale * first, z);
-    vec2 variance = max(squares - first * first, 0.0) * scale * scale;
-    vec3 spread = vec3(variance, scale.x * scale.y * (product - first.x * first.y));
-    return Bumps(mean, spread, sqrt(clamp(1.0 - spread.x - spread.y, 0.0025, 1.0))); // neglecting the variance of z
-}
-
-// Roughness 1 - g over averaged normals; `view` is in tangent space.
-float detail_rough(float rough, Bumps bumps, vec3 view)
-{
-#if DETAIL_MINIFY == DETAIL_TOKSVIG
-    float variance = detail_variance(bumps.mean_length);
-    return detail_widened(rough, variance, variance, 1.0);
-#elif DETAIL_MINIFY == DETAIL_LEAN
-    float square = dot(view.xy, view.xy);
-    vec3 along = square > 1e-12 ? vec3(view.xy * view.xy, 2.0 * view.x * view.y) / square : vec3(0.5, 0.5, 0.0);
-    vec3 across = vec3(along.yx, -along.z);
-    return detail_widened(rough, dot(bumps.spread, along), dot(bumps.spread, across), abs(view.z));
-#else
-    return rough;
-#endif
-}
-
-// The sum of maps and averaged normals in squared widths of facets along u and v, and to the product of both: a
-// symmetric matrix.
-vec3 detail_widenings(float own_rough, float rough, Bumps bumps)
-{
-#if DETAIL_MINIFY == DETAIL_TOKSVIG
-    return vec3(vec2(detail_widening(own_rough, rough, detail_variance(bumps.mean_length))), 0.0);
-#elif DETAIL_MINIFY == DETAIL_LEAN
-    return vec3(detail_widening(own_rough, rough, bumps.spread.x), detail_widening(own_rough, rough, bumps.spread.y),
-                2.0 * bumps.spread.z);
-#else
-    return vec3(vec2(detail_widening(own_rough, rough, 0.0)), 0.0);
-#endif
-}
 
 #ifndef VERTEX_STAGE
 // The change of a point with its UV within a triangle: the derivatives of the point by u and by v, in metres; false

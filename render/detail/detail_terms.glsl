@@ -149,3 +149,10 @@ TERM float detail_slice_over(float a, float b, float horizon)
     float turned = a < 0.0f ? -a / sqrt(max(a * a + b * b, 1e-12f)) : 0.0f;
     return detail_slice(a, b, 1.0f) - detail_slice(a, b, clamp(max(horizon, turned), 0.0f, 1.0f));
 }
+
+// The level of a map by the squares of the steps to the next sample across and down, in texels; 0 where a texel is
+// larger than a sample.
+TERM float texel_level(float across, float down)
+{
+    return 0.5f * log2(max(max(across, down), 1.0f));
+}

@@ -1,11 +1,12 @@
 #include "render/env/exponent.h"
 
+#include "render/env/lobes_fetch.h"
+
 #include <math.h>
 
 float tl_lobe_exponent(float glossiness)
 {
-    float matt = 1 - fminf(fmaxf(glossiness, 0), 1);
-    return matt > 1e-6f ? 1 / matt : 1e6f;
+    return lobe_exponent(glossiness);
 }
 
 float tl_lobe_cosine(float exponent, float cosine)

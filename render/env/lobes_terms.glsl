@@ -1,7 +1,35 @@
 // Fetches from the maps of lobes (lobes.h), for GLSL and C.
+#ifdef GL_core_profile
+#include "vectors.glsl"
+#endif
 #ifndef TERM
 #define TERM
 #endif
+
+// A direction of the world in an environment that is turned by its yaw about +Y; with -sine back.
+TERM vec3 turned_direction(float cosine, float sine, vec3 d)
+{
+    return vec3(cosine * d.x - sine * d.z, d.y, sine * d.x + cosine * d.z);
+}
+
+// The viewer mirrored at a surface. Where an interpolated normal turns away from the viewer it passes straight on instead
+// of flipping.
+TERM vec3 mirrored_viewer(vec3 n, vec3 viewer)
+{
+    return vec3_subtract(vec3_scale(n, 2.0f * max(dot(n, viewer), 0.0f)), viewer);
+}
+
+// ... unit.
+TERM vec3 mirror_direction(vec3 n, vec3 viewer)
+{
+    return direction_or(mirrored_viewer(n, viewer), n);
+}
+
+// Exponent s = 1 / (1 - g) of glossiness g, from 1 to 1e6.
+TERM float lobe_exponent(float glossiness)
+{
+    return 1.0f / max(1.0f - max(min(glossiness, 1.0f), 0.0f), 1e-6f);
+}
 
 // A point of the octahedron unfolded about +Y, in [0, 1]: that of a direction of any length. Below the horizon
 // 1 - |v| = |u| + |y|.

@@ -110,39 +110,35 @@ void main()
         discard;
     uint number = texelFetch(numbers, int(first_triangle) + gl_PrimitiveID).r;
     sew(number, place.uv, across, down);
-    vec3 n = side * smooth_normal;
-    float rough = 1.0 - glossiness(place.uv);
-#ifdef FRAMES
-    float own_rough = 1.0 - material_scalars.x;
-    out_widening = vec4(vec2(detail_widening(own_rough, rough, 0.0)), 0.0, 0.0);
-#endif
-    vec3 kd = diffuse(colour.rgb, place.uv);
+    SurfaceColours colours = colours_at(colour.rgb, place.uv);
+    vec3 kd = colours.diffuse;
 #ifndef FRAMES
     vec3 of_threads = min(kd * (thread_gain - 1.0), 1.0 - kd);
     kd += of_threads;
 #endif
+    float wider = detail_widening(1.0 - material_scalars.x, 1.0 - colours.glossiness, 0.0);
+    SurfaceShape shape = SurfaceShape(side * smooth_normal, colours.glossiness, vec3(wider, wider, 0.0), 1.0);
     if (has_bumps(tangent)) {
         Bumps bumps = bumps_at(place.uv);
+        shape = surface_shape(DETAIL_MINIFY, bumps, base_normal, smooth_normal, tangent.xyz, tangent.w, side,
+                              direction_or(eye - point, smooth_normal), material_scalars.x, colours.glossiness);
 #if DETAIL_MODE == DETAIL_BLINN
-        n = side * (detail_range.z > 0.0 ? detail_blinn(bumps.normal, smooth_normal, point, uv)
-                                         : bent_normal(bumps.normal, base_normal, tangent, smooth_normal));
-#else
-        n = side * bent_normal(bumps.normal, base_normal, tangent, smooth_normal);
+        if (detail_range.z > 0.0)
+            shape.normal = side * detail_blinn(bumps.normal, smooth_normal, point, uv);
 #endif
-#ifdef FRAMES
-        out_widening = vec4(detail_widenings(own_rough, rough, bumps), 0.0);
-#endif
-        rough = detail_rough(rough, bumps, view);
-        kd *= detail_open(bumps.mean_length);
+        kd *= shape.open;
     }
+#ifdef FRAMES
+    out_widening = vec4(shape.widening, 0.0);
+#endif
+    float rough = 1.0 - shape.glossiness;
     vec2 horizon = octahedral(side * smooth_normal);
-    vec3 v = direction_or(eye - point, n);
-    n = facing_normal(n, v);
+    vec3 v = direction_or(eye - point, shape.normal), n = facing_normal(shape.normal, v);
     // The mean normal's Fresnel term: facets that turn away reflect more, but what lies below the surface's horizon.
-    vec3 ks = schlick(specular_f0(place.uv), dot(n, v));
+    vec3 ks = schlick_colour(colours.f0, dot(n, v));
 #ifdef FRAMES
     if ((map_flags & FLAG_FACETED) != 0)
-        ks = specular_f0(place.uv); // a facet's Fresnel term is not the normal's
+        ks = colours.f0; // a facet's Fresnel term is not the normal's
 #else
     if (blends_lobes)
         ks = min(ks + of_threads, vec3(1.0)); // the light of threads is their colour all the way to the mirror

@@ -29,7 +29,8 @@
 #define sqrt        sqrtf
 #define cross       glms_vec3_cross
 #define dot         glms_vec3_dot
-/* Results that are arrays. */
+/* Of parameters that are arrays. */
+#define in const
 #define out
 /* A type; and, with what follows in brackets, its value. */
 #define float(x) ((float)(x))

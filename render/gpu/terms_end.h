@@ -17,6 +17,7 @@
 #undef sqrt
 #undef cross
 #undef dot
+#undef in
 #undef out
 #undef float
 #undef int

@@ -6,6 +6,7 @@
 #include "render/brdf/lobe_fit.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
+#include "render/env/lobes_fetch.h"
 #include "render/light/seen_lobes_internal.h"
 
 #include <math.h>
@@ -54,15 +55,13 @@ struct block {
 /* World direction -> direction in the environment, which is turned by its yaw about +Y. */
 TL_INLINE vec3s into_environment(const struct block *block, vec3s d)
 {
-    float c = block->turn_cosine, s = block->turn_sine;
-    return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
+    return turned_direction(block->turn_cosine, block->turn_sine, d);
 }
 
 /* ... and back. */
 TL_INLINE vec3s out_of_environment(const struct block *block, vec3s d)
 {
-    float c = block->turn_cosine, s = block->turn_sine;
-    return (vec3s){{c * d.x + s * d.z, d.y, c * d.z - s * d.x}};
+    return turned_direction(block->turn_cosine, -block->turn_sine, d);
 }
 
 TL_INLINE void add_weights(float sums[TL_LANES], const float power[TL_LANES], const float weights[TL_LANES])
@@ -313,10 +312,9 @@ static void add_coat(const struct block *block, const tl_sample *sample, const t
                      struct lobes *lobes)
 {
     vec3s n = into_environment(block, sample->smooth);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * viewed_by(lobes, n)), lobes->viewer);
     float share = lobes->fibres.under * material->coat * tl_coat_reflectance(viewed_by(lobes, n));
     lobes->items[lobes->count++] =
-        (struct tl_fitted_lobe){.direction = glms_vec3_normalize(mirror),
+        (struct tl_fitted_lobe){.direction = mirror_direction(n, lobes->viewer),
                                 .exponent = tl_lobe_exponent(material->coat_glossiness),
                                 .weight = {{share, share, share}}};
 }
@@ -332,7 +330,7 @@ static void split_material_lobes(const struct block *block, const tl_material *m
     lobes->fuzz = material->fuzz;
     lobes->fibres.under = 1;
     if (lobes->has_fuzz) {
-        const vec3s axis = tl_fuzz_axis(&material->fuzz, sample->smooth, sample->normal);
+        const vec3s axis = fuzz_axis(material->fuzz.follow, sample->smooth, sample->normal);
         lobes->axis = into_environment(block, axis);
         lobes->fibres = tl_fuzz_lobes_of(&material->fuzz, glms_vec3_dot(axis, view));
     }
@@ -394,7 +392,7 @@ TL_INLINE void see_fibres(const struct block *block, size_t index, const struct 
         for (int lane = 0; lane < TL_LANES; lane++) {
             float cosine = group->x[lane] * n.x + group->y[lane] * n.y + group->z[lane] * n.z;
             float mean = group->sine[lane] * disc_height(cosine * group->inverse_sine[lane]);
-            open[lane] = tl_fuzz_lobes_at(lobes->fibres.weights, mean);
+            open[lane] = fuzz_lobes_at(lobes->fibres.weights, mean);
             visible[lane] = open[lane] * visibility[lane];
         }
         for (int lane = 0; is_leaning && lane < TL_LANES; lane++) {
@@ -481,7 +479,7 @@ TL_INLINE vec3s light_of_lobes(const struct block *block, size_t index, const st
 static vec3s exact_fibres(const struct block *block, const struct lobes *lobes)
 {
     vec3s light = {{0, 0, 0}};
-    for (int k = 0; k < TL_FUZZ_POWERS; k++) {
+    for (int k = 0; k < FUZZ_POWERS; k++) {
         const struct tl_exponent_blend power = {.index = TL_FUZZ_INDEX(k)};
         vec3s arriving = tl_lobes_fetch(block->request->lobes, lobes->axis, power);
         light = glms_vec3_add(light, glms_vec3_scale(arriving, lobes->fibres.weights[k]));
@@ -493,7 +491,7 @@ static vec3s exact_fibres(const struct block *block, const struct lobes *lobes)
 static vec3s fibres_bounced(const struct lobes *lobes, const struct tl_bounced *bounced)
 {
     float albedo = 0;
-    for (int k = 0; k < TL_FUZZ_POWERS; k++)
+    for (int k = 0; k < FUZZ_POWERS; k++)
         albedo += lobes->fibres.weights[k];
     return glms_vec3_scale(bounced->arrives, albedo);
 }
@@ -519,8 +517,8 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
         float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
         float open = shadowed && visibility ? above * visibility[index] : 1;
         light = glms_vec3_add(
-            light, glms_vec3_scale(sun->power, open * tl_fuzz_value(&lobes->fuzz, lobes->axis, sun->direction,
-                                                                    lobes->viewer)));
+            light, glms_vec3_scale(sun->power, open * fuzz_value(lobes->fuzz.roughness, lobes->axis,
+                                                                 sun->direction, lobes->viewer)));
     }
     if (by_occlusion)
         light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));

@@ -1,7 +1,6 @@
 // The whole environment through exact cosine lobes (env/lobes.h), one octahedral map an exponent, stacked in a texture.
 #include "exponents.glsl"
 #include "lobes_terms.glsl"
-#include "vectors.glsl"
 
 layout(location = 8) uniform int last_exponent;
 layout(location = 9) uniform vec2 lobe_places[48]; // by exponent: first row, texels a side without the border

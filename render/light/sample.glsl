@@ -1,4 +1,6 @@
 // A sample of the G-buffer as the light passes see it.
+#include "lobes_terms.glsl"
+
 layout(location = 1) uniform vec3 eye;
 layout(location = 2) uniform vec2 environment_turn; // cosine and sine of the environment's yaw
 
@@ -17,11 +19,9 @@ struct Sample {
     vec3 kd, ks;
 };
 
-// World direction -> direction in the environment, which is turned by its yaw about +Y.
 vec3 into_environment(vec3 d)
 {
-    return vec3(environment_turn.x * d.x - environment_turn.y * d.z, d.y,
-                environment_turn.y * d.x + environment_turn.x * d.z);
+    return turned_direction(environment_turn.x, environment_turn.y, d);
 }
 
 // The octahedron of gbuffer.frag, folded.
@@ -41,9 +41,7 @@ Sample read_sample(ivec2 texel)
     vec4 specular = texelFetch(speculars, texel, 0);
     vec3 to_eye = eye - point.xyz;
     vec3 v = to_eye * inversesqrt(max(dot(to_eye, to_eye), 1e-30));
-    // The mirror direction r, where an interpolated normal turns away from the viewer, passes straight on instead of
-    // flipping.
-    vec3 r = 2.0 * max(dot(normal.xyz, v), 0.0) * normal.xyz - v;
-    return Sample(point.xyz, point.w, normal.xyz, 1.0 - normal.w, from_octahedral(vec2(diffuse.a, specular.a)), r, diffuse.rgb,
+    return Sample(point.xyz, point.w, normal.xyz, 1.0 - normal.w, from_octahedral(vec2(diffuse.a, specular.a)),
+                  mirrored_viewer(normal.xyz, v), diffuse.rgb,
                   specular.rgb);
 }

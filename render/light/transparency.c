@@ -109,7 +109,7 @@ static tl_sample other_side(const tl_sample *sample, const tl_material *material
 {
     vec3s view = glms_vec3_normalize(glms_vec3_sub(eye, sample->point));
     float facing = fmaxf(glms_vec3_dot(sample->smooth, view), 0);
-    const vec3s fibres = tl_fuzz_axis(&material->fuzz, sample->smooth, sample->normal);
+    const vec3s fibres = fuzz_axis(material->fuzz.follow, sample->smooth, sample->normal);
     float base = tl_fuzz_under(material, glms_vec3_dot(fibres, view)) *
                  (1 - material->coat * tl_coat_reflectance(facing));
     tl_sample other = *sample;

@@ -1,6 +1,7 @@
 // The reflectance models of render/brdf/brdf.h, evaluated directly. MODEL, FACETS, MASKING, WARD_FORM and FRESNEL are
 // the numbers of the enums of assets/base/material.h.
 #include "lamp.glsl"
+#include "lobes_terms.glsl"
 #include "power.glsl"
 #include "tables.glsl"
 
@@ -18,35 +19,12 @@ const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
 
 const float PI = 3.14159265;
 
-float lobe_exponent(float glossiness)
-{
-    return min(1.0 / max(1.0 - glossiness, 1e-6), 1e6); // tl_lobe_exponent
-}
-
-// The material's widths, with what maps and bumps add to their squares along weft and warp (tl_brdf_bumped).
-vec2 widened(vec2 widths, vec2 widening)
-{
-    return clamp(sqrt(max(widths * widths + widening, 0.0)), 1e-3, 1.0);
-}
-
-// The same of facets with correlated slopes: the entries of a symmetric matrix (tl_facet_product).
+// The material's widths with the sum that maps and bumps add to their squares along weft and warp, and to their product:
+// the entries of a symmetric matrix (tl_brdf_bumped).
 vec3 squares_of(vec2 widths, vec3 widening)
 {
-    vec2 squares = widened(widths, widening.xy);
-    squares *= squares;
-    vec2 room = max(squares - 1e-6, 0.0), above = 1.0 - squares;
-    float limit = sqrt(max(min(room.x * room.y, above.x * above.y), 0.0));
-    return vec3(squares, clamp(widening.z, -limit, limit));
-}
-
-float fresnel_dielectric(float index, float cosine)
-{
-    float inside2 = index * index - (1.0 - cosine * cosine);
-    if (inside2 <= 0.0 || cosine <= 0.0)
-        return 1.0;
-    float g = sqrt(inside2), s = (cosine - g) / (cosine + g);
-    float p = (index * index * cosine - g) / (index * index * cosine + g);
-    return clamp(0.5 * (s * s + p * p), 0.0, 1.0);
+    float weft = facet_square(widths.x * widths.x, widening.x), warp = facet_square(widths.y * widths.y, widening.y);
+    return vec3(weft, warp, facet_product(weft, warp, widening.z));
 }
 
 float fresnel_conductor(float n, float k, float cosine)
@@ -68,8 +46,7 @@ vec3 fresnel(vec3 f0, Cosines c)
         return f0 * fresnel_dielectric(gloss_optics.x, cosine);
     if (FRESNEL == CONDUCTOR)
         return f0 * fresnel_conductor(gloss_optics.x, gloss_optics.y, cosine);
-    float away = 1.0 - cosine, away2 = away * away;
-    return f0 + (min(50.0 * f0, vec3(1.0)) - f0) * (away2 * away2 * away);
+    return schlick_colour(f0, cosine);
 }
 
 // atan with full precision; the built-in function has only four digits.
@@ -136,14 +113,8 @@ float masked(Cosines c, float width)
 float ward(Cosines c, vec3 squares, bool is_bounded)
 {
     vec2 slope = c.half_plane / c.half_normal;
-    float determinant = squares.x * squares.y - squares.z * squares.z;
-    float steepness =
-        dot(slope * slope, squares.yx) - 2.0 * slope.x * slope.y * squares.z; // times the determinant
-    float facets = exp(-steepness / determinant) / (4.0 * PI * sqrt(determinant));
     float steep = c.t * c.half_normal * c.half_normal;
-    if (is_bounded)
-        return facets > 0.0 ? facets * c.a / (steep * steep) : 0.0;
-    return facets * sqrt(c.a / c.b);
+    return ward_lobe(is_bounded, slope.x, slope.y, steep * steep, c.a, c.b, squares.x, squares.y, squares.z);
 }
 
 // The cosine of l with the nearest mirror direction of a thread, and its squared sine.
@@ -164,7 +135,7 @@ float thread_scale(float s)
 float lobe(Cosines c, float s, vec3 widening)
 {
     if (MODEL == TORRANCE_SPARROW) {
-        float width = widened(gloss_widths.xy, widening.xy).x;
+        float width = sqrt(facet_square(gloss_widths.x * gloss_widths.x, widening.x));
         return facets(c.half_sine2 / (c.half_normal * c.half_normal), width) * masked(c, width);
     }
     if (MODEL == WARD)
@@ -199,11 +170,9 @@ vec3 inside_threads(Cosines c, vec3 f0, vec3 kd, vec3 widening)
 #ifdef THREADS
     if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
         return sent;
-    float away = 1.0 - clamp(c.t, 0.0, 1.0), away2 = away * away;
-    vec3 surface = f0 + (min(50.0 * f0, vec3(1.0)) - f0) * (away2 * away2 * away);
     for (int i = 0; i < THREADS; i++)
         sent += clamp(thread_ratios[i] * kd, 0.0, 1.0) * ward(c, squares_of(thread_widths[i], widening), true);
-    sent *= 1.0 - surface;
+    sent *= 1.0 - schlick_colour(f0, c.t);
 #endif
     return sent;
 }

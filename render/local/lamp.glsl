@@ -1,5 +1,5 @@
 // The current lamp, and the cosines with which a reflectance model is evaluated.
-#include "vectors.glsl"
+#include "facets_terms.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
 layout(location = 65) uniform vec3 eye;
@@ -38,20 +38,12 @@ struct Frame {
     vec3 n, t, b;
 };
 
-// The tangent at right angles to the unit normal; any tangent where the given one is zero.
-vec3 tangent_across(vec3 n, vec3 tangent)
-{
-    vec3 any = cross(abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0), n);
-    return direction_or(tangent - n * dot(n, tangent), normalize(any));
-}
-
 // The frame of tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the
 // front; `side` is -1 on back faces. The sign of the bitangent matters to correlated slopes alone (plane_side in
 // local.frag).
 Frame frame_of(vec3 n, vec3 tangent, float side)
 {
-    vec3 t = tangent_across(n, tangent);
-    t = t * gloss_widths.z + cross(n, t) * (side * gloss_widths.w);
+    vec3 t = thread_direction(n, tangent, gloss_widths.z, side * gloss_widths.w);
     return Frame(n, t, cross(n, t));
 }
 

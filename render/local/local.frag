@@ -121,6 +121,7 @@ float self_shadow(float facing)
 }
 
 // Fabric detail of the sample; set first by find_detail.
+SurfaceColours colours;
 bool bumpy;
 Bumps bumps;
 DetailPlace place;
@@ -155,6 +156,7 @@ void find_detail(inout mat3 frame, float side, inout vec3 smooth_normal)
 #endif
 #endif
     sew(first_triangle + uint(gl_PrimitiveID), place.uv, dFdx(uv), dFdy(uv));
+    colours = colours_at(surface_colour(place.uv).rgb, place.uv);
     bumpy = has_bumps(tangent);
     if (bumpy)
         bumps = bumps_at(place.uv);
@@ -222,15 +224,12 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 vec3 thread_widening_here(float side)
 {
     float own_rough = 1.0 - material_scalars.x;
-    float yarn_rough = 1.0 - glossiness(place.uv);
-    vec3 wider = bumpy ? detail_widenings(own_rough, yarn_rough, bumps)
+    float yarn_rough = 1.0 - colours.glossiness;
+    vec3 wider = bumpy ? bumps_widening(DETAIL_MINIFY, own_rough, yarn_rough, bumps)
                        : vec3(vec2(detail_widening(own_rough, yarn_rough, 0.0)), 0.0);
-    // Spreads are along u and v, widths along the threads, which are turned towards v (tl_brdf_bumped).
-    vec2 shares = gloss_widths.zw * gloss_widths.zw;
-    float mixed = gloss_widths.z * gloss_widths.w * (tangent.w < 0.0 ? -1.0 : 1.0);
-    float product = mixed * (wider.y - wider.x) + (shares.x - shares.y) * wider.z;
-    return vec3(dot(wider.xy, shares) + 2.0 * mixed * wider.z, dot(wider.xy, shares.yx) - 2.0 * mixed * wider.z,
-                plane_side(side) * product);
+    FacetWidening threads =
+        facet_widening(gloss_widths.z, gloss_widths.w, tangent.w, wider.x, wider.y, wider.z);
+    return vec3(threads.weft, threads.warp, plane_side(side) * threads.product);
 }
 
 // The same for the model's facets; `rough` is the roughness of all lobes that are round.
@@ -251,13 +250,13 @@ vec4 lit_here(float side, vec3 smooth_normal, vec3 kd)
 #ifdef PASS_LAST
     vec3 shine = tables_gloss(c, texelFetch(product, ivec2(gl_FragCoord.xy), 0).rgb);
 #else
-    float rough = 1.0 - glossiness(place.uv);
+    float rough = 1.0 - colours.glossiness;
     if (bumpy)
-        rough = detail_rough(rough, bumps, view);
-    vec3 shine = gloss(c, specular_f0(place.uv), lobe_exponent(1.0 - rough), widening_here(rough, side));
+        rough = bumps_roughness(DETAIL_MINIFY, rough, bumps, view);
+    vec3 shine = gloss(c, colours.f0, lobe_exponent(1.0 - rough), widening_here(rough, side));
 #endif
 #ifdef THREADS
-    shine += inside_threads(c, specular_f0(place.uv), kd, thread_widening_here(side));
+    shine += inside_threads(c, colours.f0, kd, thread_widening_here(side));
 #endif
     return shown > 0.0 ? shown * vec4(shine, max(c.a, 0.0) / PI) : vec4(0.0);
 }
@@ -285,7 +284,7 @@ vec3 diffuse_here()
 #ifdef MEASURED
     return measured_diffuse;
 #else
-    return diffuse(surface_colour(place.uv).rgb, place.uv);
+    return colours.diffuse;
 #endif
 }
 
@@ -322,17 +321,16 @@ vec3 under_coat(vec3 light, vec3 l, vec3 n)
 }
 
 #ifdef FUZZ
-// The direction in which fibres stand, as tl_fuzz_axis.
+// The direction in which fibres stand.
 vec3 fibre_axis(float side, vec3 smooth_normal)
 {
 #ifndef GOURAUD
-    if (lamp_fuzz_follow > 0.0) {
-        vec3 shown = side * direction_or(bumped_normal(smooth_normal), smooth_normal);
-        shown = facing_normal(shown, direction_or(eye - point, shown));
-        return direction_or(mix(side * smooth_normal, shown, lamp_fuzz_follow), side * smooth_normal);
-    }
-#endif
+    vec3 shown = side * direction_or(bumped_normal(smooth_normal), smooth_normal);
+    shown = facing_normal(shown, direction_or(eye - point, shown));
+    return fuzz_axis(lamp_fuzz_follow, side * smooth_normal, shown);
+#else
     return side * smooth_normal;
+#endif
 }
 #endif
 
@@ -341,10 +339,9 @@ vec3 under_fuzz(vec3 light, vec3 l, float side, vec3 smooth_normal)
 {
 #ifdef FUZZ
     vec3 n = fibre_axis(side, smooth_normal), v = direction_or(eye - point, n);
-    float facing = clamp(dot(n, v), 0.0, 1.0), albedo = fuzz_albedo(facing, lamp_fuzz.w);
-    float towards = dot(direction_or(v - dot(n, v) * n, vec3(0.0)), l);
-    light *= 1.0 - albedo * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
-    light += self_shadow(side * dot(smooth_normal, l)) * albedo * fuzz_lobe(dot(n, l), towards, facing, lamp_fuzz.w) * lamp_fuzz.rgb;
+    float facing = clamp(dot(n, v), 0.0, 1.0);
+    light *= 1.0 - fuzz_albedo(facing, lamp_fuzz.w) * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
+    light += self_shadow(side * dot(smooth_normal, l)) * fuzz_value(lamp_fuzz.w, n, l, v) * lamp_fuzz.rgb;
 #endif
     return light;
 }

@@ -94,7 +94,7 @@ void main()
     cosine_lamp = dot(l, v);
 #elif defined(VECTORS)
 #ifdef TANGENT_SPACE
-    vec3 t = tangent_across(n, vertex_tangent.xyz);
+    vec3 t = thread_direction(n, vertex_tangent.xyz, 1.0, 0.0);
     mat3 into = transpose(mat3(t, (vertex_tangent.w < 0.0 ? -1.0 : 1.0) * cross(n, t), n));
     l = into * l;
     v = into * v;

@@ -170,7 +170,7 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
     }
     if (glms_vec3_max(layers->fuzz.colour) > 0) { /* broad: the environment's samples are enough */
         float fibres =
-            tl_fuzz_value(&layers->fuzz, layers->fuzz_normal, direction, gather->points->viewer[i]);
+            fuzz_value(layers->fuzz.roughness, layers->fuzz_normal, direction, gather->points->viewer[i]);
         share = glms_vec3_add(share, glms_vec3_scale(layers->fuzz.colour, fibres / sample_pdf));
     }
     return share;

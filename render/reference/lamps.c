@@ -41,7 +41,7 @@ static vec3s reflected(const struct tl_shading_point *point, const struct tl_brd
     sent = glms_vec3_adds(glms_vec3_scale(sent, layers->base), coat);
     if (!(glms_vec3_max(layers->fuzz.colour) > 0))
         return sent;
-    float fibres = tl_fuzz_value(&layers->fuzz, layers->fuzz_normal, l, point->viewer);
+    float fibres = fuzz_value(layers->fuzz.roughness, layers->fuzz_normal, l, point->viewer);
     return glms_vec3_add(sent, glms_vec3_scale(layers->fuzz.colour, fibres));
 }
 

@@ -197,7 +197,8 @@ static void follow_fuzz(struct paths *paths, int i, int sample)
     if (!(glms_vec3_max(layers->fuzz.colour) > 0))
         return;
     vec3s direction = tl_lobe_sample(layers->fuzz_normal, 0, height, turn, &off);
-    float fibres = tl_fuzz_value(&layers->fuzz, layers->fuzz_normal, direction, paths->points->viewer[i]);
+    float fibres =
+        fuzz_value(layers->fuzz.roughness, layers->fuzz_normal, direction, paths->points->viewer[i]);
     follow_above(paths, i, direction,
                  glms_vec3_scale(layers->fuzz.colour, fibres * 2 * (float)M_PI / (float)paths->samples));
 }

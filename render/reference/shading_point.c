@@ -1,13 +1,14 @@
 #include "render/reference/shading_point.h"
 
 #include "render/brdf/coat.h"
-#include "render/brdf/fresnel.h"
+#include "render/brdf/facets.h"
 #include "render/brdf/fuzz.h"
 #include "render/construction/look.h"
 #include "render/detail/bumps.h"
-#include "render/detail/detail_terms.h"
 #include "render/detail/yarns.h"
 #include "render/env/exponent.h"
+#include "render/env/lobes_fetch.h"
+#include "render/surfaces/surface_terms.h"
 #include "render/surfaces/surfaces.h"
 
 #include <math.h>
@@ -85,60 +86,65 @@ static vec4s weave_at(const struct sample_place *place, enum tl_weave_use use)
     return weave_texel(place, place->prepared->weave[use]);
 }
 
-static vec3s decoded(vec4s texel)
+static Bumps bumps_of_map(vec4s texel, float scale_u, float scale_v)
 {
-    return (vec3s){{2 * texel.x - 1, 2 * texel.y - 1, 2 * texel.z - 1}};
+    return bumps_of_texel((vec3s){{texel.x, texel.y, texel.z}}, scale_u, scale_v);
 }
 
-static struct tl_bump_statistics own_bumps(const struct sample_place *place)
+static Bumps bumps_of_means(vec4s means, float product, float scale_u, float scale_v)
 {
-    const float scale = place->material->normal_scale, scales[2] = {scale, scale};
+    return bumps_of_moments(means.x, means.y, means.z, means.w, product, scale_u, scale_v);
+}
+
+static Bumps own_bumps(const struct sample_place *place)
+{
+    const float scale = place->material->normal_scale;
     if (!has_map(place, TL_MAP_NORMAL))
-        return tl_bump_statistics_of_normal((vec3s){{0, 0, 1}});
-    if (place->prepared->own_moments) {
-        const struct tl_reference_map *map = &place->prepared->maps[TL_MAP_NORMAL];
-        struct tl_footprint at = through_rows(&place->footprint, map->rows);
-        const struct tl_moment_map *moments = place->prepared->own_moments;
-        return tl_bump_statistics_of_moments(
-            tl_map_texture_fetch(&moments->texture, &at, map->clamp_u, map->clamp_v),
-            tl_map_texture_fetch(&moments->cross_texture, &at, map->clamp_u, map->clamp_v).x, scales);
-    }
-    vec3s n = decoded(map_at(place, TL_MAP_NORMAL));
-    return tl_bump_statistics_of_normal((vec3s){{scale * n.x, scale * n.y, n.z}});
+        return bumps_of_normal((vec3s){{0, 0, 1}});
+    if (!place->prepared->own_moments)
+        return bumps_of_map(map_at(place, TL_MAP_NORMAL), scale, scale);
+    const struct tl_reference_map *map = &place->prepared->maps[TL_MAP_NORMAL];
+    struct tl_footprint at = through_rows(&place->footprint, map->rows);
+    const struct tl_moment_map *moments = place->prepared->own_moments;
+    return bumps_of_means(tl_map_texture_fetch(&moments->texture, &at, map->clamp_u, map->clamp_v),
+                          tl_map_texture_fetch(&moments->cross_texture, &at, map->clamp_u, map->clamp_v).x,
+                          scale, scale);
 }
 
-static struct tl_bump_statistics weave_bumps(const struct sample_place *place)
+static Bumps weave_bumps(const struct sample_place *place)
 {
     const float height = place->detail->height_scale;
-    const float scale[2] = {height * place->slopes[0], height * place->slopes[1]};
-    if (place->prepared->weave_moments)
-        return tl_bump_statistics_of_moments(
-            weave_texel(place, &place->prepared->weave_moments->texture),
-            weave_texel(place, &place->prepared->weave_moments->cross_texture).x, scale);
-    vec3s n = decoded(weave_at(place, TL_WEAVE_NORMAL));
-    return tl_bump_statistics_of_normal((vec3s){{scale[0] * n.x, scale[1] * n.y, n.z}});
+    const float u = height * place->slopes[0], v = height * place->slopes[1];
+    const struct tl_moment_map *moments = place->prepared->weave_moments;
+    if (!moments)
+        return bumps_of_map(weave_at(place, TL_WEAVE_NORMAL), u, v);
+    return bumps_of_means(weave_texel(place, &moments->texture),
+                          weave_texel(place, &moments->cross_texture).x, u, v);
 }
 
-/* Statistics of all bumps in tangent space: those of the normal map of the file plus those of the weave and
- * of what is sewn. */
-static struct tl_bump_statistics bumps_at(const struct sample_place *place)
+/* All bumps in tangent space: those of the normal map of the file plus those of the weave and of what is
+ * sewn. */
+static Bumps bumps_at(const struct sample_place *place)
 {
-    struct tl_bump_statistics sum = own_bumps(place), more;
-    if (place->woven) {
-        more = weave_bumps(place);
-        sum = tl_bump_statistics_add(&sum, &more);
-    }
-    if (place->sewn) {
-        more = tl_construction_bumps(&place->look);
-        sum = tl_bump_statistics_add(&sum, &more);
-    }
+    const ConstructionLook *sewn = &place->look;
+    Bumps sum = own_bumps(place);
+    if (place->woven)
+        sum = bumps_add(sum, weave_bumps(place));
+    if (place->sewn)
+        sum = bumps_add(sum, bumps_of_slopes(sewn->slope_x, sewn->slope_y,
+                                             (vec3s){{sewn->spread_x, sewn->spread_y, sewn->spread_xy}}));
     return sum;
+}
+
+static vec3s tangent_of(const struct sample_place *place)
+{
+    return (vec3s){{place->tangent.x, place->tangent.y, place->tangent.z}};
 }
 
 static bool has_bumps(const struct sample_place *place)
 {
-    vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
-    return (has_map(place, TL_MAP_NORMAL) || place->woven || place->sewn) && glms_vec3_norm2(tangent) > 0;
+    return (has_map(place, TL_MAP_NORMAL) || place->woven || place->sewn) &&
+           glms_vec3_norm2(tangent_of(place)) > 0;
 }
 
 /* Blinn's form needs no tangents, but heights, which slopes give with the nominal size of a UV unit. */
@@ -147,33 +153,11 @@ static bool has_blinn_normals(const struct sample_place *place)
     return place->detail->mode == TL_DETAIL_BLINN && place->uv_metres > 0;
 }
 
-static vec3s bent_normal(const struct sample_place *place, vec3s mapped, vec3s smooth)
+static vec3s blinn_normal(const struct sample_place *place, vec3s mapped, vec3s smooth)
 {
-    vec3s tangent = {{place->tangent.x, place->tangent.y, place->tangent.z}};
-    if (!has_blinn_normals(place))
-        return tl_patch_normal(place->normal, tangent, place->tangent.w, mapped, smooth);
     float metres = place->uv_metres / fmaxf(mapped.z, 1e-3f);
     return tl_blinn_normal(smooth, place->p_u, place->p_v, -mapped.x * metres,
                            mapped.y * metres); /* v runs down */
-}
-
-/* Transforms a direction into the tangent space of the front. */
-static vec3s into_tangent(const struct sample_place *place, vec3s smooth, vec3s d)
-{
-    vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
-    t = direction_or(glms_vec3_sub(t, glms_vec3_scale(smooth, glms_vec3_dot(smooth, t))), (vec3s){{0, 0, 0}});
-    vec3s b = glms_vec3_scale(glms_vec3_cross(smooth, t), place->tangent.w < 0 ? -1 : 1);
-    return (vec3s){{glms_vec3_dot(d, t), glms_vec3_dot(d, b), glms_vec3_dot(d, smooth)}};
-}
-
-static float glossiness_of(const struct sample_place *place)
-{
-    float g = place->material->glossiness;
-    if (has_map(place, TL_MAP_GLOSS))
-        g *= map_at(place, TL_MAP_GLOSS).x;
-    if (place->woven)
-        g += weave_at(place, TL_WEAVE_GLOSS).x;
-    return fminf(fmaxf(g, 0), 1);
 }
 
 static vec3s times_map(vec3s colour, vec4s texel)
@@ -181,44 +165,32 @@ static vec3s times_map(vec3s colour, vec4s texel)
     return (vec3s){{colour.x * texel.x, colour.y * texel.y, colour.z * texel.z}};
 }
 
-static bool shows_back(const struct sample_place *place)
+static SurfaceColours colours_of(const struct sample_place *place)
 {
-    return place->material->back.is_given && place->side < 0;
-}
-
-/* With the thread of stitches over it, and the shade of seams. */
-static vec3s sewn_colour(const struct sample_place *place, vec3s cloth, vec3s thread)
-{
-    for (int c = 0; place->sewn && c < 3; c++)
-        cloth.raw[c] = tl_construction_colour(&place->look, cloth.raw[c], thread.raw[c]);
-    return cloth;
-}
-
-static vec3s by_yarns(const struct sample_place *place, vec3s colour)
-{
-    const tl_weave *weave = place->material->weave;
-    if (!place->woven || !weave->yarns)
-        return colour;
+    const tl_material *material = place->material;
     const struct tl_footprint *at = &place->footprint;
-    return glms_vec3_scale(colour,
-                           tl_yarn_factor(weave->yarns, place->uv_metres, at->uv, at->across, at->down));
-}
-
-static vec3s diffuse_of(const struct sample_place *place)
-{
-    vec3s colour = place->material->diffuse;
+    SurfaceColours cloth = {material->diffuse, material->specular, material->glossiness};
+    SurfaceTexels texels = surface_texels();
     if (has_map(place, TL_MAP_DIFFUSE))
-        colour = times_map(colour, map_at(place, TL_MAP_DIFFUSE));
-    if (place->woven)
-        colour = times_map(colour, weave_at(place, TL_WEAVE_TINT));
-    colour = by_yarns(place, colour);
-    if (shows_back(place))
-        colour = place->material->back.diffuse;
-    if (has_map(place, TL_MAP_OCCLUSION)) {
-        float open = map_at(place, TL_MAP_OCCLUSION).x;
-        colour = glms_vec3_scale(colour, 1 + (open - 1) * place->material->occlusion_strength);
+        cloth.diffuse = times_map(cloth.diffuse, map_at(place, TL_MAP_DIFFUSE));
+    if (has_map(place, TL_MAP_SPECULAR))
+        cloth.f0 = times_map(cloth.f0, map_at(place, TL_MAP_SPECULAR));
+    if (has_map(place, TL_MAP_GLOSS))
+        cloth.glossiness *= map_at(place, TL_MAP_GLOSS).x;
+    if (place->woven) {
+        texels.tint = times_map(texels.tint, weave_at(place, TL_WEAVE_TINT));
+        texels.gloss = weave_at(place, TL_WEAVE_GLOSS).x;
     }
-    return sewn_colour(place, colour, place->material->construction.thread);
+    if (place->woven && material->weave->yarns)
+        texels.yarns = tl_yarn_factor(material->weave->yarns, place->uv_metres, at->uv, at->across, at->down);
+    if (has_map(place, TL_MAP_OCCLUSION))
+        texels.occlusion = 1 + (map_at(place, TL_MAP_OCCLUSION).x - 1) * material->occlusion_strength;
+    if (place->sewn) {
+        texels.thread = place->look.thread;
+        texels.shade = place->look.shade;
+    }
+    return surface_colours(cloth, texels, material->back.is_given && place->side < 0, material->back.diffuse,
+                           material->back.specular, material->construction.thread);
 }
 
 static vec3s emission_of(const struct sample_place *place)
@@ -231,29 +203,11 @@ static vec3s emission_of(const struct sample_place *place)
     return times_map(sent, tl_map_texture_fetch(map->texture, &at, map->clamp_u, map->clamp_v));
 }
 
-static vec3s f0_of(const struct sample_place *place)
-{
-    vec3s f0 = place->material->specular;
-    if (has_map(place, TL_MAP_SPECULAR))
-        f0 = times_map(f0, map_at(place, TL_MAP_SPECULAR));
-    f0 = by_yarns(place, f0);
-    if (shows_back(place))
-        f0 = place->material->back.specular;
-    return sewn_colour(place, f0, glms_vec3_minv(f0, glms_vec3_fill(CONSTRUCTION_THREAD_F0)));
-}
-
-static vec3s specular_of(vec3s f0, float n_dot_v)
-{
-    for (int c = 0; c < 3; c++)
-        f0.raw[c] = tl_fresnel_schlick(f0.raw[c], n_dot_v);
-    return f0;
-}
-
 /* Sets tangent and handedness. On a back face normal and bitangent are turned over and the tangent is
  * kept. */
 static void set_tangent(const struct sample_place *place, vec3s n, struct tl_shading_point *result)
 {
-    vec3s t = {{place->tangent.x, place->tangent.y, place->tangent.z}};
+    vec3s t = tangent_of(place);
     t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
     result->tangent = direction_or(t, (vec3s){{0, 0, 0}});
     result->handedness = place->tangent.w * place->side;
@@ -265,11 +219,10 @@ static void set_coat(const struct sample_place *place, vec3s smooth, struct tl_s
     struct tl_shading_layers *layers = &result->layers;
     vec3s n = glms_vec3_scale(smooth, place->side);
     float cosine = fmaxf(glms_vec3_dot(n, result->viewer), 0);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * cosine), result->viewer);
     float share = place->material->coat * tl_coat_reflectance(cosine);
     layers->coat = layers->base * share;
     layers->base *= 1 - share;
-    layers->coat_axis = direction_or(mirror, n);
+    layers->coat_axis = mirror_direction(n, result->viewer);
     layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
 }
 
@@ -280,7 +233,8 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
     result->layered = true;
     layers->openness = material->openness;
     layers->fuzz = material->fuzz;
-    layers->fuzz_normal = tl_fuzz_axis(&material->fuzz, glms_vec3_scale(smooth, place->side), result->normal);
+    layers->fuzz_normal =
+        fuzz_axis(material->fuzz.follow, glms_vec3_scale(smooth, place->side), result->normal);
     layers->base = tl_fuzz_under(material, glms_vec3_dot(layers->fuzz_normal, result->viewer));
     if (material->coat > 0)
         set_coat(place, smooth, result);
@@ -301,41 +255,37 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
 static void set_lobes(const struct sample_place *place, const struct tl_reference_scene *scene, vec3s viewer,
                       vec3s smooth, struct tl_shading_point *result)
 {
-    vec3s n = glms_vec3_scale(smooth, place->side);
-    float g = glossiness_of(place), open = 1;
-    struct tl_bump_statistics bumps = tl_bump_statistics_of_normal((vec3s){{0, 0, 1}});
-    bool bumped = has_bumps(place);
-    if (bumped)
-        bumps = bumps_at(place);
-    for (int i = 0; i < 2; i++)
-        result->widening[i] =
-            tl_bump_statistics_widening(place->detail, 1 - place->material->glossiness, 1 - g, &bumps, i);
-    result->widening[2] = tl_bump_statistics_shear(place->detail, &bumps);
-    if (bumped) {
-        n = glms_vec3_scale(bent_normal(place, bumps.normal, smooth), place->side);
-        g = 1 -
-            tl_bump_statistics_roughness(place->detail, 1 - g, &bumps, into_tangent(place, smooth, viewer));
-        open = detail_open(bumps.length);
+    const SurfaceColours colours = colours_of(place);
+    const Bumps flat = bumps_of_normal((vec3s){{0, 0, 1}});
+    const float own_g = place->material->glossiness;
+    SurfaceShape shape = {glms_vec3_scale(smooth, place->side), colours.glossiness,
+                          bumps_widening(place->detail->minify, 1 - own_g, 1 - colours.glossiness, flat), 1};
+    if (has_bumps(place)) {
+        const Bumps bumps = bumps_at(place);
+        shape = surface_shape(place->detail->minify, bumps, place->normal, smooth, tangent_of(place),
+                              place->tangent.w, place->side, viewer, own_g, colours.glossiness);
+        if (has_blinn_normals(place))
+            shape.normal = glms_vec3_scale(blinn_normal(place, bumps.normal, smooth), place->side);
     }
-    const float lift = detail_facing(glms_vec3_dot(n, viewer));
-    if (lift > 0)
-        n = direction_or(glms_vec3_muladds(viewer, lift, n), n);
+    const vec3s n = facing_normal(shape.normal, viewer);
+    const float g = shape.glossiness;
+    for (int i = 0; i < 3; i++)
+        result->widening[i] = shape.widening.raw[i];
     float n_dot_v = glms_vec3_dot(n, viewer);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(n, 2 * fmaxf(n_dot_v, 0)), viewer);
     result->viewer = viewer;
     result->glossiness = g;
     result->material = place->material;
     set_tangent(place, n, result);
     result->normal = n;
-    result->axis = direction_or(mirror, n);
+    result->axis = mirror_direction(n, viewer);
     result->exponent = tl_lobe_exponent(g);
     result->side = place->side;
     result->emission = emission_of(place);
-    result->f0 = f0_of(place);
-    result->diffuse = result->albedo = glms_vec3_scale(diffuse_of(place), open);
-    result->glossy = specular_of(result->f0, n_dot_v);
+    result->f0 = colours.f0;
+    result->diffuse = result->albedo = glms_vec3_scale(colours.diffuse, shape.open);
+    result->glossy = schlick_colour(result->f0, n_dot_v);
     if (scene->lobe == TL_LOBE_SINGLE && place->material->gloss.model == TL_REFLECT_PHONG) {
-        result->axis = direction_or(glms_vec3_lerp(n, mirror, g), n);
+        result->axis = direction_or(glms_vec3_lerp(n, result->axis, g), n);
         result->glossy = glms_vec3_lerp(result->diffuse, result->glossy, g);
         result->diffuse = (vec3s){{0, 0, 0}};
     }
@@ -483,7 +433,8 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
         tl_slope_factors(corners.positions, corners.uvs, place.uv_metres, place.slopes);
     place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
     vec3s outside = direction_or(place.normal, glms_vec3_scale(place.facet, place.side));
-    vec3s view = into_tangent(&place, outside, glms_vec3_negate(ray->direction));
+    vec3s view =
+        into_tangent_space(glms_vec3_negate(ray->direction), outside, tangent_of(&place), place.tangent.w);
     place.footprint.uv = glms_vec2_add(
         place.footprint.uv, tl_reference_shift(place.detail, &place.prepared->heights, place.footprint.uv,
                                                place.uv_metres, view, place.side));

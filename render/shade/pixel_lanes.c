@@ -136,18 +136,9 @@ TL_INLINE tl_quad schlick(tl_quad f0, float share)
 TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, vec3s n, vec3s t, float handedness,
                                         float side)
 {
-    t = glms_vec3_sub(t, glms_vec3_scale(n, glms_vec3_dot(n, t)));
-    float square = glms_vec3_dot(t, t);
-    bool is_given = square > 1e-12f, is_x = fabsf(n.x) < 0.6f;
-    vec3s across = is_x ? (vec3s){{0, -n.z, n.y}} : (vec3s){{n.z, 0, -n.x}}; /* an axis x n */
-    for (int c = 0; c < 3; c++)
-        t.raw[c] = is_given ? t.raw[c] : across.raw[c];
-    square = is_given ? square : glms_vec3_dot(across, across);
-    t = glms_vec3_scale(t, 1 / sqrtf(square));
-    vec3s turned = glms_vec3_add(glms_vec3_scale(t, part->turn_cosine),
-                                 glms_vec3_scale(glms_vec3_cross(n, t), side * part->turn_sine));
+    const vec3s along = thread_direction(n, t, part->turn_cosine, side * part->turn_sine);
     return (struct tl_brdf_frame){
-        n, turned, glms_vec3_scale(glms_vec3_cross(n, turned), handedness * side < 0 ? -1.0f : 1.0f)};
+        n, along, glms_vec3_scale(glms_vec3_cross(n, along), handedness * side < 0 ? -1.0f : 1.0f)};
 }
 
 TL_INLINE void find_frames(const struct tl_pixel_lanes *lanes, struct gloss_lanes *gloss)
@@ -332,10 +323,9 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(look->shown, i), viewer = tl_lane_vector(look->viewer, i);
         float cosine = glms_vec3_dot(normal, viewer);
-        vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * tl_maxf(cosine, 0)), viewer);
-        tl_lane_store(gloss->mirror, i, direction_or(mirror, normal));
+        tl_lane_store(gloss->mirror, i, mirror_direction(normal, viewer));
         shares[i] = schlick_share(cosine);
-        gloss->exponent[i] = 1 / tl_maxf(1 - look->glossiness[i], 1e-6f);
+        gloss->exponent[i] = lobe_exponent(look->glossiness[i]);
         log_exponents[i] = tl_log2(gloss->exponent[i]);
     }
     choose_maps(scene, log_exponents, look->count, &blends);
@@ -368,9 +358,9 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
         float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
               y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
-        float square = glms_vec3_dot(sum, sum); /* 4 cos^2 t */
-        lobe[i] = ward_lobe(is_bounded, x, y, z, square, cos_a, cos_b, square_of[0][i] + wider,
-                            square_of[1][i] + wider, square_of[2][i]);
+        const float square = glms_vec3_dot(sum, sum), over = 1 / z; /* 4 cos^2 t */
+        lobe[i] = ward_lobe(is_bounded, x * over, y * over, z * z * z * z / (4 * square), cos_a, cos_b,
+                            square_of[0][i] + wider, square_of[1][i] + wider, square_of[2][i]);
         share[i] = schlick_share(0.5f * sqrtf(square));
     }
     for (int i = 0; i < lanes->look.count; i++) {
@@ -462,15 +452,6 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
 
 /* ---- Fuzz ---- */
 
-/* f_r cos of white fibres under a sun, of a lane whose fibres stand along n. */
-TL_INLINE float fibres_under(const struct tl_fuzz *fuzz, vec3s n, vec3s viewer, vec3s sun)
-{
-    float x = tl_maxf(tl_minf(glms_vec3_dot(n, viewer), 1), 0);
-    vec3s flat = glms_vec3_sub(viewer, glms_vec3_scale(n, glms_vec3_dot(n, viewer)));
-    float towards = glms_vec3_dot(direction_or(flat, (vec3s){{0, 0, 0}}), sun);
-    return fuzz_albedo(x, fuzz->roughness) * fuzz_lobe(glms_vec3_dot(n, sun), towards, x, fuzz->roughness);
-}
-
 TL_INLINE void add_fibres_of_sun(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                                  int sun, const float normal[3][TL_LANES], tl_quad fibres[TL_LANES])
 {
@@ -482,8 +463,8 @@ TL_INLINE void add_fibres_of_sun(const struct tl_pixel_scene *scene, const struc
         float seen = tl_pixel_sun_above(item, height) * tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
         if (seen > 0)
             fibres[i] += tl_pixel_quad(item->power) *
-                         (seen * fibres_under(&look->part->material->fuzz, n, tl_lane_vector(look->viewer, i),
-                                              scene->suns[sun]));
+                         (seen * fuzz_value(look->part->material->fuzz.roughness, n, scene->suns[sun],
+                                            tl_lane_vector(look->viewer, i)));
     }
 }
 
@@ -494,18 +475,18 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
     const struct tl_look_lanes *look = &lanes->look;
     const struct tl_fuzz *fuzz = &look->part->material->fuzz;
     const struct tl_lobe_map *maps = scene->request->lobes->maps;
-    float normal[3][TL_LANES], weights[TL_FUZZ_POWERS][TL_LANES], under[TL_LANES];
-    struct fetch_lanes fetch[TL_FUZZ_POWERS];
+    float normal[3][TL_LANES], weights[FUZZ_POWERS][TL_LANES], under[TL_LANES];
+    struct fetch_lanes fetch[FUZZ_POWERS];
     for (int i = 0; i < TL_LANES; i++) {
         const vec3s smooth = glms_vec3_scale(tl_lane_vector(look->smooth, i), look->side[i]);
-        const vec3s n = tl_fuzz_axis(fuzz, smooth, tl_lane_vector(look->shown, i));
+        const vec3s n = fuzz_axis(fuzz->follow, smooth, tl_lane_vector(look->shown, i));
         const struct tl_fuzz_lobes lobes =
             tl_fuzz_lobes_of(fuzz, glms_vec3_dot(n, tl_lane_vector(look->viewer, i)));
         const vec3s d = tl_pixel_turned(scene, n);
         const vec2s place = octahedral_place(d);
         tl_lane_store(normal, i, n);
         under[i] = lobes.under;
-        for (int k = 0; k < TL_FUZZ_POWERS; k++) {
+        for (int k = 0; k < FUZZ_POWERS; k++) {
             weights[k][i] = lobes.weights[k];
             place_fetch(&fetch[k], i, maps[TL_FUZZ_INDEX(k)].side, place);
         }
@@ -513,7 +494,7 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
     tl_quad fibres[TL_LANES];
     for (int i = 0; i < look->count; i++) {
         tl_quad sum = {0, 0, 0, 0};
-        for (int k = 0; k < TL_FUZZ_POWERS; k++)
+        for (int k = 0; k < FUZZ_POWERS; k++)
             sum += weights[k][i] * fetch_lane(&maps[TL_FUZZ_INDEX(k)], &fetch[k], i);
         for (int c = 0; c < 3; c++)
             sum[c] = tl_maxf(sum[c], 0);

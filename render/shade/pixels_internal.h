@@ -3,6 +3,7 @@
 #ifndef TOILE_RENDER_SHADE_PIXELS_INTERNAL_H
 #define TOILE_RENDER_SHADE_PIXELS_INTERNAL_H
 
+#include "render/env/lobes_fetch.h"
 #include "render/light/terms.h"
 #include "render/shade/look.h"
 #include "render/shade/pixels.h"
@@ -66,8 +67,7 @@ TL_INLINE tl_quad tl_pixel_quad(vec3s v)
 /* A direction of the world in the environment. */
 TL_INLINE vec3s tl_pixel_turned(const struct tl_pixel_scene *scene, vec3s d)
 {
-    float c = scene->turn_cosine, s = scene->turn_sine;
-    return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
+    return turned_direction(scene->turn_cosine, scene->turn_sine, d);
 }
 
 #endif

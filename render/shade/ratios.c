@@ -1,5 +1,7 @@
 #include "render/shade/ratios.h"
 
+#include "render/env/lobes_fetch.h"
+
 #include "config/base/memory.h"
 #include "render/shade/look.h"
 
@@ -97,7 +99,6 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
     const vec3s normal = glms_vec3_scale(tl_lane_vector(look->smooth, lane), look->side[lane]);
     const vec3s viewer = tl_lane_vector(look->viewer, lane);
     float cosine = tl_maxf(glms_vec3_dot(normal, viewer), 0);
-    vec3s mirror = glms_vec3_sub(glms_vec3_scale(normal, 2 * cosine), viewer);
     /* Facets need a viewer above the surface: one at the horizon stands for those below it. */
     const float minimum = 0.02f;
     vec3s seen_from = viewer;
@@ -113,7 +114,7 @@ static void place_sample(struct tl_vertex_ratios *ratios, const struct tl_ratios
                     .point = glms_vec3_sub(request->eye, seen_from), /* compose takes the viewer from it */
                     .normal = normal,
                     .smooth = normal,
-                    .mirror = direction_or(mirror, normal),
+                    .mirror = mirror_direction(normal, viewer),
                     .glossiness = look->glossiness[lane],
                     .diffuse = {{diffuse[0], diffuse[1], diffuse[2]}},
                     .specular = {{f0[0], f0[1], f0[2]}},

@@ -37,7 +37,8 @@ static void test_the_lobe_has_its_albedo(void **state)
             double sum = 0;
             for (int row = 0; row < ROWS; row++)
                 for (int column = 0; column < COLUMNS; column++)
-                    sum += (double)tl_fuzz_value(&fuzz, up, at(row, column), direction(cosines[i], 0.7f));
+                    sum +=
+                        (double)fuzz_value(fuzz.roughness, up, at(row, column), direction(cosines[i], 0.7f));
             sum *= 2 * M_PI / (ROWS * COLUMNS);
             /* rows are a step of 1/400 of a lobe that begins within some of them */
             assert_near(sum, fuzz_albedo(cosines[i], y), 0.01 * (double)fuzz_albedo(cosines[i], y));
@@ -61,7 +62,7 @@ static void test_powers_stand_for_the_lobe(void **state)
             const struct tl_fuzz_lobes lobes = tl_fuzz_lobes_of(&fuzz, cosines[i]);
             const double albedo = (double)fuzz_albedo(cosines[i], fuzz.roughness);
             double off = 0, sum = 0;
-            for (int k = 0; k < TL_FUZZ_POWERS; k++)
+            for (int k = 0; k < FUZZ_POWERS; k++)
                 sum += (double)lobes.weights[k];
             assert_near(sum, albedo, 1e-5); /* the furnace */
             assert_near(lobes.under, 1 - albedo, 1e-6);
@@ -69,10 +70,11 @@ static void test_powers_stand_for_the_lobe(void **state)
                 for (int column = 0; column < COLUMNS; column++) {
                     vec3s l = at(row, column);
                     float powers = 0;
-                    for (int k = 0; k < TL_FUZZ_POWERS; k++)
+                    for (int k = 0; k < FUZZ_POWERS; k++)
                         powers += lobes.weights[k] * tl_lobe_cosine(tl_exponent(TL_FUZZ_INDEX(k)), l.z);
-                    off += fabs((double)(powers - tl_fuzz_value(&fuzz, up, l, direction(cosines[i], 0.7f))));
-                    assert_near(tl_fuzz_lobes_at(lobes.weights, l.z), fmaxf(powers, 0), 1e-4);
+                    off += fabs(
+                        (double)(powers - fuzz_value(fuzz.roughness, up, l, direction(cosines[i], 0.7f))));
+                    assert_near(fuzz_lobes_at(lobes.weights, l.z), fmaxf(powers, 0), 1e-4);
                 }
             off *= M_PI / (ROWS * COLUMNS) / albedo;
             print_message("roughness %.1f, cosine %.2f: albedo %.3f, %.1f %% sent elsewhere\n",

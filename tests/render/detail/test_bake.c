@@ -3,6 +3,7 @@
 #include "assets/weave/weave.h"
 #include "config/base/memory.h"
 #include "render/detail/bake.h"
+#include "render/detail/bump_statistics.h"
 #include "render/detail/bumps.h"
 #include "render/reference/random.h"
 
@@ -80,7 +81,7 @@ static void test_plane(void **state)
     const vec3s p_u = {{1e-3f, 0, 0}}, p_v = {{0, 0, 1e-3f}};
     for (size_t i = 0; i < (size_t)16 * 8; i++) {
         const float *n = tl_image_floats(&normals) + 3 * i;
-        vec3s patch = tl_patch_normal(up, (vec3s){{1, 0, 0}}, 1, (vec3s){{n[0], n[1], n[2]}}, up);
+        vec3s patch = bent_normal((vec3s){{n[0], n[1], n[2]}}, up, (vec3s){{1, 0, 0}}, 1, up);
         vec3s blinn = tl_blinn_normal(up, p_u, p_v, 0.3e-3f, -0.2e-3f);
         for (int c = 0; c < 3; c++) {
             assert_near(patch.raw[c], expected.raw[c], 1e-5);
@@ -109,7 +110,7 @@ static void test_cylinder(void **state)
         vec3s made = tl_blinn_normal(normal, p_u, p_v, h_u, h_v);
         vec3s mirrored = tl_blinn_normal(normal, p_u, glms_vec3_negate(p_v), h_u, -h_v);
         vec3s patch =
-            tl_patch_normal(normal, glms_vec3_normalize(p_u), 1, (vec3s){{-h_u / r, -h_v / r, 1}}, normal);
+            bent_normal((vec3s){{-h_u / r, -h_v / r, 1}}, normal, glms_vec3_normalize(p_u), 1, normal);
         /* The square patch of side r is right along u; along v it takes h_v / r for h_v / l. */
         vec3s stretched = tl_blinn_normal(normal, p_u, p_v, h_u, h_v * l / r);
         for (int c = 0; c < 3; c++) {
@@ -284,7 +285,7 @@ static void test_degenerate(void **state)
     assert_near(tl_image_floats(&moments)[3], 1 / 3.0, 1e-6); /* 128 is a little over 0 in every channel */
     const vec3s up = {{0, 0, 1}}, none = {{0, 0, 0}};
     assert_near(tl_blinn_normal(up, none, none, 1, 1).z, 1, 0);
-    assert_near(tl_patch_normal(up, none, 1, none, up).z, 1, 0);
+    assert_near(bent_normal(none, up, none, 1, up).z, 1, 0);
     tl_image_release(&moments);
     tl_image_release(&normals);
     tl_image_release(&heights);

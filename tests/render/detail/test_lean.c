@@ -70,12 +70,10 @@ static float lean_gloss(const tl_material *cloth, vec3s l, vec3s v, float handed
     tl_image_release(&normals);
     tl_image_release(&squares);
     tl_image_release(&products);
-    const struct tl_detail_params params = {.minify = TL_DETAIL_MINIFY_LEAN};
-    const float scale[2] = {1, 1}, rough = 1 - cloth->glossiness;
-    const struct tl_bump_statistics bumps = tl_bump_statistics_of_moments(moments, cross, scale);
-    const float widening[3] = {tl_bump_statistics_widening(&params, rough, rough, &bumps, 0),
-                               tl_bump_statistics_widening(&params, rough, rough, &bumps, 1),
-                               has_covariance ? tl_bump_statistics_shear(&params, &bumps) : 0};
+    const float rough = 1 - cloth->glossiness;
+    const Bumps bumps = bumps_of_moments(moments.x, moments.y, moments.z, moments.w, cross, 1, 1);
+    const vec3s wider = bumps_widening(TL_DETAIL_MINIFY_LEAN, rough, rough, bumps);
+    const float widening[3] = {wider.x, wider.y, has_covariance ? wider.z : 0};
     const struct tl_brdf brdf =
         tl_brdf_bumped(cloth, cloth->specular, cloth->glossiness, handedness, widening);
     const struct tl_brdf_frame frame =

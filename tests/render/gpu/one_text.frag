@@ -2,11 +2,12 @@
 // Column: the number of a term; row: a trial.
 #include "bounced_terms.glsl"
 #include "facets_terms.glsl"
+#include "fuzz_terms.glsl"
 #include "ground.glsl"
 #include "lobes_terms.glsl"
 #include "spread_terms.glsl"
+#include "surface_terms.glsl"
 #include "terms.glsl"
-#include "vectors.glsl"
 #include "one_text.glsl"
 
 layout(location = 0) out float value;

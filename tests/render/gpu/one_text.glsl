@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 64
+#define ONE_TEXT_NUMBERS 76
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -82,9 +82,61 @@ TERM float one_text(int number, uint trial)
                : number == 44 ? slope_weight(int(5.0f * e.y), 3.0f * a.x)
                : number == 45 ? min(slope.value, 10.0f)
                               : slope.cosine + slope.towards;
-    if (number < 49)
-        return number == 47 ? schlick_reflectance(e.x, schlick_share(cosine))
-                            : min(ward_lobe(d.y < 0.5f, 0.3f * a.x, 0.3f * a.y, 1.0f + z, 2.0f, b.x - 0.1f, z, weft * weft,
-                                            warp * warp, 0.5f * weft * warp), 100.0f);
-    return 0.0f;
+    if (number < 50)
+        return number == 47   ? schlick_colour(vec3(e.x, 0.01f, 1.0f), cosine).x
+               : number == 48 ? fresnel_dielectric(0.5f + 2.0f * e.x, max(cosine, 0.0f))
+                              : min(ward_lobe(d.y < 0.5f, a.x, a.y - 0.5f, 0.1f + b.y, b.x - 0.1f, z, weft * weft,
+                                              warp * warp, 0.5f * weft * warp), 100.0f);
+    // Bumps and the surface that they bend.
+    int minify = int(3.0f * c.x);
+    Bumps mean = bumps_of_moments(a.x - 0.5f, a.y - 0.5f, 0.3f + 0.2f * b.x, 0.3f + 0.2f * b.y, 0.1f * c.x, d.x, d.y);
+    Bumps all = bumps_add(mean, bumps_add(bumps_of_texel(vec3(b.x, b.y, 0.5f + 0.5f * c.x), 0.5f, d.y),
+                                          bumps_of_slopes(c.x, c.y, vec3(0.1f * d.x, 0.1f * d.y, 0.01f))));
+    SurfaceShape shape = surface_shape(minify, all, vec3_scale(n, 0.9f), n, v, e.x - 0.5f, e.y < 0.5f ? 1.0f : -1.0f,
+                                       direction_or(vec3(d.x, d.y, e.x), n), c.y, e.y);
+    vec3 facing = facing_normal(vec3(n.x, n.y, 0.001f * n.z), v);
+    if (number < 58)
+        return number == 50   ? shape.normal.x
+               : number == 51 ? shape.normal.y
+               : number == 52 ? shape.glossiness
+               : number == 53 ? shape.widening.x
+               : number == 54 ? shape.widening.y
+               : number == 55 ? shape.widening.z
+               : number == 56 ? shape.open
+                              : facing.x + facing.y;
+    SurfaceTexels texels = surface_texels();
+    texels.tint = vec3(a.x, a.y, 0.5f);
+    texels.gloss = b.x;
+    texels.occlusion = b.y;
+    texels.thread = 1.2f * c.x;
+    texels.shade = 1.2f * c.y;
+    SurfaceColours cloth;
+    cloth.diffuse = vec3(d.x, 0.3f, 0.4f);
+    cloth.f0 = vec3(0.3f * d.y, 0.3f, 0.4f);
+    cloth.glossiness = d.y;
+    SurfaceColours seen = surface_colours(cloth, texels, e.x < 0.5f, vec3(0.1f, e.y, 0.2f), vec3(e.y, 0.1f, 0.2f),
+                                          vec3(0.9f, 0.1f, 0.2f));
+    // Fuzz, threads and directions.
+    float weights[FUZZ_POWERS];
+    float albedo = fuzz_lobes(0.1f + 0.8f * e.x, cosine, weights);
+    vec3 thread = thread_direction(n, vec3_scale(v, e.y < 0.1f ? 0.0f : 1.0f), 0.8f, 0.6f);
+    vec3 mirror = mirror_direction(n, v), turned = turned_direction(0.8f, 0.6f, n);
+    if (number >= 64)
+        return number == 64   ? albedo
+               : number == 65 ? weights[1]
+               : number == 66 ? fuzz_lobes_at(weights, e.y)
+               : number == 67 ? min(fuzz_value(0.1f + 0.8f * e.x, n, v, direction_or(vec3(d.x, d.y, e.x), n)), 10.0f)
+               : number == 68 ? fuzz_axis(d.x - 0.3f, n, v).y
+               : number == 69 ? thread.x + thread.y
+               : number == 70 ? thread.z
+               : number == 71 ? mirror.x
+               : number == 72 ? mirror.y + mirror.z
+               : number == 73 ? turned.x + turned.z
+               : number == 74 ? lobe_exponent(e.x)
+                              : texel_level(4.0f * d.x, 30.0f * e.y);
+    return number == 58   ? seen.diffuse.x
+           : number == 59 ? seen.diffuse.y
+           : number == 60 ? seen.f0.x
+           : number == 61 ? seen.f0.y
+                          : seen.glossiness;
 }

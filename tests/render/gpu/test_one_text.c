@@ -3,10 +3,12 @@
  * 2^-11 [OpenGL 4.5, GLSL 4.7.1]; differences grow where a term subtracts. */
 #include "render/bounce/bounced.h"
 #include "render/brdf/facets.h"
+#include "render/brdf/fuzz.h"
 #include "render/env/lobes_fetch.h"
 #include "render/gpu/gpu.h"
 #include "render/gpu/shaders.h"
 #include "render/light/terms.h"
+#include "render/surfaces/surface_terms.h"
 #include "render/trace/spread.h"
 
 #include <epoxy/gl.h>
