@@ -1,5 +1,5 @@
-/* Brute force over all pairs of triangles: whether they cross, by solving for the point where each side meets
- * the other triangle's plane. It shares no code with cloth/contact/crossings.c. */
+/* Brute force over all pairs of triangles whose heights overlap: whether they cross, by solving for the point
+ * where each side meets the other triangle's plane. It shares no code with cloth/contact/crossings.c. */
 #ifndef TOILE_TESTS_CLOTH_CROSSING_ORACLE_H
 #define TOILE_TESTS_CLOTH_CROSSING_ORACLE_H
 
@@ -7,6 +7,7 @@
 #include "cloth/mesh/vec3d.h"
 
 #include <stdbool.h>
+#include <stdlib.h>
 
 /* The intersection of [Moeller and Trumbore 1997]: the point p + t (q - p) = a + u (b - a) + v (c - a). */
 static inline bool oracle_segment_meets(vec3d p, vec3d q, vec3d a, vec3d b, vec3d c)
@@ -60,18 +61,39 @@ static inline bool oracle_extents_meet(const uint32_t *a, const uint32_t *b, con
     return true;
 }
 
+struct oracle_height {
+    double low, high;
+    const uint32_t *triangle;
+};
+
+static inline int oracle_compare(const void *a, const void *b)
+{
+    const double x = ((const struct oracle_height *)a)->low, y = ((const struct oracle_height *)b)->low;
+    return (x > y) - (x < y);
+}
+
 /* Crossing pairs of triangles; positions are rounded to single precision first, as they are drawn. */
 static inline size_t oracle_crossings(const struct tl_topology *topology, const vec3d *positions)
 {
+    const size_t triangle_count = topology->triangle_count;
     vec3d *x = TL_NEW_ARRAY(vec3d, topology->vertex_count);
+    struct oracle_height *heights = TL_NEW_ARRAY(struct oracle_height, triangle_count);
     for (size_t i = 0; i < topology->vertex_count; i++)
         x[i] = vec3d_as_drawn(positions[i]);
+    for (size_t i = 0; i < triangle_count; i++) {
+        const uint32_t *v = topology->triangles[i];
+        heights[i] = (struct oracle_height){fmin(x[v[0]].y, fmin(x[v[1]].y, x[v[2]].y)),
+                                            fmax(x[v[0]].y, fmax(x[v[1]].y, x[v[2]].y)), v};
+    }
+    qsort(heights, triangle_count, sizeof *heights, oracle_compare);
     size_t count = 0;
-    for (size_t a = 0; a < topology->triangle_count; a++)
-        for (size_t b = a + 1; b < topology->triangle_count; b++)
-            count += oracle_extents_meet(topology->triangles[a], topology->triangles[b], x) &&
-                     (oracle_sides_meet(topology->triangles[a], topology->triangles[b], x) ||
-                      oracle_sides_meet(topology->triangles[b], topology->triangles[a], x));
+    for (size_t i = 0; i < triangle_count; i++)
+        for (size_t k = i + 1; k < triangle_count && heights[k].low <= heights[i].high; k++) {
+            const uint32_t *a = heights[i].triangle, *b = heights[k].triangle;
+            count +=
+                oracle_extents_meet(a, b, x) && (oracle_sides_meet(a, b, x) || oracle_sides_meet(b, a, x));
+        }
+    free(heights);
     free(x);
     return count;
 }

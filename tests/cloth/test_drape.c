@@ -62,7 +62,7 @@ static struct drape drape_once(const struct tl_cloth_fabric *fabric, double edge
 /* Mean over seeds; each seed has its own orientation. */
 static double drape_coefficient(const char *name)
 {
-    const int seeds = 3;
+    const int seeds = 2;
     struct tl_cloth_fabric fabric = fabric_read(name);
     const char *wanted = getenv("TOILE_EDGE_M");
     const double edge_m = wanted ? atof(wanted) : 0.010;

@@ -43,7 +43,7 @@ static void add_layer(struct stack *stack, int layer)
     tl_error error = {0};
     tl_garment garment;
     const struct tl_cut_params sizes = {.longer_m = layers[layer].longer_m};
-    assert_ok(tl_garment_cut_sized("dress", 0.025f, &sizes, NULL, &garment, &error), error);
+    assert_ok(tl_garment_cut_sized("dress", 0.03f, &sizes, NULL, &garment, &error), error);
     const tl_mesh *mesh = &garment.model.mesh;
     tl_mesh *all = &stack->garment.model.mesh;
     const uint32_t first = stack->first[layer];

@@ -20,7 +20,7 @@ static vec3s upright(double u, double v)
 }
 
 /* Counts the pairs of particles nearer than 1 mm that are not neighbours in the pattern. Contact keeps 1.5
- * mm, or a quarter of the mesh's mean side where that is less, as here: 1.4 mm. */
+ * mm; of finer cloth a quarter of the mesh's mean side. */
 static size_t count_touching(const tl_cloth *cloth, const tl_garment *garment)
 {
     const double far_m = 0.02, near_m = 0.001;
@@ -40,7 +40,7 @@ struct heap {
 static struct heap heap_up(bool self_contact)
 {
     tl_error error = {0};
-    const struct sheet_shape shape = {12, 80, 0.06, 0.4};
+    const struct sheet_shape shape = {9, 60, 0.06, 0.4};
     tl_garment garment = sheet_make(&shape, upright);
     struct tl_cloth_fabric fabric = fabric_defaults();
     fabric.ply_m = 0.0015;
@@ -66,7 +66,7 @@ static void test_heap(void **state)
     struct heap with = heap_up(true), without = heap_up(false);
     printf("heap: in 60 frames %zu pairs nearer than 1 mm and %zu crossings, without contact %zu and %zu\n",
            with.touching, with.crossings, without.touching, without.crossings);
-    assert_true(without.touching > 500);
+    assert_true(without.touching > 200);
     assert_true(with.touching < without.touching / 10);
     assert_true(without.crossings > 1000);
     assert_int_equal(with.crossings, 0);

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define SIDE 0.8 /* m */
-enum { SQUARES = 100, CORNERS = SQUARES + 1, COUNT = CORNERS * CORNERS, FRAMES = 12, PULLED = 20 };
+enum { SQUARES = 100, CORNERS = SQUARES + 1, COUNT = CORNERS * CORNERS, FRAMES = 8, PULLED = 20 };
 
 /* Bent about an axis along v, without strain. */
 static vec3s bent(double u, double v)
