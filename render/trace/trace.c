@@ -399,14 +399,19 @@ vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3
     return moved;
 }
 
+float tl_trace_offset_in(vec3s low, vec3s high)
+{
+    float diagonal = glms_vec3_distance(low, high);
+    return low.x <= high.x && isfinite(diagonal) ? OFFSET_SHARE * 0.5f * diagonal : OFFSET_SHARE;
+}
+
 float tl_trace_offset(const tl_trace *trace)
 {
     struct RTCBounds box;
     rtcGetSceneBounds(trace->scene, &box);
     vec3s lower = {{box.lower_x, box.lower_y, box.lower_z}},
           upper = {{box.upper_x, box.upper_y, box.upper_z}};
-    float diagonal = glms_vec3_distance(lower, upper);
-    return box.lower_x <= box.upper_x && isfinite(diagonal) ? OFFSET_SHARE * 0.5f * diagonal : OFFSET_SHARE;
+    return tl_trace_offset_in(lower, upper);
 }
 
 size_t tl_trace_bytes(const tl_trace *trace)

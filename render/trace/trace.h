@@ -65,6 +65,8 @@ vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3
 /* Distance (m) from its own surface at which a ray may safely start: 1e-4 of the half diagonal of the
  * bounding box of all surfaces. */
 float tl_trace_offset(const tl_trace *trace);
+/* The same for surfaces in this box. */
+float tl_trace_offset_in(vec3s low, vec3s high);
 
 /* Memory of the BVH, as reported by Embree. */
 size_t tl_trace_bytes(const tl_trace *trace);

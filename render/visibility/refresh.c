@@ -6,13 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A pixel's horizon differs from its vertices' by up to half the bend of a triangle. Regions are therefore
- * traced down to 17 degrees below a vertex's tangent plane, and clipped at the pixel's horizon. The clipped
- * part must not count as hidden here, too, so a value describes the part above the horizon: a direction below
- * it is mirrored at the vertex's plane. (Review at rest: 3.3 to 3.1 % in a studio, 1.8 to 1.6 % in the sun;
- * mean FLIP 0.041 to 0.033, 0.033 to 0.027.) */
-#define SINE_BELOW 0.2924f
-
 /* A region that has not been traced for LATE_ROUNDS average rounds is late. At most one in LATE_SHARE of the
  * regions traced in a frame is chosen because it is late, or important ones would wait for all late ones. */
 #define LATE_ROUNDS 4
@@ -23,11 +16,6 @@
  * directions, what these miss of a region would be missing everywhere: after 16 rounds 0.1 to 0.3 % of the
  * image's mean. So neighbouring clusters err each by themselves. */
 #define DIRECTION_RUNS 16
-
-/* Weights of directions are kept in sixteen bits: a thousand rounds fill them, and from then on the mean is a
- * running one. */
-#define WEIGHT_ONE 64.0f
-#define MIN_WEIGHT 0.03125f
 
 /* The members of a cluster, one a lane. */
 struct cluster_lanes {
@@ -138,8 +126,8 @@ static void measure_needs(const struct tl_refresh *refresh, const struct tl_clus
     for (int i = 0; i < count; i++) {
         float cosine = max_cosine(lanes, refresh->centres[i]);
         uint32_t age = refresh->frame - cluster->stamps[i];
-        needs[i] = refresh->importances[i] * fmaxf(cosine + SINE_BELOW, 0) * (float)age;
-        late[i] = cosine > -SINE_BELOW && age > longest ? (float)age : 0;
+        needs[i] = refresh->importances[i] * fmaxf(cosine + TL_SINE_BELOW, 0) * (float)age;
+        late[i] = cosine > -TL_SINE_BELOW && age > longest ? (float)age : 0;
     }
 }
 
@@ -219,16 +207,8 @@ static void select_for(const struct tl_refresh *refresh, const struct tl_cluster
 /* The visibility of one region from a cluster's members in one frame. */
 struct glance {
     float seen[TL_CLUSTER];   /* sum of weights x visibility */
-    float weight[TL_CLUSTER]; /* sum of weights, in 1 / WEIGHT_ONE */
+    float weight[TL_CLUSTER]; /* sum of weights, in 1 / TL_WEIGHT_ONE */
 };
-
-/* The weight of a direction in the mean over its region: the cosine of incidence. Without it the mean would
- * be too dark, because directions near the horizon are hidden more often and contribute less light. It never
- * is 0, because glossy lobes may lie near the horizon. */
-static float weight_of(float cosine)
-{
-    return floorf(WEIGHT_ONE * fmaxf(fabsf(cosine), MIN_WEIGHT) + 0.5f);
-}
 
 /* Adds the visibility of a direction from each of `lanes_wanted`; returns the number of rays. Members whose
  * surface faces away are left out. */
@@ -240,12 +220,12 @@ static size_t trace_direction(const struct tl_refresh *refresh, const struct clu
     float through_ground[TL_CLUSTER];
     for (int i = 0; i < TL_CLUSTER; i++) {
         float cosine = glms_vec3_dot(lane_normal(lanes, i), direction);
-        if (!(lanes_wanted >> i & 1) || cosine < -SINE_BELOW)
+        if (!(lanes_wanted >> i & 1) || cosine < -TL_SINE_BELOW)
             continue;
-        float weight = weight_of(cosine);
+        float weight = visibility_weight(cosine);
         glance->weight[i] += weight;
         vec3s ahead = direction;
-        if (cosine < 0) /* in the plane's mirror: see SINE_BELOW */
+        if (cosine < 0) /* in the plane's mirror: see TL_SINE_BELOW */
             ahead = glms_vec3_sub(direction, glms_vec3_scale(lane_normal(lanes, i), 2 * cosine));
         float share = tl_ground_visibility(refresh->request->ground, lane_origin(lanes, i), direction);
         if (share <= 0)

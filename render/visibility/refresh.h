@@ -3,8 +3,15 @@
 #ifndef TOILE_RENDER_VISIBILITY_REFRESH_H
 #define TOILE_RENDER_VISIBILITY_REFRESH_H
 
+#include "render/gpu/vectors.h"
 #include "render/visibility/cache_probes.h"
 #include "render/visibility/points_request.h"
+
+#include "render/gpu/terms_begin.h"
+
+#include "render/visibility/visibility_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 /* Data of one update that the rays of all clusters share. */
 struct tl_refresh {
@@ -17,10 +24,6 @@ struct tl_refresh {
     uint32_t frame;           /* counts updates, from 1 */
     bool whole_rounds;        /* all regions are traced; in motion this is the first round of a rest */
 };
-
-/* A surface within this distance above a point covers it: the point's value then does not hold for uncovered
- * neighbours. In ray offsets; 1 cm for a figure. */
-#define TL_COVER_OFFSETS 100
 
 /* Factor on the number of rays of a frame at rest. Such a frame saves the G-buffer, its read-back and the
  * BVH, and still costs a third less than one in motion. */
