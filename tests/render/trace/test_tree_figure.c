@@ -15,7 +15,7 @@
 /* ---- A dressed figure ---- */
 
 /* DOUBTS_MAX: a tree that is wrong differs everywhere; so many rays are traced in doubles. */
-enum { FIGURE_RAYS = 60000, DOUBTS_MAX = 20 };
+enum { FIGURE_RAYS = 30000, FAULT_RAYS = 6000, DOUBTS_MAX = 10 };
 
 struct figure {
     tl_garment garment;
@@ -25,6 +25,8 @@ struct figure {
     vec3s *rest;           /* its positions at the pose of the build */
     tl_trace *trace;
 };
+
+static struct figure *shared; /* by all tests, each of which leaves it in its first pose */
 
 static void update_trace(struct figure *figure)
 {
@@ -66,14 +68,15 @@ static void close_figure(struct figure *figure)
     free(figure);
 }
 
-/* Turns the figure about its axis, the more the higher, and lets it sway: tens of centimetres. */
-static void move_figure(struct figure *figure)
+/* Turns the figure about its axis, the more the higher, and lets it sway: tens of centimetres. `far` 0: as it
+ * was built. */
+static void move_figure(struct figure *figure, float far)
 {
     for (size_t v = 0; v < figure->mesh.vertex_count; v++) {
         const vec3s p = figure->rest[v];
-        const float angle = 0.6f * p.y, c = cosf(angle), s = sinf(angle);
-        figure->mesh.positions[v] = (vec3s){
-            {c * p.x + s * p.z + 0.1f * sinf(4 * p.y), p.y + 0.03f * sinf(9 * p.x), c * p.z - s * p.x}};
+        const float angle = far * 0.6f * p.y, c = cosf(angle), s = sinf(angle);
+        figure->mesh.positions[v] = (vec3s){{c * p.x + s * p.z + far * 0.1f * sinf(4 * p.y),
+                                             p.y + far * 0.03f * sinf(9 * p.x), c * p.z - s * p.x}};
     }
     update_trace(figure);
 }
@@ -165,27 +168,27 @@ static void expect_equal(struct card *card, const struct figure *figure)
 
 static void test_figure_is_as_embree(void **state)
 {
-    struct figure *figure = open_figure();
+    struct figure *figure = shared;
     struct card card;
     card_open(&card, *state, NULL, NULL);
     card_update(&card, &figure->mesh);
-    move_figure(figure);
-    assert_true(compare(&card, figure, FIGURE_RAYS / 10).visibility > 0); /* it must follow */
+    move_figure(figure, 1);
+    assert_true(compare(&card, figure, FAULT_RAYS).visibility > 0); /* it must follow */
     card_update(&card, &figure->mesh);
     expect_equal(&card, figure);
     card_close(&card);
-    close_figure(figure);
+    move_figure(figure, 0);
 }
 
 /* Nearest hits take children in the ray's order: with an axis turned over, and in no order, they take more.
  */
 static void test_order_saves_work(void **state)
 {
-    static struct card_ray rays[FIGURE_RAYS / 10];
+    struct figure *figure = shared;
+    static struct card_ray rays[FAULT_RAYS];
     static const char *const orders[] = {
         "tree_first_slot(slots, octant)", "tree_first_slot(slots, 0u)", "tree_first_slot(slots, octant ^ 1u)",
         "tree_first_slot(slots, octant ^ 2u)", "tree_first_slot(slots, octant ^ 4u)"};
-    struct figure *figure = open_figure();
     double fewest = 0;
     figure_rays(figure, rays, TL_COUNT(rays));
     for (size_t i = 0; i < TL_COUNT(orders); i++) {
@@ -194,7 +197,6 @@ static void test_order_saves_work(void **state)
         fewest = i == 0 ? work.nodes : fewest;
         assert_true(i == 0 || work.nodes > fewest);
     }
-    close_figure(figure);
 }
 
 /* ---- Faults ---- */
@@ -204,6 +206,7 @@ enum { SOUP_TRIANGLES = 300, SOUP_RAYS = 500 };
 /* Each is found: rays differ from Embree's, or from all triangles of a soup. */
 static void test_faults_are_found(void **state)
 {
+    struct figure *figure = shared;
     static const struct card_edit faults[] = {
         /* boxes rounded to the inside, leaves and nodes numbered wrongly */
         {"refit.comp", "floor((low - node_low) * a_step - MARGIN)",
@@ -229,7 +232,6 @@ static void test_faults_are_found(void **state)
         {"tree_terms.glsl", "TL_TREE_CASTERS 1u", "TL_TREE_CASTERS 0u"},
     };
     static struct card_ray rays[SOUP_RAYS];
-    struct figure *figure = open_figure();
     struct soup soup;
     float openness[SOUP_TRIANGLES];
     soup_create(&soup, SOUP_TRIANGLES, 1);
@@ -247,7 +249,7 @@ static void test_faults_are_found(void **state)
         card_update(&card, &mesh);
         size_t faulty = card_count_faulty(&card, &mesh, rays, SOUP_RAYS, &hits);
         card_update(&card, &figure->mesh);
-        const struct against_embree result = compare(&card, figure, FIGURE_RAYS / 10);
+        const struct against_embree result = compare(&card, figure, FAULT_RAYS);
         faulty += result.visibility + result.nearest;
         if (faulty == 0)
             print_error("a fault is not found: %s: %s\n", faults[i].file, faults[i].text);
@@ -255,7 +257,20 @@ static void test_faults_are_found(void **state)
         card_close(&card);
     }
     soup_release(&soup);
-    close_figure(figure);
+}
+
+static int open_all(void **state)
+{
+    if (card_gpu_open(state) != 0)
+        return -1;
+    shared = open_figure();
+    return 0;
+}
+
+static int close_all(void **state)
+{
+    close_figure(shared);
+    return card_gpu_close(state);
 }
 
 int main(void)
@@ -265,5 +280,5 @@ int main(void)
         cmocka_unit_test(test_order_saves_work),
         cmocka_unit_test(test_faults_are_found),
     };
-    return cmocka_run_group_tests(tests, card_gpu_open, card_gpu_close);
+    return cmocka_run_group_tests(tests, open_all, close_all);
 }
