@@ -7,11 +7,11 @@ add_library(toile_light STATIC
   bounce/bounce_smooth.c
   brdf/angles.c
   brdf/brdf.c
-  brdf/coat.c
   brdf/fuzz.c
   brdf/ggx/ggx_lobes.c
   brdf/sample.c
   brdf/lobe_fit.c
+  brdf/material_lobes.c
   brdf/fresnel.c
   brdf/normalise.c
   brdf/options.c

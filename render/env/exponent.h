@@ -1,11 +1,17 @@
-/* The cosine lobe K_s of a glossiness. Pure; threads: any. */
+/* Cosine lobes K_s: the terms of lobes_terms.glsl in C, from the same text. Pure; threads: any. */
 #ifndef TOILE_RENDER_ENV_EXPONENT_H
 #define TOILE_RENDER_ENV_EXPONENT_H
 
-/* Exponent s = 1 / (1 - g) of glossiness g, clamped to [1, 1e6]. */
-float tl_lobe_exponent(float glossiness);
+#include "render/gpu/vectors.h"
 
-/* K_s(d, w) = (s + 1) / 2pi * max(0, d . w)^s for the cosine d . w. Its integral over the sphere is 1. */
+#include "render/gpu/terms_begin.h"
+
+#include "render/env/lobes_terms.glsl"
+
+#include "render/gpu/terms_end.h"
+
+/* lobe_exponent and lobe_cosine for callers without lanes; 0 below the horizon. */
+float tl_lobe_exponent(float glossiness);
 float tl_lobe_cosine(float exponent, float cosine);
 
 #endif

@@ -3,15 +3,9 @@
 #ifndef TOILE_RENDER_ENV_LOBES_FETCH_H
 #define TOILE_RENDER_ENV_LOBES_FETCH_H
 
+#include "render/env/exponent.h"
 #include "render/env/lobes.h"
 #include "render/env/quad.h"
-#include "render/gpu/vectors.h"
-
-#include "render/gpu/terms_begin.h"
-
-#include "render/env/lobes_terms.glsl"
-
-#include "render/gpu/terms_end.h"
 
 /* The four texels about a place: the index of the first, and the shares of the second column and row. */
 struct tl_lobe_texels {

@@ -1,4 +1,4 @@
-// Fetches from the maps of lobes (lobes.h), for GLSL and C.
+// Cosine lobes, and fetches from the maps of light through them (lobes.h), for GLSL and C.
 #ifdef GL_core_profile
 #include "vectors.glsl"
 #endif
@@ -29,6 +29,22 @@ TERM vec3 mirror_direction(vec3 n, vec3 viewer)
 TERM float lobe_exponent(float glossiness)
 {
     return 1.0f / max(1.0f - max(min(glossiness, 1.0f), 0.0f), 1e-6f);
+}
+
+// K_s(d, w) = (s + 1) / 2 pi max(0, d . w)^s
+TERM float lobe_cosine(float s, float cosine)
+{
+    return 0.15915494f * (s + 1.0f) * pow(max(cosine, 1e-30f), s); // GLSL leaves pow(0, s) to the driver
+}
+
+// Exponent of the cosine lobe that stands for K_s averaged over a region whose directions lie `spread` (root mean
+// square angle, rad) about its centre. Along each of two axes the region's variance is spread^2 / 2 and the lobe's
+// nearly 1 / (s + 1); variances add. Against the average over a disc it is off by less than 3 % in L1 while
+// spread^2 (s + 1) < 1, by 10 % at 2: beyond that a lobe's peak is the region's own shape. Broad lobes over large
+// regions add up to 0.9 spread^2 / sqrt(s): their foot, where the hemisphere cuts them, is no power.
+TERM float lobe_broadened_exponent(float s, float spread)
+{
+    return max((s + 1.0f) / (1.0f + (s + 1.0f) * 0.5f * spread * spread) - 1.0f, 0.25f);
 }
 
 // A point of the octahedron unfolded about +Y, in [0, 1]: that of a direction of any length. Below the horizon

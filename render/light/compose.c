@@ -1,12 +1,9 @@
 #include "render/light/compose.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/coat.h"
-#include "render/brdf/fuzz.h"
-#include "render/brdf/lobe_fit.h"
+#include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
-#include "render/env/lobes_fetch.h"
 #include "render/light/seen_lobes_internal.h"
 
 #include <math.h>
@@ -27,19 +24,13 @@ struct sums {
     float seen[2][3];
 };
 
-/* The lobes of a sample beyond the two: a multi-lobe fit, and a coat. Environment's frame. */
+/* The lobes of a sample beyond the two. Environment's frame. */
 struct lobes {
-    int count;
-    struct tl_fitted_lobe items[TL_SEEN_LOBES_MAX];
-    int facets; /* so many of them stand for `gloss`, which suns shine on itself; the next one is the coat */
-    struct tl_brdf_sum gloss;
-    struct tl_brdf_frame frame;
-    vec3s viewer;
-    float base; /* what coat and fuzz leave */
+    struct tl_material_lobes of;
+    int count, facets;
+    struct tl_fitted_lobe items[TL_MATERIAL_LOBES_MAX];
     bool has_fuzz;
-    struct tl_fuzz fuzz;
     struct tl_fuzz_lobes fibres; /* of fuzz */
-    vec3s axis;                  /* along which its fibres stand, in the environment */
 };
 
 /* Values that a block of samples shares. */
@@ -284,69 +275,39 @@ static void replace_by_occlusion(const struct sums *sums, int method, struct rec
         light->shadowed[kind] = glms_vec3_mul(light->unshadowed[kind], share);
 }
 
-static float viewed_by(const struct lobes *lobes, vec3s normal)
-{
-    return fmaxf(glms_vec3_dot(normal, lobes->viewer), 0);
-}
-
-static void add_lobe_set(const struct block *block, const tl_sample *sample, const tl_material *material,
-                         struct lobes *lobes)
-{
-    const struct tl_compose_request *request = block->request;
-    const vec4s stored = tl_sample_tangent(sample, request->ranges);
-    vec3s tangent = into_environment(block, (vec3s){{stored.x, stored.y, stored.z}});
-    vec3s normal = into_environment(block, sample->normal);
-    const float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
-    lobes->gloss = tl_brdf_sum_of(material, sample->specular, sample->diffuse, sample->glossiness,
-                                  stored.w * side, sample->widening);
-    lobes->frame = tl_brdf_frame_make(normal, tangent, stored.w, side * material->gloss.rotation);
-    lobes->facets =
-        tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->viewer, request->params->lobes, lobes->items);
-    for (int k = 0; k < lobes->facets; k++)
-        lobes->items[k].weight = glms_vec3_scale(lobes->items[k].weight, lobes->base);
-    lobes->count = lobes->facets;
-}
-
-/* A coat levels the threads out: it lies on the smooth surface. */
-static void add_coat(const struct block *block, const tl_sample *sample, const tl_material *material,
-                     struct lobes *lobes)
-{
-    vec3s n = into_environment(block, sample->smooth);
-    float share = lobes->fibres.under * material->coat * tl_coat_reflectance(viewed_by(lobes, n));
-    lobes->items[lobes->count++] =
-        (struct tl_fitted_lobe){.direction = mirror_direction(n, lobes->viewer),
-                                .exponent = tl_lobe_exponent(material->coat_glossiness),
-                                .weight = {{share, share, share}}};
-}
-
 /* The lobes of a sample that has more than two, and what is left of the two. */
 static void split_material_lobes(const struct block *block, const tl_material *material, tl_sample *sample,
                                  struct lobes *lobes)
 {
-    vec3s view = glms_vec3_normalize(glms_vec3_sub(block->request->eye, sample->point));
-    lobes->viewer = into_environment(block, view);
-    float facing = fmaxf(glms_vec3_dot(sample->smooth, view), 0);
-    lobes->has_fuzz = tl_material_has_fuzz(material);
-    lobes->fuzz = material->fuzz;
-    lobes->fibres.under = 1;
-    if (lobes->has_fuzz) {
-        const vec3s axis = fuzz_axis(material->fuzz.follow, sample->smooth, sample->normal);
-        lobes->axis = into_environment(block, axis);
-        lobes->fibres = tl_fuzz_lobes_of(&material->fuzz, glms_vec3_dot(axis, view));
-    }
-    lobes->base = lobes->fibres.under * (1 - material->coat * tl_coat_reflectance(facing));
+    const struct tl_compose_request *request = block->request;
+    struct tl_material_sample seen = {
+        .material = material,
+        .smooth = into_environment(block, sample->smooth),
+        .normal = into_environment(block, sample->normal),
+        .viewer = into_environment(block, glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)))};
     if (material->gloss.model != TL_REFLECT_PHONG) {
-        add_lobe_set(block, sample, material, lobes);
+        const vec4s tangent = tl_sample_tangent(sample, request->ranges);
+        seen.tangent = into_environment(block, (vec3s){{tangent.x, tangent.y, tangent.z}});
+        seen.handedness = tangent.w;
+        seen.side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
+        seen.diffuse = sample->diffuse;
+        seen.f0 = sample->specular;
+        seen.glossiness = sample->glossiness;
+        seen.widening = sample->widening;
         sample->specular = (vec3s){{0, 0, 0}};
         sample->glossiness = 0;
     }
-    if (material->coat > 0)
-        add_coat(block, sample, material, lobes);
-    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->base);
-    sample->specular = glms_vec3_scale(sample->specular, lobes->base);
+    lobes->of = tl_material_lobes_of(&seen);
+    lobes->count = tl_material_lobes_fit(&lobes->of, request->params->lobes, lobes->items, &lobes->facets);
+    lobes->has_fuzz = tl_material_has_fuzz(material);
+    if (lobes->has_fuzz)
+        lobes->fibres =
+            tl_fuzz_lobes_of(&material->fuzz, glms_vec3_dot(lobes->of.fuzz_axis, lobes->of.viewer));
+    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->of.base);
+    sample->specular = glms_vec3_scale(sample->specular, lobes->of.base);
 }
 
-/* Suns shine on facets themselves, and on a coat as on any lobe. */
+/* Suns shine on facets themselves, on a coat as on any lobe, and on fibres. */
 static vec3s sun_on_lobes(const struct block *block, size_t index, const struct lobes *lobes, vec3s smooth,
                           bool shadowed)
 {
@@ -355,21 +316,11 @@ static vec3s sun_on_lobes(const struct block *block, size_t index, const struct 
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
         const float *visibility = request->sun_visibility[i];
-        vec3s gloss = {{0, 0, 0}};
-        for (int k = 0; lobes->facets > 0 && k < lobes->gloss.count; k++)
-            gloss =
-                glms_vec3_add(gloss, tl_brdf_gloss_under_disc(&lobes->gloss.items[k], &lobes->frame,
-                                                              sun->direction, lobes->viewer, sun->radius));
-        gloss = glms_vec3_scale(gloss, lobes->base);
-        if (lobes->count > lobes->facets) {
-            const struct tl_fitted_lobe *coat = &lobes->items[lobes->facets];
-            float exponent = lobe_broadened_exponent(coat->exponent, sun->radius * GLM_SQRT1_2f);
-            float lobe = lobe_cosine(exponent, glms_vec3_dot(sun->direction, coat->direction));
-            gloss = glms_vec3_add(gloss, glms_vec3_scale(coat->weight, lobe));
-        }
+        const vec3s facets = tl_material_facets(&lobes->of, sun->direction, sun->radius);
+        const vec3s sent = tl_material_over(&lobes->of, facets, sun->direction, sun->radius);
         float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
         float seen = shadowed && visibility ? above * visibility[index] : 1;
-        light = glms_vec3_add(light, glms_vec3_scale(glms_vec3_mul(sun->power, gloss), seen));
+        light = glms_vec3_add(light, glms_vec3_scale(glms_vec3_mul(sun->power, sent), seen));
     }
     return light;
 }
@@ -381,8 +332,8 @@ TL_INLINE void see_fibres(const struct block *block, size_t index, const struct 
     const struct tl_compose_request *request = block->request;
     const struct tl_region_lights *lights = request->lights;
     float seen_lanes[3][TL_LANES] = {0}, all_lanes[3][TL_LANES] = {0};
-    const bool is_leaning = lobes->fuzz.follow > 0; /* then what lies below the surface is not seen */
-    const vec3s n = lobes->axis;
+    const bool is_leaning = lobes->of.fuzz.follow > 0; /* then what lies below the surface is not seen */
+    const vec3s n = lobes->of.fuzz_axis;
     for (int g = 0; g < lights->group_count; g++) {
         const struct tl_region_group *group = &lights->groups[g];
         if (glms_vec3_dot(group->axis, n) < -group->reach_sine)
@@ -481,7 +432,7 @@ static vec3s exact_fibres(const struct block *block, const struct lobes *lobes)
     vec3s light = {{0, 0, 0}};
     for (int k = 0; k < FUZZ_POWERS; k++) {
         const struct tl_exponent_blend power = {.index = TL_FUZZ_INDEX(k)};
-        vec3s arriving = tl_lobes_fetch(block->request->lobes, lobes->axis, power);
+        vec3s arriving = tl_lobes_fetch(block->request->lobes, lobes->of.fuzz_axis, power);
         light = glms_vec3_add(light, glms_vec3_scale(arriving, lobes->fibres.weights[k]));
     }
     return glms_vec3_maxv(light, glms_vec3_zero());
@@ -511,18 +462,9 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
         light = glms_vec3_mul(light, share_of(seen, all));
     }
     light = glms_vec3_add(light, fibres_bounced(lobes, bounced));
-    for (int i = 0; i < request->suns->count; i++) {
-        const struct tl_sun *sun = &request->suns->items[i];
-        const float *visibility = request->sun_visibility[i];
-        float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
-        float open = shadowed && visibility ? above * visibility[index] : 1;
-        light = glms_vec3_add(
-            light, glms_vec3_scale(sun->power, open * fuzz_value(lobes->fuzz.roughness, lobes->axis,
-                                                                 sun->direction, lobes->viewer)));
-    }
     if (by_occlusion)
         light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));
-    return glms_vec3_mul(light, lobes->fuzz.colour);
+    return glms_vec3_mul(light, lobes->of.fuzz.colour);
 }
 
 /* The material of a sample that has more than two lobes, or NULL. Mirrors show the two, and so do the other
@@ -604,7 +546,7 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     add_bounced(block, &bounced, &frame, mirror && mirror->ray_count > 0, received.shadowed);
     const vec3s *arriving = method == TL_METHOD_UNSHADOWED ? received.unshadowed : received.shadowed;
     vec3s colour = colour_of(sample, request->params->lobe, arriving);
-    if (lobes.count > 0)
+    if (rich)
         colour =
             glms_vec3_add(colour, light_of_lobes(block, index, &lobes, frame.smooth, &received, &bounced));
     if (lobes.has_fuzz)

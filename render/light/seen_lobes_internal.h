@@ -3,11 +3,9 @@
 #ifndef TOILE_RENDER_LIGHT_SEEN_LOBES_INTERNAL_H
 #define TOILE_RENDER_LIGHT_SEEN_LOBES_INTERNAL_H
 
-#include "render/brdf/lobe_fit.h"
+#include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
 #include "render/light/compose.h"
-
-#define TL_SEEN_LOBES_MAX (TL_LOBE_FIT_SUM_MAX + 1) /* a set for each gloss, and a coat */
 
 /* Visibility of group g at a sample. */
 TL_INLINE void tl_read_visibility(const uint16_t *values, size_t stride, const struct tl_taps *taps, int g,
@@ -93,7 +91,7 @@ TL_INLINE vec3s tl_see_lobes(const struct tl_compose_request *request, size_t in
                              const struct tl_fitted_lobe *lobes, int count, vec3s smooth)
 {
     const struct tl_region_lights *lights = request->lights;
-    struct tl_lobe_terms terms[TL_SEEN_LOBES_MAX];
+    struct tl_lobe_terms terms[TL_MATERIAL_LOBES_MAX];
     float sums[3][TL_LANES] = {0};
     tl_find_lobe_terms(lights, lobes, count, terms);
     for (int g = 0; g < lights->group_count; g++) {

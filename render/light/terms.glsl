@@ -1,23 +1,10 @@
-// Scalar terms of the light, written once for GLSL and C (terms.h): the common subset of both, float functions only.
+// Terms of the light of discs and regions, written once for GLSL and C (terms.h).
+#ifdef GL_core_profile
+#include "lobes_terms.glsl"
+#endif
 #ifndef TERM
 #define TERM
 #endif
-
-// K_s(d, w) = (s + 1) / 2 pi max(0, d . w)^s
-TERM float lobe_cosine(float s, float cosine)
-{
-    return 0.15915494f * (s + 1.0f) * pow(max(cosine, 1e-30f), s); // GLSL leaves pow(0, s) to the driver
-}
-
-// Exponent of the cosine lobe that stands for K_s averaged over a region whose directions lie `spread` (root mean
-// square angle, rad) about its centre. Along each of two axes the region's variance is spread^2 / 2 and the lobe's
-// nearly 1 / (s + 1); variances add. Against the average over a disc it is off by less than 3 % in L1 while
-// spread^2 (s + 1) < 1, by 10 % at 2: beyond that a lobe's peak is the region's own shape. Broad lobes over large
-// regions add up to 0.9 spread^2 / sqrt(s): their foot, where the hemisphere cuts them, is no power.
-TERM float lobe_broadened_exponent(float s, float spread)
-{
-    return max((s + 1.0f) / (1.0f + (s + 1.0f) * 0.5f * spread * spread) - 1.0f, 0.25f);
-}
 
 // Mean over a disc of the height above the horizon, in radii, 0 below it, when the centre is u radii above: u itself
 // above, 0 below; while the disc sets (u (pi/2 + asin u) + (2 + u^2) sqrt(1 - u^2) / 3) / pi, within 0.0015, as a

@@ -2,7 +2,7 @@
 #ifndef TOILE_RENDER_LIGHT_TERMS_H
 #define TOILE_RENDER_LIGHT_TERMS_H
 
-#include "render/gpu/vectors.h"
+#include "render/env/exponent.h"
 
 #include "render/gpu/terms_begin.h"
 

@@ -1,8 +1,8 @@
 #include "render/light/transparency.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/coat.h"
-#include "render/brdf/fuzz.h"
+#include "render/brdf/material_lobes.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,18 +107,17 @@ static bool gather_behind(struct tl_transparency *transparency, tl_gpu *gpu,
 /* The other side of a layer, where it is lit by what it lets through. */
 static tl_sample other_side(const tl_sample *sample, const tl_material *material, vec3s eye)
 {
-    vec3s view = glms_vec3_normalize(glms_vec3_sub(eye, sample->point));
-    float facing = fmaxf(glms_vec3_dot(sample->smooth, view), 0);
-    const vec3s fibres = fuzz_axis(material->fuzz.follow, sample->smooth, sample->normal);
-    float base = tl_fuzz_under(material, glms_vec3_dot(fibres, view)) *
-                 (1 - material->coat * tl_coat_reflectance(facing));
+    const struct tl_material_sample seen = {.material = material,
+                                            .smooth = sample->smooth,
+                                            .normal = sample->normal,
+                                            .viewer = glms_vec3_normalize(glms_vec3_sub(eye, sample->point))};
     tl_sample other = *sample;
     other.triangle ^= TL_SAMPLE_BACK;
     other.normal = glms_vec3_negate(sample->normal);
     other.smooth = glms_vec3_negate(sample->smooth);
     other.mirror = other.normal;
     other.glossiness = 0;
-    other.diffuse = glms_vec3_scale(material->transmission, base);
+    other.diffuse = glms_vec3_scale(material->transmission, tl_material_base(&seen));
     other.specular = (vec3s){{0, 0, 0}};
     return other;
 }

@@ -1,8 +1,7 @@
 #include "render/local/lamp_samples.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/brdf.h"
-#include "render/brdf/coat.h"
+#include "render/brdf/material_lobes.h"
 #include "render/brdf/tables/measured.h"
 #include "render/env/exponent.h"
 #include "render/trace/cutout.h"
@@ -14,67 +13,52 @@
 struct lit {
     const tl_sample *sample;
     const tl_material *material;
-    vec3s viewer;
-    float base, coat; /* fractions of the material below the coat and of the reflection by the coat */
-    bool is_measured; /* tables in place of diffuse light and gloss, in `frame` */
-    bool faceted;     /* gloss is `gloss` instead of K_s about the mirror direction */
-    struct tl_brdf_sum gloss;
-    struct tl_brdf_frame frame;
+    bool has_two; /* nothing but its two lobes; else: */
+    struct tl_material_lobes lobes;
 };
 
 static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t index)
 {
     const struct tl_samples *samples = request->samples;
     const tl_sample *sample = &samples->items[index];
-    bool is_behind = index < samples->primary_count + samples->behind_count;
     struct lit lit = {.sample = sample,
                       .material = tl_triangle_material(request->ranges, sample->triangle & ~TL_SAMPLE_BACK),
-                      .viewer = glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)),
-                      .base = 1};
-    if (!is_behind) /* samples on other sides are diffuse and include their coat already; mirrored samples
-                       have two lobes only */
+                      /* Samples on other sides are diffuse and include their coat already. */
+                      .has_two = index >= samples->primary_count + samples->behind_count};
+    if (lit.has_two)
         return lit;
-    float cosine = fmaxf(glms_vec3_dot(sample->smooth, lit.viewer), 0);
-    lit.coat = lit.material->coat > 0 ? lit.material->coat * tl_coat_reflectance(cosine) : 0;
-    lit.base = 1 - lit.coat;
-    lit.is_measured = lit.material->measured != NULL;
-    lit.faceted = lit.material->gloss.model != TL_REFLECT_PHONG;
-    if (lit.faceted || lit.is_measured) {
-        const vec4s tangent = tl_sample_tangent(sample, request->ranges);
-        float side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
-        lit.gloss = tl_brdf_sum_of(lit.material, sample->specular, sample->diffuse, sample->glossiness,
-                                   side * tangent.w, sample->widening);
-        lit.frame = tl_brdf_frame_make(sample->normal, (vec3s){{tangent.x, tangent.y, tangent.z}}, tangent.w,
-                                       side * lit.material->gloss.rotation);
-    }
+    const vec4s tangent = tl_sample_tangent(sample, request->ranges);
+    const struct tl_material_sample seen = {
+        .material = lit.material,
+        .smooth = sample->smooth,
+        .normal = sample->normal,
+        .viewer = glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)),
+        .tangent = {{tangent.x, tangent.y, tangent.z}},
+        .handedness = tangent.w,
+        .side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f,
+        .diffuse = sample->diffuse,
+        .f0 = sample->specular,
+        .glossiness = sample->glossiness,
+        .widening = sample->widening};
+    lit.lobes = tl_material_lobes_of(&seen);
     return lit;
-}
-
-static vec3s gloss_of(const struct lit *lit, vec3s l)
-{
-    const tl_sample *sample = lit->sample;
-    if (lit->faceted)
-        return tl_brdf_sum_gloss(&lit->gloss, &lit->frame, l, lit->viewer);
-    return glms_vec3_scale(sample->specular, tl_lobe_cosine(tl_lobe_exponent(sample->glossiness),
-                                                            glms_vec3_dot(sample->mirror, l)));
 }
 
 static vec3s reflected(const struct lit *lit, vec3s l)
 {
-    if (lit->is_measured)
-        return tl_measured_reflected(lit->material->measured, &lit->frame, l, lit->viewer);
-    float matt = fmaxf(glms_vec3_dot(lit->sample->normal, l), 0) / (float)M_PI;
-    return glms_vec3_add(glms_vec3_scale(lit->sample->diffuse, matt), gloss_of(lit, l));
-}
-
-static float coat_of(const struct lit *lit, vec3s l)
-{
-    vec3s n = lit->sample->smooth;
-    if (lit->coat <= 0)
-        return 0;
-    vec3s axis = glms_vec3_sub(glms_vec3_scale(n, 2 * glms_vec3_dot(n, lit->viewer)), lit->viewer);
-    return lit->coat *
-           tl_lobe_cosine(tl_lobe_exponent(lit->material->coat_glossiness), glms_vec3_dot(axis, l));
+    const tl_sample *sample = lit->sample;
+    const float matt = fmaxf(glms_vec3_dot(sample->normal, l), 0) / (float)M_PI;
+    const float shine =
+        tl_lobe_cosine(tl_lobe_exponent(sample->glossiness), glms_vec3_dot(sample->mirror, l));
+    const vec3s gloss = lit->lobes.is_faceted ? tl_material_facets(&lit->lobes, l, 0)
+                                              : glms_vec3_scale(sample->specular, shine);
+    const vec3s sent = glms_vec3_add(glms_vec3_scale(sample->diffuse, matt), gloss);
+    if (lit->has_two)
+        return sent;
+    const struct tl_measured *measured = lit->material->measured;
+    return tl_material_over(
+        &lit->lobes,
+        measured ? tl_measured_reflected(measured, &lit->lobes.frame, l, lit->lobes.viewer) : sent, l, 0);
 }
 
 /* The order of local.frag: emission times its map, below the coat. */
@@ -88,7 +72,8 @@ static vec3s emitted(const struct tl_lamp_samples_request *request, const struct
     for (int i = 0; surface->uvs && i < 3; i++)
         uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[i]], lit->sample->weights[i]));
     vec3s colour = tl_map_colour_at(&lit->material->emission_map, uv);
-    return glms_vec3_scale(glms_vec3_mul(lit->material->emission, colour), lit->base);
+    return glms_vec3_scale(glms_vec3_mul(lit->material->emission, colour),
+                           lit->has_two ? 1 : lit->lobes.base);
 }
 
 static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size_t index)
@@ -105,8 +90,7 @@ static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size
                                                lit.sample, request->ranges, request->ground, &l);
         if (!(arriving.x > 0 || arriving.y > 0 || arriving.z > 0))
             continue;
-        vec3s sent = glms_vec3_adds(glms_vec3_scale(reflected(&lit, l), lit.base), coat_of(&lit, l));
-        sum = glms_vec3_add(sum, glms_vec3_mul(arriving, sent));
+        sum = glms_vec3_add(sum, glms_vec3_mul(arriving, reflected(&lit, l)));
     }
     return sum;
 }

@@ -151,27 +151,27 @@ static vec3s finite_product(vec3s radiance, vec3s share)
  * (p_environment + n p_lobe), where `sample_pdf` is the number of environment samples times their pdf. */
 static vec3s layered_share(const struct gather *gather, int i, vec3s direction, float sample_pdf)
 {
-    const struct tl_shading_layers *layers = &gather->points->layers[i];
+    const struct tl_material_lobes *lobes = &gather->points->layers[i].lobes;
     float count = (float)gather->request->lobe_samples;
     vec3s share = {{0, 0, 0}};
-    if (layers->coat > 0) {
-        float lobe = tl_lobe_value(layers->coat_exponent, off_axis(layers->coat_axis, direction));
-        float coat = layers->coat * lobe / (sample_pdf + count * lobe);
+    if (lobes->coat > 0) {
+        float lobe = tl_lobe_value(lobes->coat_exponent, off_axis(lobes->coat_axis, direction));
+        float coat = lobes->coat * lobe / (sample_pdf + count * lobe);
         share = (vec3s){{coat, coat, coat}};
     }
-    if (layers->faceted) {
+    if (lobes->is_faceted) {
         vec3s viewer = gather->points->viewer[i];
-        for (int k = 0; k < layers->gloss.count; k++) {
-            const struct tl_brdf *brdf = &layers->gloss.items[k];
-            vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);
-            float pdf = tl_brdf_pdf(brdf, &layers->frame, direction, viewer);
-            share = glms_vec3_add(share, glms_vec3_scale(gloss, layers->base / (sample_pdf + count * pdf)));
+        for (int k = 0; k < lobes->gloss.count; k++) {
+            const struct tl_brdf *brdf = &lobes->gloss.items[k];
+            vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
+            float pdf = tl_brdf_pdf(brdf, &lobes->frame, direction, viewer);
+            share = glms_vec3_add(share, glms_vec3_scale(gloss, lobes->base / (sample_pdf + count * pdf)));
         }
     }
-    if (glms_vec3_max(layers->fuzz.colour) > 0) { /* broad: the environment's samples are enough */
+    if (glms_vec3_max(lobes->fuzz.colour) > 0) { /* broad: the environment's samples are enough */
         float fibres =
-            fuzz_value(layers->fuzz.roughness, layers->fuzz_normal, direction, gather->points->viewer[i]);
-        share = glms_vec3_add(share, glms_vec3_scale(layers->fuzz.colour, fibres / sample_pdf));
+            fuzz_value(lobes->fuzz.roughness, lobes->fuzz_axis, direction, gather->points->viewer[i]);
+        share = glms_vec3_add(share, glms_vec3_scale(lobes->fuzz.colour, fibres / sample_pdf));
     }
     return share;
 }
@@ -283,19 +283,19 @@ static void gather_coats(struct gather *gather, int sample)
     struct ray_batch batch;
     begin_batch(&batch, false);
     for (int i = 0; i < gather->points->count; i++) {
-        const struct tl_shading_layers *layers = &gather->points->layers[i];
-        if (!gather->points->layered[i] || !(layers->coat > 0))
+        const struct tl_material_lobes *lobes = &gather->points->layers[i].lobes;
+        if (!gather->points->layered[i] || !(lobes->coat > 0))
             continue;
         float off;
         vec2s numbers = lobe_numbers(gather, i, sample);
-        vec3s direction = tl_lobe_sample(layers->coat_axis, layers->coat_exponent, (double)numbers.x,
+        vec3s direction = tl_lobe_sample(lobes->coat_axis, lobes->coat_exponent, (double)numbers.x,
                                          (double)numbers.y, &off);
-        float lobe = tl_lobe_value(layers->coat_exponent, off);
+        float lobe = tl_lobe_value(lobes->coat_exponent, off);
         if (!(glms_vec3_dot(tl_shading_lane(gather->points->horizon, i), direction) > 0) || !(lobe > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
         float share =
-            layers->coat * lobe / ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
+            lobes->coat * lobe / ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
         vec3s light = finite_product(sky.radiance, (vec3s){{share, share, share}});
         if (!is_dark(light))
             add_ray(&batch, gather, i, direction, light);
@@ -310,20 +310,20 @@ static void gather_facets(struct gather *gather, int sample, int lobe)
     struct ray_batch batch;
     begin_batch(&batch, false);
     for (int i = 0; i < gather->points->count; i++) {
-        const struct tl_shading_layers *layers = &gather->points->layers[i];
-        if (!gather->points->layered[i] || !layers->faceted || lobe >= layers->gloss.count)
+        const struct tl_material_lobes *lobes = &gather->points->layers[i].lobes;
+        if (!gather->points->layered[i] || !lobes->is_faceted || lobe >= lobes->gloss.count)
             continue;
         float pdf;
-        const struct tl_brdf *brdf = &layers->gloss.items[lobe];
+        const struct tl_brdf *brdf = &lobes->gloss.items[lobe];
         vec3s viewer = gather->points->viewer[i];
         vec2s numbers = lobe_numbers(gather, i, sample);
-        vec3s direction = tl_brdf_sample(brdf, &layers->frame, viewer, numbers.x, numbers.y, &pdf);
+        vec3s direction = tl_brdf_sample(brdf, &lobes->frame, viewer, numbers.x, numbers.y, &pdf);
         if (!(pdf > 0) || !(glms_vec3_dot(tl_shading_lane(gather->points->horizon, i), direction) > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
-        vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);
+        vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
         float sample_pdf = (float)request->strata * sky.pdf + (float)request->lobe_samples * pdf;
-        vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, layers->base / sample_pdf));
+        vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, lobes->base / sample_pdf));
         if (!is_dark(light))
             add_ray(&batch, gather, i, direction, light);
     }

@@ -1,9 +1,7 @@
 #include "render/reference/lamps.h"
 
 #include "render/brdf/brdf.h"
-#include "render/brdf/fuzz.h"
 #include "render/brdf/tables/measured.h"
-#include "render/env/exponent.h"
 
 #include <float.h>
 #include <math.h>
@@ -27,22 +25,12 @@ static float visibility_from(const struct tl_reference_scene *scene, vec3s origi
 static vec3s reflected(const struct tl_shading_point *point, const struct tl_brdf_sum *brdfs,
                        const struct tl_brdf_frame *frame, vec3s l)
 {
-    const struct tl_shading_layers *layers = &point->layers;
     float matt = fmaxf(glms_vec3_dot(point->normal, l), 0) / (float)M_PI;
     vec3s gloss = tl_brdf_sum_gloss(brdfs, frame, l, point->viewer);
     vec3s sent = point->material->measured
                      ? tl_measured_reflected(point->material->measured, frame, l, point->viewer)
                      : glms_vec3_add(glms_vec3_scale(point->albedo, matt), gloss);
-    if (!point->layered)
-        return sent;
-    float coat = layers->coat > 0 ? layers->coat * tl_lobe_cosine(layers->coat_exponent,
-                                                                  glms_vec3_dot(layers->coat_axis, l))
-                                  : 0;
-    sent = glms_vec3_adds(glms_vec3_scale(sent, layers->base), coat);
-    if (!(glms_vec3_max(layers->fuzz.colour) > 0))
-        return sent;
-    float fibres = fuzz_value(layers->fuzz.roughness, layers->fuzz_normal, l, point->viewer);
-    return glms_vec3_add(sent, glms_vec3_scale(layers->fuzz.colour, fibres));
+    return point->layered ? tl_material_over(&point->layers.lobes, sent, l, 0) : sent;
 }
 
 vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *point,

@@ -162,45 +162,44 @@ static void follow_transmitted(struct paths *paths, int i, int sample)
 
 static void follow_coat(struct paths *paths, int i, int sample)
 {
-    const struct tl_shading_layers *layers = &paths->points->layers[i];
-    float off, weight = layers->coat / (float)paths->samples;
+    const struct tl_material_lobes *lobes = &paths->points->layers[i].lobes;
+    float off, weight = lobes->coat / (float)paths->samples;
     double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
     if (weight > 0)
-        follow_above(paths, i, tl_lobe_sample(layers->coat_axis, layers->coat_exponent, height, turn, &off),
+        follow_above(paths, i, tl_lobe_sample(lobes->coat_axis, lobes->coat_exponent, height, turn, &off),
                      (vec3s){{weight, weight, weight}});
 }
 
 /* Each lobe of the gloss by directions of its own. */
 static void follow_facets(struct paths *paths, int i, int sample, int lobe)
 {
-    const struct tl_shading_layers *layers = &paths->points->layers[i];
+    const struct tl_material_lobes *lobes = &paths->points->layers[i].lobes;
     const float below_one = 1 - 0x1p-24f;
     float height = fminf((float)share_of_sample(paths, sample), below_one), pdf;
     float turn = fminf((float)tl_random_unit(&paths->random), below_one);
-    if (!layers->faceted || lobe >= layers->gloss.count)
+    if (!lobes->is_faceted || lobe >= lobes->gloss.count)
         return;
-    const struct tl_brdf *brdf = &layers->gloss.items[lobe];
+    const struct tl_brdf *brdf = &lobes->gloss.items[lobe];
     vec3s viewer = paths->points->viewer[i];
-    vec3s direction = tl_brdf_sample(brdf, &layers->frame, viewer, height, turn, &pdf);
+    vec3s direction = tl_brdf_sample(brdf, &lobes->frame, viewer, height, turn, &pdf);
     if (!(pdf > 0))
         return;
-    vec3s gloss = tl_brdf_gloss(brdf, &layers->frame, direction, viewer);
-    follow_above(paths, i, direction, glms_vec3_scale(gloss, layers->base / pdf / (float)paths->samples));
+    vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
+    follow_above(paths, i, direction, glms_vec3_scale(gloss, lobes->base / pdf / (float)paths->samples));
 }
 
 /* Directions are uniform above the smooth surface, because fuzz does not follow the cosine. */
 static void follow_fuzz(struct paths *paths, int i, int sample)
 {
-    const struct tl_shading_layers *layers = &paths->points->layers[i];
+    const struct tl_material_lobes *lobes = &paths->points->layers[i].lobes;
     float off;
     double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
-    if (!(glms_vec3_max(layers->fuzz.colour) > 0))
+    if (!(glms_vec3_max(lobes->fuzz.colour) > 0))
         return;
-    vec3s direction = tl_lobe_sample(layers->fuzz_normal, 0, height, turn, &off);
-    float fibres =
-        fuzz_value(layers->fuzz.roughness, layers->fuzz_normal, direction, paths->points->viewer[i]);
+    vec3s direction = tl_lobe_sample(lobes->fuzz_axis, 0, height, turn, &off);
+    float fibres = fuzz_value(lobes->fuzz.roughness, lobes->fuzz_axis, direction, paths->points->viewer[i]);
     follow_above(paths, i, direction,
-                 glms_vec3_scale(layers->fuzz.colour, fibres * 2 * (float)M_PI / (float)paths->samples));
+                 glms_vec3_scale(lobes->fuzz.colour, fibres * 2 * (float)M_PI / (float)paths->samples));
 }
 
 static void follow_paths(struct paths *paths, int i, int sample)

@@ -1,13 +1,10 @@
 #include "render/reference/shading_point.h"
 
-#include "render/brdf/coat.h"
 #include "render/brdf/facets.h"
-#include "render/brdf/fuzz.h"
 #include "render/construction/look.h"
 #include "render/detail/bumps.h"
 #include "render/detail/yarns.h"
 #include "render/env/exponent.h"
-#include "render/env/lobes_fetch.h"
 #include "render/surfaces/surface_terms.h"
 #include "render/surfaces/surfaces.h"
 
@@ -213,43 +210,29 @@ static void set_tangent(const struct sample_place *place, vec3s n, struct tl_sha
     result->handedness = place->tangent.w * place->side;
 }
 
-/* Sets the coat. It fills the threads up, so that its mirror direction is that of the smooth surface. */
-static void set_coat(const struct sample_place *place, vec3s smooth, struct tl_shading_point *result)
-{
-    struct tl_shading_layers *layers = &result->layers;
-    vec3s n = glms_vec3_scale(smooth, place->side);
-    float cosine = fmaxf(glms_vec3_dot(n, result->viewer), 0);
-    float share = place->material->coat * tl_coat_reflectance(cosine);
-    layers->coat = layers->base * share;
-    layers->base *= 1 - share;
-    layers->coat_axis = mirror_direction(n, result->viewer);
-    layers->coat_exponent = tl_lobe_exponent(place->material->coat_glossiness);
-}
-
 static void set_layers(const struct sample_place *place, vec3s smooth, struct tl_shading_point *result)
 {
     const tl_material *material = place->material;
+    const struct tl_material_sample sample = {.material = material,
+                                              .smooth = glms_vec3_scale(smooth, place->side),
+                                              .normal = result->normal,
+                                              .viewer = result->viewer,
+                                              .tangent = result->tangent,
+                                              .handedness = result->handedness,
+                                              .side = place->side,
+                                              .diffuse = result->albedo,
+                                              .f0 = result->f0,
+                                              .glossiness = result->glossiness,
+                                              .widening = result->widening};
     struct tl_shading_layers *layers = &result->layers;
     result->layered = true;
     layers->openness = material->openness;
-    layers->fuzz = material->fuzz;
-    layers->fuzz_normal =
-        fuzz_axis(material->fuzz.follow, glms_vec3_scale(smooth, place->side), result->normal);
-    layers->base = tl_fuzz_under(material, glms_vec3_dot(layers->fuzz_normal, result->viewer));
-    if (material->coat > 0)
-        set_coat(place, smooth, result);
-    layers->faceted = material->gloss.model != TL_REFLECT_PHONG;
-    if (layers->faceted) {
-        layers->gloss = tl_brdf_sum_of(material, result->f0, result->albedo, result->glossiness,
-                                       place->tangent.w, result->widening);
-        layers->frame = tl_brdf_frame_make(result->normal, result->tangent, result->handedness,
-                                           place->side * material->gloss.rotation);
-        result->glossy = (vec3s){{0, 0, 0}};
-    }
-    result->diffuse = glms_vec3_scale(result->diffuse, layers->base);
-    result->glossy = glms_vec3_scale(result->glossy, layers->base);
-    result->emission = glms_vec3_scale(result->emission, layers->base);
-    layers->transmitted = glms_vec3_scale(material->transmission, layers->base);
+    layers->lobes = tl_material_lobes_of(&sample);
+    const float base = layers->lobes.base;
+    result->diffuse = glms_vec3_scale(result->diffuse, base);
+    result->glossy = glms_vec3_scale(result->glossy, layers->lobes.is_faceted ? 0 : base);
+    result->emission = glms_vec3_scale(result->emission, base);
+    layers->transmitted = glms_vec3_scale(material->transmission, base);
 }
 
 static void set_lobes(const struct sample_place *place, const struct tl_reference_scene *scene, vec3s viewer,

@@ -6,7 +6,7 @@
 #ifndef TOILE_RENDER_REFERENCE_SHADING_POINT_H
 #define TOILE_RENDER_REFERENCE_SHADING_POINT_H
 
-#include "render/brdf/brdf.h"
+#include "render/brdf/material_lobes.h"
 #include "render/reference/scene.h"
 #include "render/scene/view.h"
 
@@ -22,21 +22,13 @@ struct tl_ray_differential {
  * corner. */
 struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y);
 
-/* The parts of a material beyond two lobes. The colours of the lobes here and in tl_shading_point are already
- * multiplied by `base`. */
+/* The parts of a material beyond two lobes. The colours of those in tl_shading_point are already multiplied
+ * by `lobes.base`. */
 struct tl_shading_layers {
     float openness;    /* fraction that is seen straight through */
     vec3s transmitted; /* kt: diffuse transmission of light from the other side: K_1(-normal, w) */
     vec3s behind;      /* origin of rays to that light */
-    float coat;        /* Fresnel reflectance of the coat times its coverage and what fuzz leaves */
-    vec3s coat_axis;
-    float coat_exponent;
-    bool faceted;        /* gloss is `gloss` times `base` instead of the lobe about `axis` */
-    float base;          /* what coat and fuzz leave */
-    struct tl_fuzz fuzz; /* about `fuzz_normal`; colour 0: none */
-    vec3s fuzz_normal;
-    struct tl_brdf_sum gloss;
-    struct tl_brdf_frame frame;
+    struct tl_material_lobes lobes;
 };
 
 /* A shading point with one or two lobes, c = integral of L V [diffuse K_1(normal, w) + glossy K_s(axis, w)]

@@ -1,6 +1,6 @@
 #include "render/shade/ratios.h"
 
-#include "render/env/lobes_fetch.h"
+#include "render/env/exponent.h"
 
 #include "config/base/memory.h"
 #include "render/shade/look.h"

@@ -113,7 +113,7 @@ static void fill_samples(struct scene *scene, float glossiness, bool bumped)
             .glossiness = glossiness,
             .diffuse = {{0.5f, 0.5f, 0.5f}},
             .specular = {{0.5f, 0.5f, 0.5f}}};
-        scene->taps[i] = (struct tl_taps){.weight = {1, 0, 0, 0}};
+        scene->taps[i] = (struct tl_taps){.weight = {1, 0, 0}};
     }
 }
 

@@ -1,0 +1,55 @@
+/* What a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over gloss and
+ * diffuse colour. The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel 1999, 4.4].
+ * The two lobes of every material, K_1 about the normal and K_s about the mirror direction, are not listed:
+ * their owner multiplies them by `base`, and has only the first where `is_faceted`.
+ *
+ * Directions are unit, all in one space, whichever. Errors: none. Pure; threads: any. */
+#ifndef TOILE_RENDER_BRDF_MATERIAL_LOBES_H
+#define TOILE_RENDER_BRDF_MATERIAL_LOBES_H
+
+#include "render/brdf/fuzz.h"
+#include "render/brdf/lobe_fit.h"
+
+/* A sample's surface, on the side that is seen. */
+struct tl_material_sample {
+    const tl_material *material;
+    vec3s smooth, normal; /* without and with bumps */
+    vec3s viewer;
+    /* Of facets: */
+    vec3s tangent;     /* along u */
+    float handedness;  /* bitangent = handedness * cross(normal, tangent) */
+    float side;        /* 1; -1: the back is seen */
+    vec3s diffuse, f0; /* with maps */
+    float glossiness;
+    const float *widening; /* [3] (tl_brdf_bumped) */
+};
+
+struct tl_material_lobes {
+    vec3s viewer;
+    float base;      /* what coat and fuzz leave of what is below them */
+    float coat;      /* what the coat reflects, below fuzz; 0: no coat */
+    vec3s coat_axis; /* mirror direction of the smooth surface: a coat levels threads and bumps out */
+    float coat_exponent;
+    struct tl_fuzz fuzz; /* colour 0: none */
+    vec3s fuzz_axis;     /* along which its fibres stand */
+    bool is_faceted;     /* the gloss is this, and no lobe about the mirror direction: */
+    struct tl_brdf_sum gloss;
+    struct tl_brdf_frame frame; /* of facets, or of a measured material */
+};
+
+struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *sample);
+/* `base` alone, for which nothing of facets is read. */
+float tl_material_base(const struct tl_material_sample *sample);
+
+/* The lobes for which prefiltered light can be looked up: those that stand for facets, at most `max_count`
+ * for each gloss, then the coat. Returns how many; *facets: of facets. */
+#define TL_MATERIAL_LOBES_MAX (TL_LOBE_FIT_SUM_MAX + 1)
+int tl_material_lobes_fit(const struct tl_material_lobes *lobes, int max_count,
+                          struct tl_fitted_lobe items[TL_MATERIAL_LOBES_MAX], int *facets);
+
+/* f_r cos for a light that is a disc of angular radius `radius` (rad; 0: a point) about l: of facets alone, 0
+ * without; and of coat and fibres over what is below them, `below`. */
+vec3s tl_material_facets(const struct tl_material_lobes *lobes, vec3s l, float radius);
+vec3s tl_material_over(const struct tl_material_lobes *lobes, vec3s below, vec3s l, float radius);
+
+#endif
