@@ -50,7 +50,7 @@ static void keep_freed_memory(void)
     mallopt(M_TRIM_THRESHOLD, trimmed_beyond);
 }
 
-/* What libraries read before main begins: the program sets it and executes itself again; where that fails it
+/* The environment that libraries read before main begins: the program sets it and executes itself again; where that fails it
  * only runs slower. Idle OpenMP threads would spin on the cores that software GL's threads need. Memory in
  * pages of 4 kB is faulted in one page at a time, which takes up to a quarter of the time of a small still.
  */

@@ -84,6 +84,18 @@ static bool check_light_size(const struct tl_render_settings *settings, uint64_t
     return true;
 }
 
+/* The settings as the jobs use them, on this GL. */
+static struct tl_render_settings resolve(const tl_renderer *renderer,
+                                         const struct tl_render_settings *settings)
+{
+    struct tl_render_settings used = tl_render_settings_resolve(settings);
+    const tl_gpu *gpu = renderer->resources.gpu;
+    const bool is_wanted = used.light.device == TL_DEVICE_CARD ||
+                           (used.light.device == TL_DEVICE_AUTO && !tl_gpu_is_software(gpu));
+    used.light.device = is_wanted && !tl_card_gl_refusal(gpu) ? TL_DEVICE_CARD : TL_DEVICE_CPU;
+    return used;
+}
+
 bool tl_renderer_request(const struct tl_render_settings *settings, tl_error *error)
 {
     uint64_t bytes = 0;
@@ -103,9 +115,12 @@ tl_renderer *tl_renderer_create(tl_gpu *gpu, tl_error *error)
     resources->detail.params = *(const struct tl_detail_params *)tl_detail_options.defaults;
     tl_ground_make(&(struct tl_casters){.radius = TL_CASTERS_RADIUS_MIN}, TL_GROUND_GREY, &resources->ground);
     resources->points = tl_points_create();
+    resources->card = tl_card_create(gpu);
     resources->trace = tl_trace_create(error);
     resources->maps = tl_shadow_maps_create(gpu, error);
     renderer->shaders_stamp = tl_shaders_stamp(tl_embedded_shaders);
+    if (!tl_gpu_is_software(gpu))
+        renderer->timer = tl_timer_create(false);
     if (!resources->trace || !resources->maps || !tl_lighting_create(&resources->lighting, gpu, error) ||
         !tl_present_create(&resources->present, gpu, error) ||
         !tl_jobs_check(tl_frame_jobs, tl_frame_job_count, error) || !tl_gpu_check(gpu, error))
@@ -117,6 +132,7 @@ void tl_renderer_destroy(tl_renderer **renderer)
 {
     if (!*renderer)
         return;
+    tl_timer_destroy(&(*renderer)->timer);
     tl_resources_release(&(*renderer)->resources);
     free(*renderer);
     *renderer = NULL;
@@ -239,27 +255,60 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
     tl_machine_load_follow(&renderer->load, predicted_ms, took_ms);
 }
 
+/* Runs a job and everything that it asks of GL, by the CPU's clock: GL's own is wrong on software drivers. */
+static bool run_and_wait(tl_renderer *renderer, int job, struct tl_plan_row *row, tl_error *error)
+{
+    const double started_s = tl_clock_s();
+    const bool has_run = tl_frame_jobs[job].run(&renderer->resources, row->level, error);
+    glFinish();
+    row->took_ms = 1000 * (tl_clock_s() - started_s);
+    return has_run && tl_gpu_check(renderer->resources.gpu, error);
+}
+
+/* Runs the jobs one after the other. */
+static bool run_jobs(tl_renderer *renderer, tl_plan *plan, tl_error *error)
+{
+    for (int i = 0; i < plan->count; i++)
+        if (plan->rows[i].action == TL_JOB_RUN && !run_and_wait(renderer, i, &plan->rows[i], error))
+            return false;
+    return true;
+}
+
+/* Runs the jobs without waiting for the graphics card in between, which stamps the times when they end: the
+ * card is at work while the CPU prepares the next one. */
+static bool queue_jobs(tl_renderer *renderer, tl_plan *plan, tl_error *error)
+{
+    struct tl_timer_times times;
+    tl_timer_begin(renderer->timer, 0);
+    for (int i = 0; i < plan->count; i++) {
+        if (plan->rows[i].action != TL_JOB_RUN)
+            continue;
+        if (!tl_frame_jobs[i].run(&renderer->resources, plan->rows[i].level, error))
+            return false;
+        tl_timer_mark(renderer->timer, i);
+    }
+    glFinish();
+    while (tl_timer_take(renderer->timer, &times))
+        for (int i = 0; i < times.count; i++)
+            plan->rows[times.marks[i].part].took_ms = times.marks[i].ms;
+    return tl_gpu_check(renderer->resources.gpu, error);
+}
+
 static bool run_plan(tl_renderer *renderer, const struct tl_plan_input *input, tl_plan *plan, tl_error *error)
 {
     make_plan(renderer, input, &renderer->counts, &renderer->settings, plan);
     double new_regions =
         tl_work_estimate_sizes(&renderer->resources, &renderer->counts, &renderer->settings).new_regions;
     tl_gpu_reset_state(renderer->resources.gpu);
-    for (int i = 0; i < plan->count; i++) {
-        if (plan->rows[i].action != TL_JOB_RUN)
-            continue;
-        double started_s = tl_clock_s();
-        bool has_run = tl_frame_jobs[i].run(&renderer->resources, plan->rows[i].level, error);
-        /* The CPU's clock around a finished job: GL's own timers are wrong on software drivers. */
-        glFinish();
-        if (!has_run || !tl_gpu_check(renderer->resources.gpu, error)) {
-            forget(renderer);
-            return false;
-        }
-        plan->rows[i].took_ms = 1000 * (tl_clock_s() - started_s);
-        tl_debug("%s: %.2f ms, predicted %.2f ms", plan->rows[i].name, plan->rows[i].took_ms,
-                 plan->rows[i].predicted_ms);
+    const bool queues = renderer->timer && input->scene & TL_BIT(TL_SCENE_CARD);
+    if (!(queues ? queue_jobs(renderer, plan, error) : run_jobs(renderer, plan, error))) {
+        forget(renderer);
+        return false;
     }
+    for (int i = 0; i < plan->count; i++)
+        if (plan->rows[i].action == TL_JOB_RUN)
+            tl_debug("%s: %.2f ms, predicted %.2f ms", plan->rows[i].name, plan->rows[i].took_ms,
+                     plan->rows[i].predicted_ms);
     learn_costs(renderer, plan, new_regions);
     renderer->resources.valid = tl_plan_valid_after(tl_frame_jobs, tl_frame_job_count, input, plan);
     return true;
@@ -284,6 +333,7 @@ static void reload_shaders(tl_renderer *renderer)
         !tl_envmap_reload(&renderer->resources.envmap, &error) ||
         !tl_light_map_reload(&renderer->resources.light_map, &error) ||
         !tl_capture_reload(&renderer->resources.capture, &error) ||
+        !tl_card_reload(renderer->resources.card, &error) ||
         !tl_present_reload(&renderer->resources.present, &error))
         tl_warn("%s", error.message);
     forget(renderer);
@@ -360,7 +410,7 @@ static struct tl_motion_state motion_state_of(const tl_renderer *renderer)
 bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct tl_render_settings *settings,
                       tl_error *error)
 {
-    struct tl_render_settings used = tl_render_settings_resolve(settings);
+    struct tl_render_settings used = resolve(renderer, settings);
     struct tl_resources *resources = &renderer->resources;
     uint64_t bytes = 0;
     if (!check_camera(&frame->camera, error) || !check_image_size(renderer, &used.image, error) ||
@@ -471,7 +521,7 @@ bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int 
 void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
                       const struct tl_render_settings *settings, tl_plan *out)
 {
-    struct tl_render_settings used = tl_render_settings_resolve(settings);
+    struct tl_render_settings used = resolve(renderer, settings);
     const tl_bits facts = tl_frame_facts(frame, &used);
     uint64_t hashes[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
@@ -483,6 +533,27 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     make_plan(renderer, &input, &counts, &used, out);
 }
 
+void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *frame,
+                                 const struct tl_render_settings *settings, char *out, size_t size)
+{
+    const struct tl_render_settings used = resolve(renderer, settings);
+    const tl_gpu *gpu = renderer->resources.gpu;
+    const char *refusal = tl_frame_card_refusal(frame, &used);
+    if (tl_frame_facts(frame, &used) & TL_BIT(TL_SCENE_CARD))
+        snprintf(out, size, "the graphics card, by %s", tl_gpu_name(gpu));
+    else if (settings->light.device == TL_DEVICE_CPU)
+        snprintf(out, size, "the CPU, as light.device states");
+    else if (settings->light.device == TL_DEVICE_AUTO && tl_gpu_is_software(gpu))
+        snprintf(out, size, "the CPU: OpenGL runs on it as well");
+    else if (tl_card_gl_refusal(gpu))
+        snprintf(out, size, "the CPU: %s", tl_card_gl_refusal(gpu));
+    else if (used.light.ratio_at != TL_RATIO_AT_VERTICES)
+        snprintf(out, size, "the CPU: ratios are at samples (light.ratio_at)");
+    else
+        snprintf(out, size, "the CPU: the graphics card does not draw %s",
+                 refusal ? refusal : "frames whose samples are lit");
+}
+
 /* Inputs that can change without the user: their change counts as motion. Options change only by hand. */
 #define MOVING_INPUTS                                                                                        \
     (TL_BIT(TL_INPUT_ENVIRONMENT) | TL_BIT(TL_INPUT_YAW) | TL_BIT(TL_INPUT_MOTION) |                         \
@@ -492,7 +563,7 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
 tl_bits tl_renderer_predict_jobs(const tl_renderer *renderer, const tl_frame *frame,
                                  const struct tl_render_settings *settings)
 {
-    struct tl_render_settings used = tl_render_settings_resolve(settings);
+    struct tl_render_settings used = resolve(renderer, settings);
     const tl_bits facts = tl_frame_facts(frame, &used);
     uint64_t hashes[TL_INPUT_COUNT];
     struct tl_rest rest = renderer->rest;
@@ -544,7 +615,7 @@ bool tl_renderer_is_moving(const tl_renderer *renderer, const tl_frame *frame)
 
 bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = tl_render_settings_resolve(settings);
+    const struct tl_render_settings used = resolve(renderer, settings);
     const tl_bits needed = TL_BIT(TL_MADE_CUBE) | TL_BIT(TL_MADE_LOBES) | TL_BIT(TL_MADE_LIGHTS);
     return (renderer->resources.valid & needed) != needed ||
            tl_light_cache_has(&renderer->resources.light_cache, &used.light);
@@ -552,7 +623,7 @@ bool tl_renderer_has_regions(const tl_renderer *renderer, const struct tl_render
 
 void tl_renderer_prepare_regions(tl_renderer *renderer, const struct tl_render_settings *settings)
 {
-    const struct tl_render_settings used = tl_render_settings_resolve(settings);
+    const struct tl_render_settings used = resolve(renderer, settings);
     if (!tl_renderer_has_regions(renderer, &used))
         tl_light_cache_prepare(&renderer->resources.light_cache, &renderer->resources.cube, &used.light);
 }

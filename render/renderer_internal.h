@@ -5,6 +5,7 @@
 
 #include "render/frame/settings.h"
 #include "render/frame/work.h"
+#include "render/gpu/timer.h"
 
 struct tl_renderer {
     struct tl_resources resources;
@@ -22,6 +23,7 @@ struct tl_renderer {
     struct tl_machine_load load;
     double slowness; /* tl_cost_slowness of the last frame; 0 before the first */
     uint64_t shaders_stamp;
+    tl_timer *timer; /* NULL: GL runs on the CPU */
 };
 
 #endif

@@ -45,7 +45,7 @@ static bool write_bytes(const char *path, const char *data, size_t size, tl_erro
     return tl_writer_commit(&writer, error);
 }
 
-/* The name that says how to read a picture; NULL when none does, because it has a factor or another rule. */
+/* The name that states how to read a picture; NULL when none does, because it has a factor or another rule. */
 static const char *plain_name(const struct tl_fabric_picture *picture, enum tl_picture_use use)
 {
     bool is_plain = picture->mode == TL_PICTURE_MULTIPLY && picture->offset == 0 && picture->factor[0] == 1 &&

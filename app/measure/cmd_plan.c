@@ -12,7 +12,7 @@
 
 #define MEBIBYTE (1024.0 * 1024.0)
 
-/* What the jobs of the frame cost that levels leave out: measured, by a renderer of its own that draws the
+/* The cost of jobs that levels leave out: measured, by a renderer of its own that draws the
  * frame in full. */
 struct savings {
     bool are_measured;
@@ -249,11 +249,20 @@ static void add_back_end(cJSON *object, const struct tl_back_end *back_end)
     tl_json_add_number(visibility, "maps_ms", back_end->maps_ms);
 }
 
+static void describe_device(const struct tl_headless *headless, char *out, size_t size)
+{
+    const tl_frame frame = tl_session_frame(headless->session);
+    const struct tl_render_settings settings = tl_settings_render(&headless->settings);
+    tl_renderer_describe_device(headless->renderer, &frame, &settings, out, size);
+}
+
 static void print_report(const struct tl_headless *headless, const tl_plan *plan, const struct savings *saved,
                          const struct stepped *cloth_step, const struct budgeted *budgeted,
                          const struct tl_back_end *back_end, const struct tl_gpu_clocks *clocks, bool json)
 {
     struct tl_cloth_report report = tl_session_report(headless->session);
+    char device[256];
+    describe_device(headless, device, sizeof device);
     if (json) {
         cJSON *object = cJSON_CreateObject();
         cJSON *jobs = cJSON_AddArrayToObject(object, "jobs");
@@ -263,6 +272,7 @@ static void print_report(const struct tl_headless *headless, const tl_plan *plan
         if (budgeted->budget_ms > 0)
             add_budget(object, budgeted);
         add_back_end(object, back_end);
+        cJSON_AddStringToObject(object, "device", device);
         add_clocks(object, clocks);
         if (report.vertex_count > 0)
             add_cloth(object, &headless->settings, &report);
@@ -273,7 +283,7 @@ static void print_report(const struct tl_headless *headless, const tl_plan *plan
     print_memory(headless->renderer);
     if (budgeted->budget_ms > 0)
         print_budget(budgeted);
-    printf("visibility: %s\n", back_end->reason);
+    printf("visibility: %s\ndrawn by: %s\n", back_end->reason, device);
     print_clocks(clocks);
     if (report.vertex_count > 0)
         print_cloth(&headless->settings, &report);

@@ -22,11 +22,11 @@ static void add_rows(const double *rows, size_t stride, const uint32_t *vertices
 static double shortness(const double gradients[3][TL_BATCH], const uint32_t vertices[3][TL_BATCH],
                         size_t lane, const vec3d *x)
 {
-    const double least = 1e-9;
+    const double minimum = 1e-9;
     vec3d column = {0};
     for (int i = 0; i < 3; i++)
         column = vec3d_muladd(column, x[vertices[i][lane]], gradients[i][lane]);
-    return 1 / fmax(vec3d_norm(column), least);
+    return 1 / fmax(vec3d_norm(column), minimum);
 }
 
 /* The Hessian of k/2 (|F_u| - 1)^2 has the eigenvalues k along F_u and k (1 - 1/|F_u|) across it. */

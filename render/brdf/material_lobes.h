@@ -1,4 +1,4 @@
-/* What a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over gloss and
+/* The light that a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over gloss and
  * diffuse colour. The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel 1999, 4.4].
  * The two lobes of every material, K_1 about the normal and K_s about the mirror direction, are not listed:
  * their owner multiplies them by `base`, and has only the first where `is_faceted`.
@@ -15,7 +15,7 @@ struct tl_material_sample {
     const tl_material *material;
     vec3s smooth, normal; /* without and with bumps */
     vec3s viewer;
-    /* Of facets: */
+    /* The lobes of facets: */
     vec3s tangent;     /* along u */
     float handedness;  /* bitangent = handedness * cross(normal, tangent) */
     float side;        /* 1; -1: the back is seen */

@@ -3,6 +3,7 @@
 #include "config/base/simd.h"
 #include "render/brdf/fuzz.h"
 #include "render/brdf/lobe_fit.h"
+#include "render/card/card.h"
 #include "render/detail/detail.h"
 #include "render/env/exponent.h"
 #include "render/env/lobes.h"
@@ -242,8 +243,28 @@ static tl_bits bounce_facts(const tl_frame *frame, const struct tl_render_settin
 
 static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
-    return TL_BIT(TL_SCENE_RATIOS) | TL_BIT(TL_SCENE_RAYS) | TL_BIT(TL_SCENE_SHADOWS) |
-           TL_BIT(TL_SCENE_EXACT) | bounce_facts(frame, settings);
+    return TL_BIT(TL_SCENE_RATIOS) | TL_BIT(TL_SCENE_PIXELS) | TL_BIT(TL_SCENE_RAYS) |
+           TL_BIT(TL_SCENE_SHADOWS) | TL_BIT(TL_SCENE_REGION_LIGHTS) | TL_BIT(TL_SCENE_EXACT) |
+           bounce_facts(frame, settings);
+}
+
+const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    const struct tl_image_params *image = &settings->image;
+    int columns, rows;
+    tl_image_samples(image, &columns, &rows);
+    if (columns != image->width || rows != image->height)
+        return "samples that are not pixels (image.scale, image.supersample)";
+    if (settings->light.bounce == TL_BOUNCE_ONE)
+        return "light that bounces once (light.bounce)";
+    return tl_card_refusal(frame->surfaces, frame->surface_count);
+}
+
+static tl_bits card_facts(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    const bool bounces = bounce_facts(frame, settings) != 0;
+    return TL_BIT(TL_SCENE_CARD) | TL_BIT(TL_SCENE_PIXELS) | TL_BIT(TL_SCENE_REGION_LIGHTS) |
+           TL_BIT(TL_SCENE_EXACT) | (bounces ? TL_BIT(TL_SCENE_CARD_BOUNCE) : 0);
 }
 
 /* Facts of a frame whose samples are lit. */
@@ -260,7 +281,7 @@ static tl_bits sample_facts(const tl_frame *frame, const struct tl_render_settin
     bool shadowed = light->method != TL_METHOD_UNSHADOWED && !(rays && is_dark(frame));
     tl_bits facts = TL_BIT(TL_SCENE_RASTER) | TL_BIT(rays ? TL_SCENE_RAYS : TL_SCENE_PASSES);
     if (shadowed)
-        facts |= TL_BIT(TL_SCENE_SHADOWS) | (rays ? 0 : TL_BIT(TL_SCENE_MAPS));
+        facts |= TL_BIT(TL_SCENE_SHADOWS) | TL_BIT(rays ? TL_SCENE_REGION_LIGHTS : TL_SCENE_MAPS);
     if (wants_detail(frame->surfaces, frame->surface_count, &settings->detail))
         facts |= TL_BIT(TL_SCENE_DETAIL);
     if (light->visibility == TL_VISIBILITY_VSM)
@@ -284,9 +305,12 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
 {
     if (!fits_vertices(frame, settings))
         return sample_facts(frame, settings);
-    return TL_BIT(TL_SCENE_FITS_VERTICES) |
-           (settings->light.ratio_at == TL_RATIO_AT_VERTICES ? ratio_facts(frame, settings)
-                                                             : sample_facts(frame, settings));
+    const tl_bits fits = TL_BIT(TL_SCENE_FITS_VERTICES);
+    if (settings->light.ratio_at != TL_RATIO_AT_VERTICES)
+        return fits | sample_facts(frame, settings);
+    if (settings->light.device == TL_DEVICE_CARD && !tl_frame_card_refusal(frame, settings))
+        return fits | card_facts(frame, settings);
+    return fits | ratio_facts(frame, settings);
 }
 
 /* Facts of a frame whose view is not light, except those that follow from its materials. */

@@ -220,6 +220,8 @@ void tl_frame_hash_inputs(const tl_frame *frame, const struct tl_render_settings
     const struct tl_light_params *light = &settings->light;
     const uint64_t start = TL_HASH_START;
     hash_options(settings, hashes);
+    const bool on_card = facts & TL_BIT(TL_SCENE_CARD);
+    hashes[TL_INPUT_DEVICE] = MIX(start, on_card);
     hashes[TL_INPUT_ENVIRONMENT] = MIX(start, frame->environment_revision);
     hashes[TL_INPUT_YAW] = MIX(start, frame->environment_yaw);
     hashes[TL_INPUT_SHAPES] = shapes_hash(frame);

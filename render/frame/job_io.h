@@ -52,14 +52,14 @@
     JOB(pems, TL_FACT(CHAINS), "a filtered copy of the cube for each region")                                \
     JOB(lobes, TL_FACT(EXACT), "the whole environment through exact lobes")                                  \
     JOB(slices, TL_FACT(SLICES), "the regions through exact lobes")                                          \
-    JOB(lights, TL_FACT(RAYS) | TL_FACT(SHADOWS), "the regions as lights that add up to the exact light")    \
+    JOB(lights, TL_FACT(REGION_LIGHTS), "the regions as lights that add up to the exact light")    \
     JOB(surfaces, 0, "vertices and maps to the GPU")                                                         \
     JOB(detail, TL_FACT(DETAIL), "heights, cones, horizons and spread of normals of the fabrics")            \
     JOB(maps, TL_FACT(MAPS), "a shadow map for each region and sun")                                         \
     JOB(blur, TL_FACT(MAPS) | TL_FACT(BLUR), "shadow maps blurred by the size of their regions")             \
     JOB(gbuffer, 0, "nearest point, normal and material of every sample")                                    \
     JOB(ids, TL_FACT(RATIOS), "the number of the nearest triangle at every pixel")                           \
-    JOB(shade_materials, TL_FACT(RATIOS), "materials, their maps and fits to the CPU")                       \
+    JOB(shade_materials, TL_FACT(PIXELS), "materials, their maps and fits to the CPU")                       \
     JOB(samples, TL_FACT(SAMPLES), "the covered samples to the CPU")                                         \
     JOB(transparency, TL_FACT(TRANSPARENCY), "rays: what lies behind open cloth and shines through it")      \
     JOB(trace, 0, "surfaces to what rays are traced in")                                                     \
@@ -69,6 +69,13 @@
     JOB(ratios, TL_FACT(RATIOS), "ratio of seen to exact light, at vertices")                                \
     JOB(sun_pixels, TL_FACT(RATIOS), "rays: what every pixel sees of the suns")                              \
     JOB(shade, TL_FACT(RATIOS), "exact light times the interpolated ratio, pixel by pixel")                  \
+    JOB(card_surfaces, TL_FACT(CARD), "vertices to the card, its tree of rays fitted to them")               \
+    JOB(card_ids, TL_FACT(CARD), "the nearest triangle at every pixel, and the vertices that are seen")      \
+    JOB(card_points, TL_FACT(CARD), "rays: what vertices see of the regions")                                \
+    JOB(card_bounce, TL_FACT(CARD_BOUNCE), "rays: light that surfaces send on to each other")                \
+    JOB(card_ratios, TL_FACT(CARD), "ratio of seen to exact light, at vertices")                             \
+    JOB(card_suns, TL_FACT(CARD), "rays: what every pixel sees of the suns")                                 \
+    JOB(card_shade, TL_FACT(CARD), "exact light times the interpolated ratio, pixel by pixel")               \
     JOB(light, TL_FACT(PASSES), "visibility times PEM, summed over the regions")                             \
     JOB(compose, TL_FACT(COMPOSED), "exact light times the share of it that is seen")                        \
     JOB(inspect, TL_FACT(INSPECT), "what a view shows in place of light")                                    \
@@ -193,7 +200,36 @@
     IO(READS, sun_pixels) IO(READS, shade_materials) IO(READS, exact) IO(READS, suns)                        \
     IO(READS, yaw) IO(READS, shift) IO(READS, camera) IO(READS, size)                                        \
     IO(READS, shapes) IO(READS, ground) IO(READS, ground_input) IO(AFTER, TL_INPUT_RATIO)                    \
-    IO(AFTER, TL_INPUT_VIEW) IO(SEES, trace) IO(WRITES, present)
+    IO(AFTER, TL_INPUT_DEVICE) IO(AFTER, TL_INPUT_VIEW) IO(SEES, trace) IO(WRITES, present)
+
+#define TL_JOB_card_surfaces(IO)                                                                             \
+    IO(READS, shapes) IO(READS, motion) IO(READS, ground) IO(READS, ground_input)                            \
+    IO(READS, shade_materials) IO(WRITES, card)
+
+#define TL_JOB_card_ids(IO)                                                                                  \
+    IO(EXTENDS, card, TL_MADE_CARD_IDS) IO(READS, shift) IO(READS, camera) IO(READS, size)
+
+#define TL_JOB_card_points(IO)                                                                               \
+    IO(EXTENDS, card, TL_MADE_CARD_POINTS) IO(AFTER, TL_MADE_CARD_IDS) IO(READS, regions)                    \
+    IO(READS, regions_revision) IO(READS, suns) IO(READS, exact) IO(READS, lights)                           \
+    IO(READS, yaw) IO(READS, rays) IO(READS, light_options) IO(READS, ground)                                \
+    IO(READS, ground_input) IO(SEES, environment) IO(SEES, shapes)
+
+#define TL_JOB_card_bounce(IO)                                                                               \
+    IO(EXTENDS, card, TL_MADE_CARD_BOUNCE) IO(AFTER, TL_MADE_CARD_POINTS) IO(READS, cube)                    \
+    IO(READS, light_options) IO(SEES, environment)
+
+#define TL_JOB_card_ratios(IO)                                                                               \
+    IO(EXTENDS, card, TL_MADE_CARD_RATIOS) IO(AFTER, TL_MADE_CARD_POINTS) IO(AFTER, TL_MADE_CARD_BOUNCE)     \
+    IO(SEES, facts)
+
+#define TL_JOB_card_suns(IO)                                                                                 \
+    IO(EXTENDS, card, TL_MADE_CARD_SUNS) IO(AFTER, TL_MADE_CARD_IDS) IO(AFTER, TL_MADE_CARD_POINTS)
+
+#define TL_JOB_card_shade(IO)                                                                                \
+    IO(READS, size) IO(READS, shift) IO(AFTER, TL_MADE_CARD_RATIOS) IO(AFTER, TL_MADE_CARD_SUNS)             \
+    IO(AFTER, TL_INPUT_VIEW) IO(AFTER, TL_INPUT_DEVICE) IO(USES, card) IO(USES, gpu)                         \
+    IO(WRITES, present)
 
 #define TL_JOB_light(IO)                                                                                     \
     IO(READS, gbuffer) IO(READS, pems) IO(READS, slices) IO(READS, regions)                                  \
@@ -262,7 +298,8 @@
 
 #define TL_JOB_resolve(IO)                                                                                   \
     IO(READS, light) IO(READS, gbuffer) IO(READS, shift) IO(READS, size)                                     \
-    IO(AFTER, TL_INPUT_RATIO) IO(AFTER, TL_MADE_LAMPLIGHT) IO(WRITES, present) IO(USES, gpu)
+    IO(AFTER, TL_INPUT_RATIO) IO(AFTER, TL_INPUT_DEVICE) IO(AFTER, TL_MADE_LAMPLIGHT)                        \
+    IO(WRITES, present) IO(USES, gpu)
 
 #define TL_JOB_reference(IO)                                                                                 \
     IO(READS, environment) IO(READS, yaw) IO(READS, camera) IO(READS, size)                                  \

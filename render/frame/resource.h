@@ -39,7 +39,8 @@
     BIT(TL_INPUT_LOOK_UP, "look-up options") /* how they are looked up */                                    \
     BIT(TL_INPUT_CAPTURE, "captured scene") /* the scene as it was when it was to be captured last */        \
     BIT(TL_INPUT_VIEW, "view") /* what is shown in place of light */                                         \
-    BIT(TL_INPUT_RATIO, "place of the ratios") /* where the ratio of seen to exact light is computed */
+    BIT(TL_INPUT_RATIO, "place of the ratios") /* where the ratio of seen to exact light is computed */      \
+    BIT(TL_INPUT_DEVICE, "device") /* the graphics card or the CPU draws */
 
 /* BIT(resource, name, use): `use` is the member of struct tl_render_memory that its bytes count to. */
 #define TL_MADE_BITS(BIT)                                                                                    \
@@ -65,6 +66,12 @@
     BIT(TL_MADE_TRACE, "surfaces for rays", rays) /* the surfaces as a BVH */                                \
     BIT(TL_MADE_POINTS, "visibility at points", rays)                                                        \
     BIT(TL_MADE_BOUNCE, "bounced light", rays) /* light that surfaces send on to each other, at vertices */  \
+    BIT(TL_MADE_CARD_SURFACES, "surfaces on the card", rays) /* and the tree of rays */                      \
+    BIT(TL_MADE_CARD_IDS, "IDs on the card", targets) /* and the vertices that are seen */                   \
+    BIT(TL_MADE_CARD_POINTS, "visibility on the card", rays)                                                 \
+    BIT(TL_MADE_CARD_BOUNCE, "bounced light on the card", rays)                                              \
+    BIT(TL_MADE_CARD_RATIOS, "ratios on the card", rays)                                                     \
+    BIT(TL_MADE_CARD_SUNS, "suns on the card", rays)                                                         \
     BIT(TL_MADE_ENVMAP_LOBES, "lobes of the maps", pems)                                                     \
     BIT(TL_MADE_CAPTURE, "capture", pems)                                                                    \
     BIT(TL_MADE_ENVMAP, "environment maps", pems)                                                            \
@@ -104,6 +111,10 @@
     FACT(TL_SCENE_COMPOSED, "light from rays") /* light is composed from visibility by rays */               \
     FACT(TL_SCENE_BOUNCE, "bounced light") /* surfaces send light on to each other */                        \
     FACT(TL_SCENE_RATIOS, "ratios at vertices") /* ratios at vertices light the pixels, in one pass */       \
+    FACT(TL_SCENE_CARD, "frame on the graphics card")                                                        \
+    FACT(TL_SCENE_CARD_BOUNCE, "bounced light on the graphics card")                                         \
+    FACT(TL_SCENE_REGION_LIGHTS, "regions as lights") /* rays or the card sum up their light */              \
+    FACT(TL_SCENE_PIXELS, "materials of pixels") /* of ratios at vertices, on the CPU or the card */         \
     FACT(TL_SCENE_INSPECT, "view of something else than light") /* something else than light is shown */     \
     /* ratios at vertices could light the pixels; no job asks, work.c does */                                \
     FACT(TL_SCENE_FITS_VERTICES, "light that vertices can hold")

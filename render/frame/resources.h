@@ -8,6 +8,7 @@
 #define TOILE_RENDER_FRAME_RESOURCES_H
 
 #include "render/bounce/bounce.h"
+#include "render/card/card.h"
 #include "render/detail/maps.h"
 #include "render/env/resample.h"
 #include "render/env/sun.h"
@@ -118,6 +119,7 @@ struct tl_envmap_source {
     OWNED(mirrors, TL_MADE_MIRRORS, struct tl_mirrors, no_bytes, tl_mirrors_release)                         \
     HANDLE(trace, TL_MADE_TRACE, tl_trace, tl_trace_bytes, tl_trace_destroy)                                 \
     HANDLE(points, TL_MADE_POINTS, tl_points, tl_points_bytes, tl_points_destroy)                            \
+    HANDLE(card, TL_MADE_CARD_SURFACES, tl_graphics_card, tl_card_bytes, tl_card_destroy)                             \
     OWNED(bounce, TL_MADE_BOUNCE, struct tl_bounce, tl_bounce_bytes, tl_bounce_release)                      \
     VALUE(points_are_done, TL_MADE_POINTS, bool) /* another round would change nothing */                    \
     OWNED(envmap_source, TL_MADE_ENVMAP_LOBES, struct tl_envmap_source,                                      \

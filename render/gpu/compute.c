@@ -16,11 +16,10 @@ static int query_limit(GLenum name)
 
 struct tl_compute_limits tl_compute_limits_query(void)
 {
-    const int per_stage = query_limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
-              all = query_limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
     GLint64 bytes = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
-    return (struct tl_compute_limits){.bindings = per_stage < all ? per_stage : all,
+    return (struct tl_compute_limits){.buffers = query_limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS),
+                                      .bindings = query_limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS),
                                       .shared_bytes = query_limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE),
                                       .group_threads = query_limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
                                       .storage_bytes = (size_t)bytes};
@@ -32,7 +31,8 @@ bool tl_compute_limits_check(const struct tl_compute_limits *limits, tl_error *e
         const char *name;
         int found, needed;
     } rows[] = {
-        {"storage buffers of a program", limits->bindings, TL_STORAGE_BINDINGS},
+        {"storage buffers of a program", limits->buffers, TL_STORAGE_BUFFERS},
+        {"bindings of storage buffers", limits->bindings, TL_STORAGE_BINDINGS},
         {"bytes of shared memory", limits->shared_bytes, TL_GROUP_SHARED_BYTES},
         {"threads of a group", limits->group_threads, TL_GROUP_THREADS},
     };
@@ -125,5 +125,6 @@ void tl_gpu_dispatch_indirect(const tl_buffer *buffer, size_t offset)
 void tl_gpu_barrier(void)
 {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
-                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+                    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT |
+                    GL_TEXTURE_UPDATE_BARRIER_BIT);
 }

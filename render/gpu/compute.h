@@ -6,12 +6,14 @@
 #include "render/gpu/gpu.h"
 
 /* Every program of the renderer keeps to these limits. */
-#define TL_STORAGE_BINDINGS   16    /* buffers of one program */
+#define TL_STORAGE_BUFFERS    16    /* of one program */
+#define TL_STORAGE_BINDINGS   48    /* of all that are bound at a time */
 #define TL_GROUP_SHARED_BYTES 32768 /* shared memory of a group */
 #define TL_GROUP_THREADS      256
 
 struct tl_compute_limits {
-    int bindings;         /* storage buffers of a compute shader */
+    int buffers;          /* storage buffers of a compute shader */
+    int bindings;         /* ... that can be bound */
     int shared_bytes;     /* of a group */
     int group_threads;    /* of a group */
     size_t storage_bytes; /* of a buffer, as a shader sees it */

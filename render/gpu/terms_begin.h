@@ -29,7 +29,7 @@
 #define sqrt        sqrtf
 #define cross       glms_vec3_cross
 #define dot         glms_vec3_dot
-/* Of parameters that are arrays. */
+/* Marks of parameters that are arrays. */
 #define in const
 #define out
 /* A type; and, with what follows in brackets, its value. */

@@ -14,6 +14,7 @@ static const char *const pem_layout_names[] = {"cube", "paraboloid", NULL};
 static const char *const visibility_names[] = {"vsm", "depth", "rays", "auto", NULL};
 static const char *const moments_names[] = {"float", "half", NULL};
 static const char *const ratio_at_names[] = {"samples", "vertices", NULL};
+static const char *const device_names[] = {"auto", "cpu", "card", NULL};
 static const char *const bounce_names[] = {"off", "one", "all", NULL};
 static const char *const composition_names[] = {"sum", "difference", "ratio", NULL};
 
@@ -57,6 +58,12 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_ENUM(light_params, ratio_at, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RATIO, ratio_at_names,
                    "rays: where the ratio of visible to exact light is computed: samples: at every sample; "
                    "vertices: at vertices, interpolated: several times faster, slightly softer"),
+    TL_OPTION_ENUM(
+        light_params, device, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RATIO, device_names,
+        "ratios at vertices: cpu: drawn by the CPU's cores; card: by compute shaders of OpenGL, where "
+        "they can (toile plan); auto: by these where OpenGL runs on a graphics card"),
+    TL_OPTION_INT(light_params, card_rays, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 1, 8, "",
+                  "rays on a graphics card: directions traced per region; larger: more exact, slower"),
     TL_OPTION_BOOL(light_params, jitter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS | TL_AFFECTS_RAYS,
                    "maps: directions vary within their regions from frame to frame (rays: always)"),
     TL_OPTION_INT(light_params, rounds, TL_AFFECTS_APPEARANCE, 1, 4096, "frames",
@@ -104,7 +111,7 @@ static const struct tl_option light_rows[] = {
 const struct tl_option_table tl_light_options = TL_OPTION_TABLE(
     "light", "light and shadows of the environment", light_rows, light_params, .method = TL_METHOD_PEM,
     .lobe = TL_LOBE_DUAL, .regions = 96, .pem_size = 128, .filter = TL_CHAIN_SQRT_COSINE, .pems_per_pass = 12,
-    .rounds = 1, .rays = 1, .bounce_shares = 8, .lobes = 5, .map_size = 256, .blur_m = 0.05f,
+    .rounds = 1, .rays = 1, .card_rays = 4, .bounce_shares = 8, .lobes = 5, .map_size = 256, .blur_m = 0.05f,
     .depth_bias_m = 0.004f, .min_variance = 1e-6f, .bleed_reduction = 0.1f);
 
 struct tl_ray_params tl_light_ray_params(const struct tl_light_params *light)

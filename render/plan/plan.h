@@ -14,10 +14,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define TL_JOBS_MAX       40
+#define TL_JOBS_MAX       48
 #define TL_JOB_LEVELS_MAX 6
 
-typedef uint64_t tl_bits; /* a set of resources or facts */
+typedef unsigned __int128 tl_bits; /* a set of resources or facts */
 
 enum tl_job_action { TL_JOB_RUN, TL_JOB_REUSE, TL_JOB_DROP };
 extern const char *const tl_job_action_names[]; /* run reuse drop */

@@ -1,6 +1,6 @@
 /* A tree of boxes over triangles for rays on the graphics card, eight children a node [Ylitie et al.
  * 2017]. Its topology is made here, on the CPU, once for a mesh; its boxes are fitted to a pose by refit.comp
- * (tree_buffers.h), and trace.glsl follows rays through it. Splits are those of the least surface area among
+ * (tree_buffers.h), and trace.glsl follows rays through it. Splits are those of the smallest surface area among
  * bins [Wald 2007].
  *
  * Nodes lie breadth first: level by level, the inner children of a node side by side, and so do the triangles

@@ -324,17 +324,16 @@ static void resolve_taps(tl_points *points)
 /* In motion all points share the directions: one a region differs visibly from another. They are the same in
  * all frames: other ones in each err no less, and flicker where nothing moves. One ray a region takes the
  * region's own direction. */
-static vec3s *shared_directions(const struct tl_points_request *request)
+vec3s *tl_points_directions(const struct tl_regions *regions, int rays, float environment_yaw)
 {
-    int count = request->regions->count, rays = request->params->rays;
+    int count = regions->count;
     vec3s *directions = TL_NEW_ARRAY(vec3s, (size_t)count * (size_t)rays);
 #pragma omp parallel for
     for (int i = 0; i < count; i++)
         for (int k = 0; k < rays; k++) {
-            const struct tl_region *region = &request->regions->items[i];
-            vec3s direction =
-                rays == 1 ? region->direction : tl_region_sample(request->regions, i, (uint32_t)k);
-            directions[i * rays + k] = tl_turn_direction(direction, request->environment_yaw);
+            const struct tl_region *region = &regions->items[i];
+            vec3s direction = rays == 1 ? region->direction : tl_region_sample(regions, i, (uint32_t)k);
+            directions[i * rays + k] = tl_turn_direction(direction, environment_yaw);
         }
     return directions;
 }
@@ -578,7 +577,9 @@ static bool takes_whole_rounds(const struct tl_points_request *request)
 static void trace_all(tl_points *points, const struct tl_points_request *request)
 {
     const bool is_shared = request->moved && !request->whole_rounds;
-    vec3s centres[TL_REGIONS_MAX], *directions = is_shared ? shared_directions(request) : NULL;
+    vec3s centres[TL_REGIONS_MAX], *directions = NULL;
+    if (is_shared)
+        directions = tl_points_directions(request->regions, request->params->rays, request->environment_yaw);
     float importances[TL_REGIONS_MAX];
     for (int i = 0; i < request->regions->count; i++) {
         const struct tl_region *region = &request->regions->items[i];

@@ -23,6 +23,8 @@ bool tl_points_are_done(const tl_points *points);
 /* After an update. Visibility of region i at point p is values[p * stride + i] / TL_VISIBILITY_ONE; stride is
  * a multiple of 16 and what lies beyond the regions is 0. One taps entry a sample. */
 const uint16_t *tl_points_values(const tl_points *points, size_t *stride);
+/* The world directions of the rays of all vertices in motion, [regions][rays]. The caller frees them. */
+vec3s *tl_points_directions(const struct tl_regions *regions, int rays, float environment_yaw);
 /* Updates since the region was traced from there, or since nothing moved; 0 of points that samples own, which
  * are traced in every moving frame. */
 uint32_t tl_points_age(const tl_points *points, uint32_t point, int region);

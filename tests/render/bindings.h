@@ -13,7 +13,7 @@
 #include <stddef.h>
 
 void test_bindings_watch(void);
-/* How many samplers and storage blocks were bound so since the last call; the first few were printed. */
+/* Counts the samplers and storage blocks that were bound so since the last call; the first few were printed. */
 size_t test_bindings_take_faults(void);
 
 #endif

@@ -68,7 +68,7 @@ assert satin["lights"]["predicted_ms"] > 10 * matt["lights"]["predicted_ms"] > 0
 for job in ("points", "trace"):
     assert satin[job]["predicted_ms"] > 1.2 * matt[job]["predicted_ms"] > 0, (job, satin[job], matt[job])
 END
-# What levels leave out says what it took when nothing was left out.
+# What levels leave out shows what it took when nothing was left out.
 $TOILE plan ${first/64x48/480x270} --fabric satin --budget 1 >levels.json
 check "savings" python3 - <<'END'
 import json

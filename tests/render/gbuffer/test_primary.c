@@ -163,7 +163,7 @@ static struct differences compare(struct card *card, struct tl_primary *primary,
     return result;
 }
 
-/* From afar; from near; from under the ground; with the near plane in the skirt; from within the dress. */
+/* Views from afar; from near; from under the ground; with the near plane in the skirt; from within the dress. */
 static const struct {
     vec3s eye, target;
     float near_m;

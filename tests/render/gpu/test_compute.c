@@ -169,7 +169,7 @@ static void test_limits(void **state)
     tl_error error = {0};
     assert_ok(tl_compute_limits_check(&here, &error), error);
     struct tl_compute_limits few = here;
-    few.bindings = 8; /* the least that GL demands */
+    few.buffers = 8; /* the minimum that GL demands */
     assert_false(tl_compute_limits_check(&few, &error));
     assert_non_null(strstr(error.message, "storage buffers of a program: compute shaders have 8 here"));
     few = here;

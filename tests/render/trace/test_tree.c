@@ -72,7 +72,7 @@ static void check_tree(const struct tl_tree *tree)
     free(placed_at);
 }
 
-/* Triangles each of which is a fraction of the one before, at the fraction of its distance: splits of least
+/* Triangles each of which is a fraction of the one before, at the fraction of its distance: splits of smallest
  * area take them off one by one. And many triangles at one place: no split parts them. */
 static void test_depth_is_bounded(void **state)
 {

@@ -1,0 +1,37 @@
+#version 450 core
+// Keeps what probes send for the next frame: those without light of their own the mean of three.
+#include "card_frame.glsl"
+layout(local_size_x = 64) in;
+layout(std430, binding = CARD_FROM) restrict readonly buffer From
+{
+    uint from[];
+};
+layout(std430, binding = CARD_SHARES) restrict readonly buffer Shares
+{
+    vec4 shares[];
+};
+layout(std430, binding = CARD_SENT_NOW) restrict readonly buffer SentNow
+{
+    vec4 sent_now[];
+};
+layout(std430, binding = CARD_SENT) restrict writeonly buffer Sent
+{
+    vec4 sent[];
+};
+
+void main()
+{
+    uint probe = gl_GlobalInvocationID.x;
+    if (probe >= uint(counts.z))
+        return;
+    if (from[4u * probe + 3u] != 0u) {
+        sent[probe] = sent_now[probe];
+        return;
+    }
+    vec4 sum = vec4(0.0);
+    for (uint k = 0u; k < 3u; k++) {
+        vec4 other = sent_now[from[4u * probe + k]];
+        sum += shares[probe][k] * other.w * vec4(other.rgb, 1.0);
+    }
+    sent[probe] = sum.w > 0.0 ? vec4(sum.rgb / sum.w, 1.0) : vec4(0.0);
+}

@@ -1,0 +1,126 @@
+// A pixel, its material, and the gloss that it sends to the viewer. RICH: of a class with maps, seams, facets or fuzz.
+#include "card_pixel.glsl"
+#include "card_lobes.glsl"
+#include "card_material.glsl"
+#ifdef RICH
+#include "card_construction.glsl"
+#include "card_maps.glsl"
+layout(std430, binding = CARD_TANGENTS) restrict readonly buffer Tangents
+{
+    vec4 tangents[];
+};
+#endif
+
+struct Seen {
+    Place p;
+    Part part;
+    Surface surface;
+    Facets facets;
+    vec4 tangent;
+    vec3 viewer, mirror, reflectance;
+    float side, cover, exponent;
+    bool is_faceted;
+};
+
+Seen see(uint id, uint part_number, ivec2 pixel)
+{
+    Seen s;
+    s.p = place_of(id, pixel);
+    s.part = parts[part_number];
+    s.side = s.p.back ? -1.0 : 1.0;
+    s.viewer = -s.p.ray;
+    vec3 point = point_of(s.p);
+    s.cover = (s.part.flags.x & FADES) != 0u ? ground_opacity(disc, point.x, point.z) : 1.0;
+    s.tangent = vec4(0.0, 0.0, 0.0, 1.0);
+#ifdef RICH
+    s.tangent = s.p.weights.x * tangents[s.p.corners.x] + s.p.weights.y * tangents[s.p.corners.y] + s.p.weights.z * tangents[s.p.corners.z];
+    Uv uv = uv_of(s.p, s.part.turn.z);
+    ConstructionLook sewn = construction_none();
+    if ((s.part.flags.x & IS_SEWN) != 0u) {
+        uint t = s.p.triangle - s.part.flags.y;
+        construction_sizes = s.part.sizes;
+        construction_rows = s.part.rows;
+        sewn = construction_near(border_firsts[t], border_firsts[t + 1u], uv.at, uv.across, uv.up);
+    }
+    s.surface = surface_of(s.part, smooth_of(s.p), s.tangent, s.viewer, s.side, texels_of(s.part, uv, sewn));
+#else
+    s.surface = surface_of(s.part, smooth_of(s.p), s.tangent, s.viewer, s.side, mean_texels(s.part));
+#endif
+    s.mirror = s.reflectance = vec3(0.0);
+    s.exponent = 1.0;
+    s.facets.viewer = vec3(0.0);
+    s.is_faceted = (s.part.flags.x & IS_FACETED) != 0u;
+    if (s.is_faceted) {
+        s.facets = facets_of(s.part, s.surface.shown, s.tangent, s.side, s.viewer);
+    } else if ((s.part.flags.x & IS_GLOSSY) != 0u) {
+        s.mirror = mirror_direction(s.surface.shown, s.viewer);
+        s.exponent = lobe_exponent(s.surface.glossiness);
+        s.reflectance = schlick_colour(s.surface.f0, dot(s.surface.shown, s.viewer));
+    }
+    return s;
+}
+
+#ifdef RICH
+// The exact light of the environment through the lobes that stand for a gloss of facets.
+vec3 light_of_set(Seen s, int gloss)
+{
+    WardSet w = ward_set(widths_of(s.part, gloss, s.surface.widening, s.tangent.w), s.facets.viewer, is_bounded(s.part, gloss), s.part.turn.w);
+    vec3 plain, away, light_plain = vec3(0.0), light_away = vec3(0.0);
+    float sum_plain = 0.0, sum_away = 0.0;
+    reflected_of(s.part, s.surface, gloss, plain, away);
+    for (float k = 0.0; k < w.set.count; k++) {
+        WardLobe lobe = ward_lobe_of(w, k);
+        vec3 light = fetch_lobe(lobe_atlas, into_environment(s.facets.frame * lobe.local), log2(lobe.exponent));
+        sum_plain += lobe.above * lobe.plain;
+        sum_away += lobe.above * lobe.away;
+        light_plain += lobe.plain * light;
+        light_away += lobe.away * light;
+    }
+    return ward_scale(w, plain, away, sum_plain, sum_away) * (plain * light_plain + away * light_away);
+}
+
+// f_r cos of facets, for light from a disc.
+vec3 facets_under(Seen s, int gloss, vec3 d, float radius)
+{
+    vec3 widths = widths_of(s.part, gloss, s.surface.widening, s.tangent.w), sum = d + s.viewer, h = sum * s.facets.frame, plain, away;
+    float wider = radius * radius / 8.0, square = dot(sum, sum);
+    float value = ward_lobe(is_bounded(s.part, gloss), h.x / h.z, h.y / h.z, h.z * h.z * h.z * h.z / (4.0 * square),
+                            dot(s.facets.frame[2], d), s.facets.viewer.z, widths.x + wider, widths.y + wider, widths.z);
+    reflected_of(s.part, s.surface, gloss, plain, away);
+    return value * (plain + away * schlick_share(0.5 * sqrt(square)));
+}
+#endif
+
+// The exact light of the environment through the gloss.
+vec3 exact_gloss(Seen s)
+{
+    vec3 gloss = vec3(0.0);
+#ifdef RICH
+    if (s.is_faceted) {
+        for (int k = 0; k <= int(s.part.flags.w) && s.facets.viewer.z > 0.0; k++)
+            gloss += light_of_set(s, k);
+        return gloss;
+    }
+#endif
+    if ((s.part.flags.x & IS_GLOSSY) != 0u)
+        gloss = s.reflectance * fetch_lobe(lobe_atlas, into_environment(s.mirror), log2(s.exponent));
+    return gloss;
+}
+
+// f_r cos of the gloss, for light from a disc.
+vec3 gloss_under(Seen s, vec3 d, float radius)
+{
+    vec3 gloss = vec3(0.0);
+#ifdef RICH
+    if (s.is_faceted) {
+        for (int k = 0; k <= int(s.part.flags.w); k++)
+            gloss += facets_under(s, k, d, radius);
+        return gloss;
+    }
+#endif
+    if ((s.part.flags.x & IS_GLOSSY) != 0u) {
+        float e = lobe_broadened_exponent(s.exponent, radius * 0.707106781);
+        gloss = s.reflectance * lobe_cosine(e, dot(d, s.mirror));
+    }
+    return gloss;
+}

@@ -1,0 +1,95 @@
+#version 450 core
+// The light of one class of materials, tile by tile: exact light times the interpolated ratio, and suns (render/shade).
+#include "card_frame.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(location = 0) uniform ivec3 kind; // class, first tile of its list, images before this one
+layout(rgba32f, binding = 0) restrict uniform image2D light_image;
+layout(std430, binding = CARD_TILES) restrict readonly buffer Tiles
+{
+    uint tiles[];
+};
+#include "card_see.glsl"
+#ifndef NOTHING
+layout(std430, binding = CARD_TRIANGLE_PARTS) restrict readonly buffer TriangleParts
+{
+    uint triangle_parts[];
+};
+layout(std430, binding = CARD_TRIANGLE_PROBES) restrict readonly buffer TriangleProbes
+{
+    uint triangle_probes[];
+};
+layout(std430, binding = CARD_RATIOS) restrict readonly buffer Ratios
+{
+    vec4 ratios[];
+};
+layout(binding = 6) uniform sampler2D sun_seen[4];
+#include "card_fuzz.glsl"
+
+// The light that the pixel sends to the viewer.
+vec3 light_of(Seen s, ivec2 pixel)
+{
+    uint corner = 3u * (2u * s.p.triangle + (s.p.back ? 1u : 0u));
+    uvec3 at = 3u * uvec3(triangle_probes[corner], triangle_probes[corner + 1u], triangle_probes[corner + 2u]);
+    vec4 gloss[3] = vec4[3](ratios[at.x + 1u], ratios[at.y + 1u], ratios[at.z + 1u]);
+    vec3 w = s.p.weights, covered = vec3(gloss[0].w, gloss[1].w, gloss[2].w);
+    float all = covered.x + covered.y + covered.z;
+    if (all > 0.0 && all < 3.0) { // corners that are covered do not count: the pixel is not
+        w = (w + 1e-6) * (1.0 - covered);
+        w /= w.x + w.y + w.z;
+    }
+    vec3 light = s.surface.diffuse * exact_diffuse(into_environment(s.surface.shown)) *
+                     (w.x * ratios[at.x].rgb + w.y * ratios[at.y].rgb + w.z * ratios[at.z].rgb) +
+                 exact_gloss(s) * (w.x * gloss[0].rgb + w.y * gloss[1].rgb + w.z * gloss[2].rgb);
+#ifdef RICH
+    bool has_fuzz = (s.part.flags.x & HAS_FUZZ) != 0u;
+    vec3 sheen = vec3(0.0);
+    Fibres fibres = fibres_of(s.part, s.side * s.surface.smooth_normal, s.surface.shown, s.viewer);
+    if (has_fuzz)
+        sheen = exact_fibres(fibres) * (w.x * ratios[at.x + 2u].rgb + w.y * ratios[at.y + 2u].rgb + w.z * ratios[at.z + 2u].rgb);
+#endif
+    for (int i = 0; i < counts.y; i++) {
+        vec3 sun = suns[i].xyz;
+        float above = disc_share(s.side * dot(sun, s.surface.smooth_normal) / max(suns[i].w, 1e-3));
+        float seen = above * texelFetch(sun_seen[i], pixel, 0).r;
+        if (!(seen > 0.0))
+            continue;
+        float cosine = max(dot(sun, s.surface.shown), 0.0);
+        light += seen * sun_powers[i].rgb * (s.surface.diffuse * (cosine / PI) + gloss_under(s, sun, suns[i].w));
+#ifdef RICH
+        if (has_fuzz)
+            sheen += seen * sun_powers[i].rgb * fuzz_value(s.part.fuzz.a, fibres.axis, sun, s.viewer);
+#endif
+    }
+#ifdef RICH
+    if (has_fuzz)
+        light = light * fibres.under + s.part.fuzz.rgb * sheen;
+#endif
+    return light;
+}
+#endif
+
+void write(ivec2 pixel, vec4 light)
+{
+    if (kind.z > 0)
+        light = mix(imageLoad(light_image, pixel), light, 1.0 / float(kind.z + 1));
+    imageStore(light_image, pixel, light);
+}
+
+void main()
+{
+    uint tile = tiles[uint(kind.y) + gl_WorkGroupID.x];
+    ivec2 pixel = ivec2(tile & 0xffffu, tile >> 16) * 8 + ivec2(gl_LocalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, size.xy)))
+        return;
+    uint id = texelFetch(ids, pixel, 0).r;
+#ifdef NOTHING
+    if (id == 0u)
+        write(pixel, vec4(0.0));
+#else
+    uint part = id != 0u ? triangle_parts[(id & 0x7fffffffu) - 1u] : 0u;
+    if (part >> 16 != uint(kind.x))
+        return;
+    Seen s = see(id, part & 0xfffu, pixel);
+    write(pixel, vec4(light_of(s, pixel) * s.cover, s.cover));
+#endif
+}

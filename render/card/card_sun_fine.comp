@@ -1,0 +1,82 @@
+#version 450 core
+// Traces what every pixel sees of a sun. Where the corners of its cell agree and are of its surface, that; else by rays of its
+// own: four places first, and where these disagree the others, by all threads of the group alike.
+#include "card_frame.glsl"
+#include "card_pixel.glsl"
+#define TREE_BINDING CARD_NODES
+#include "trace.glsl"
+#include "card_sun_start.glsl"
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
+layout(std430, binding = CARD_TRIANGLE_PARTS) restrict readonly buffer TriangleParts
+{
+    uint triangle_parts[];
+};
+layout(binding = 1) uniform usampler2D coarse;
+layout(r8, binding = 0) restrict writeonly uniform image2D visible;
+layout(location = 0) uniform int sun;
+layout(location = 1) uniform int places; // of a pixel in a penumbra
+
+shared vec3 starts[64];
+shared uint seen[64], again[64], count, again_count;
+
+// The state that the corners of the pixel's cell agree on; -1: none.
+float agreed(uint id, ivec2 pixel)
+{
+    uint surface = triangle_parts[(id & 0x7fffffffu) - 1u] >> 12 & 15u;
+    ivec2 cell = pixel / 4, next = min(cell + 1, (size.xy - 1 + 3) / 4);
+    uint a = texelFetch(coarse, cell, 0).r, b = texelFetch(coarse, ivec2(next.x, cell.y), 0).r;
+    uint c = texelFetch(coarse, ivec2(cell.x, next.y), 0).r, d = texelFetch(coarse, next, 0).r;
+    if (a != b || b != c || c != d || a >> 4 != surface)
+        return -1.0;
+    return (a & 15u) == 0u ? 0.0 : (a & 15u) == 4u ? 1.0 : -1.0;
+}
+
+void main()
+{
+    uint mine = gl_LocalInvocationIndex, slot = 64u;
+    if (mine == 0u) {
+        count = 0u;
+        again_count = 0u;
+    }
+    barrier();
+    ivec2 pixel = ivec2(gl_WorkGroupID.xy * 8u + gl_LocalInvocationID.xy);
+    bool is_inside = mine < 64u && all(lessThan(pixel, size.xy));
+    uint id = is_inside ? texelFetch(ids, pixel, 0).r : 0u;
+    float result = id != 0u ? agreed(id, pixel) : 0.0;
+    if (result < 0.0) {
+        vec3 start;
+        result = 0.0;
+        if (sun_start(place_of(id, pixel), suns[sun].xyz, start)) {
+            slot = atomicAdd(count, 1u);
+            starts[slot] = start;
+            seen[slot] = 0u;
+        }
+    }
+    barrier();
+    uint traced = count;
+    for (uint k = mine; k < 4u * traced; k += 256u) {
+        uint at = k % traced;
+        vec3 d = sun_places[16 * sun + int(k / traced)].xyz;
+        if (ground_passes(disc, starts[at], d) > 0.5 && !tree_occluded(starts[at], d, 0.0, 1e30))
+            atomicAdd(seen[at], 1u);
+    }
+    barrier();
+    bool is_partial = slot < 64u && seen[slot] != 0u && seen[slot] != 4u;
+    if (slot < 64u && !is_partial)
+        result = seen[slot] == 4u ? 1.0 : 0.0;
+    if (is_partial)
+        again[atomicAdd(again_count, 1u)] = slot;
+    barrier();
+    uint partial = again_count;
+    for (uint k = mine; k < uint(places - 4) * partial; k += 256u) {
+        uint at = again[k % partial];
+        vec3 d = sun_places[16 * sun + 4 + int(k / partial)].xyz;
+        if (ground_passes(disc, starts[at], d) > 0.5 && !tree_occluded(starts[at], d, 0.0, 1e30))
+            atomicAdd(seen[at], 1u);
+    }
+    barrier();
+    if (is_partial)
+        result = float(seen[slot]) / float(places);
+    if (is_inside)
+        imageStore(visible, pixel, vec4(result));
+}

@@ -1,0 +1,60 @@
+/* Jobs that draw a frame in motion on the graphics card. */
+#include "config/base/hash.h"
+#include "render/frame/job_io.h"
+
+bool tl_run_card_surfaces(const struct tl_card_surfaces_job *job, tl_error *error)
+{
+    const struct tl_card_surfaces request = {.ranges = &job->shapes->ranges,
+                                             .shapes_revision = job->shapes->revision,
+                                             .ground = job->ground_input->is_drawn ? job->ground : NULL,
+                                             .materials = job->shade_materials};
+    return tl_card_send_surfaces(job->card, &request, error);
+}
+
+bool tl_run_card_ids(const struct tl_card_ids_job *job, tl_error *error)
+{
+    const struct tl_card_view request = {
+        .view = &job->shift->view, .width = job->size->columns, .height = job->size->rows};
+    return tl_card_see(job->card, &request, error);
+}
+
+bool tl_run_card_points(const struct tl_card_points_job *job, tl_error *error)
+{
+    const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
+    const uint64_t hash = tl_hash(TL_HASH_START, parts, sizeof parts);
+    const struct tl_card_light request = {.regions = job->regions,
+                                          .suns = job->suns,
+                                          .lights = *job->lights,
+                                          .lobes = job->exact->lobes,
+                                          .light_revision =
+                                              tl_hash(hash, job->light_options, sizeof *job->light_options),
+                                          .environment_yaw = *job->yaw,
+                                          .rays = job->rays->options.card_rays,
+                                          .ground = job->ground_input->is_drawn ? job->ground : NULL};
+    return tl_card_trace_points(job->card, &request, error);
+}
+
+bool tl_run_card_bounce(const struct tl_card_bounce_job *job, tl_error *error)
+{
+    const struct tl_card_bounce request = {.cube = job->cube,
+                                           .cube_revision = job->environment->revision,
+                                           .shares = job->light_options->bounce_shares};
+    return tl_card_trace_bounce(job->card, &request, error);
+}
+
+bool tl_run_card_ratios(const struct tl_card_ratios_job *job, tl_error *error)
+{
+    return tl_card_make_ratios(job->card, *job->facts & TL_BIT(TL_SCENE_CARD_BOUNCE), error);
+}
+
+bool tl_run_card_suns(const struct tl_card_suns_job *job, tl_error *error)
+{
+    return tl_card_trace_suns(job->card, error);
+}
+
+bool tl_run_card_shade(const struct tl_card_shade_job *job, tl_error *error)
+{
+    struct tl_linear_image *image = &job->present->image;
+    tl_linear_image_begin_gpu(image, job->gpu, job->size->columns, job->size->rows);
+    return tl_card_shade(job->card, &image->target.colours[0], job->shift->before, error);
+}
