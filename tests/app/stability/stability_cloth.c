@@ -34,7 +34,7 @@ static struct place place_of(size_t index)
 static bool is_run(struct place at, bool quick)
 {
     const struct tl_envelope_size *size = &tl_envelope_sizes[at.size];
-    if (quick && (!size->quick || at.stiffness % 3 != 2 || at.step % 2))
+    if (quick && (!size->quick || at.stiffness % 3 != 2 || at.step % 2 || at.ratio == 1))
         return false;
     if (size->columns == 0 && at.ratio > 0)
         return false; /* a triangle's masses are alike */
