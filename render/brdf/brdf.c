@@ -117,83 +117,25 @@ vec3s tl_brdf_sum_gloss(const struct tl_brdf_sum *sum, const struct tl_brdf_fram
     return gloss;
 }
 
-/* P(w^2) is the integral of 2 d exp(-(d/w)^2) cos d sin d / (d w^2) over d in [0, pi/2]. It is 1 for
- * narrow facets. This polynomial interpolates it at five Chebyshev nodes of w^2 in [0, 1], with an error
- * below 1e-4. */
-static float gaussian_volume(float w2)
-{
-    return 0.99992717f + w2 * (-0.66309756f + w2 * (0.24115347f + w2 * (-0.02326816f - w2 * 0.00701674f)));
-}
-
 float tl_brdf_facets(const struct tl_brdf *brdf, float tangent_squared)
 {
-    float w2 = brdf->gloss.width_weft * brdf->gloss.width_weft;
-    if (brdf->gloss.facets == TL_FACETS_BECKMANN) {
-        float rise = 1 + tangent_squared; /* 1 / cos^2 */
-        float fall = expf(-tangent_squared / w2);
-        return fall > 0 ? fall * rise * rise / (4 * w2) : 0;
-    }
-    if (brdf->gloss.facets == TL_FACETS_GGX) {
-        float quotient = (1 + tangent_squared) / (w2 + tangent_squared);
-        return quotient * quotient * w2 / 4;
-    }
-    float d = atanf(sqrtf(tangent_squared));
-    return expf(-d * d / w2) / (4 * w2 * gaussian_volume(w2));
-}
-
-/* Smith's lambda for Beckmann facets: the ratio of smith_lambda to visible facets, L(x) of brdf.h. */
-static float smith_lambda(float width, float cosine)
-{
-    float sine = sqrtf(fmaxf(1 - cosine * cosine, 0));
-    if (sine <= 0)
-        return 0;
-    float k = cosine / (width * sine);
-    return fmaxf((expf(-k * k) / (k * sqrtf(PI)) - erfcf(k)) / 2, 0);
-}
-
-static float ggx_lambda(float width, float cosine)
-{
-    float tangent_squared = fmaxf(1 - cosine * cosine, 0) / fmaxf(cosine * cosine, 1e-12f);
-    return (sqrtf(1 + width * width * tangent_squared) - 1) / 2;
+    return facet_density(brdf->gloss.facets, brdf->gloss.width_weft, tangent_squared);
 }
 
 float tl_brdf_smith(const struct tl_brdf *brdf, float cos_a, float cos_b)
 {
-    float width = brdf->gloss.width_weft;
-    if (brdf->gloss.facets == TL_FACETS_GGX)
-        return 1 / (1 + ggx_lambda(width, cos_a) + ggx_lambda(width, cos_b));
-    return 1 / (1 + smith_lambda(width, cos_a) + smith_lambda(width, cos_b));
+    return facet_masking(brdf->gloss.facets, TL_MASKING_SMITH, brdf->gloss.width_weft, cos_a, cos_b, 1, 1);
 }
 
 float tl_brdf_v_grooves(float cos_a, float cos_b, float cos_t, float cos_d)
 {
-    return fminf(1, 2 * cos_d * fminf(cos_a, cos_b) / cos_t);
-}
-
-float tl_brdf_schlick(const struct tl_brdf *brdf, float cos_a, float cos_b)
-{
-    float k = sqrtf(2 / PI) * brdf->gloss.width_weft;
-    return cos_a * cos_b / ((cos_a + k * (1 - cos_a)) * (cos_b + k * (1 - cos_b)));
+    return facet_masking(0, TL_MASKING_V_GROOVES, 1, cos_a, cos_b, cos_t, cos_d);
 }
 
 float tl_brdf_masking(const struct tl_brdf *brdf, float cos_a, float cos_b, float cos_t, float cos_d)
 {
-    switch (brdf->gloss.masking) {
-    case TL_MASKING_V_GROOVES:
-        return tl_brdf_v_grooves(cos_a, cos_b, cos_t, cos_d);
-    case TL_MASKING_SCHLICK:
-        return tl_brdf_schlick(brdf, cos_a, cos_b);
-    default:
-        return tl_brdf_smith(brdf, cos_a, cos_b);
-    }
-}
-
-/* c(s) of BANKS by Gamma(z + 1/2) / Gamma(z), z = s/2 + 3/2, from the first terms of its asymptotic series.
- * The relative error is below 5e-4 for s >= 1. */
-static float thread_scale(float s)
-{
-    float z = s / 2 + 1.5f;
-    return sqrtf(z - 0.25f + 1 / (32 * z)) / (2 * sqrtf(PI));
+    return facet_masking(brdf->gloss.facets, brdf->gloss.masking, brdf->gloss.width_weft, cos_a, cos_b, cos_t,
+                         cos_d);
 }
 
 float tl_brdf_lobe_scale(const struct tl_brdf *brdf)

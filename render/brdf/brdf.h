@@ -98,8 +98,6 @@ vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *fram
 float tl_brdf_facets(const struct tl_brdf *brdf, float tangent_squared);
 /* G of SMITH, from the cosines a and b. */
 float tl_brdf_smith(const struct tl_brdf *brdf, float cos_a, float cos_b);
-/* G of SCHLICK, from the cosines a and b. */
-float tl_brdf_schlick(const struct tl_brdf *brdf, float cos_a, float cos_b);
 /* G of the model's masking, from the cosines a, b, t and d. */
 float tl_brdf_masking(const struct tl_brdf *brdf, float cos_a, float cos_b, float cos_t, float cos_d);
 /* G of V_GROOVES, from the cosines a, b, t and d. */

@@ -85,7 +85,7 @@ TERM vec3 thread_direction(vec3 n, vec3 tangent, float cosine, float sine)
     bool is_given = dot(t, t) > 1e-12f, is_x = abs(n.x) < 0.6f;
     t = vec3(is_given ? t.x : is_x ? 0.0f : n.z, is_given ? t.y : is_x ? -n.z : 0.0f, // else: an axis x n
              is_given ? t.z : is_x ? n.y : -n.x);
-    t = vec3_scale(t, inversesqrt(dot(t, t)));
+    t = direction_or(t, t);
     return vec3_add(vec3_scale(t, cosine), vec3_scale(cross(n, t), sine));
 }
 
@@ -323,6 +323,74 @@ TERM float slope_above(float cosine, float exponent)
     return 0.5f * (1.0f + slope_erf(cosine * sqrt((exponent + 1.0f) / 2.0f)));
 }
 
+// ---- Microfacets of Torrance and Sparrow (brdf.h) ----
+
+// enum tl_facets and tl_masking (assets/base/material.h)
+#define FACETS_BECKMANN 1
+#define FACETS_GGX 2
+#define MASKING_V_GROOVES 1
+#define MASKING_SCHLICK 2
+
+// With full precision; a driver's own function has only four digits near 0.
+TERM float arc_tangent(float x)
+{
+    float y = x * x;
+    return x > 0.25f ? atan(x) : x * (1.0f - y * (1.0f / 3.0f - y * (0.2f - y * (1.0f / 7.0f - y / 9.0f))));
+}
+
+// P(w^2) is the integral of 2 d exp(-(d/w)^2) cos d sin d / (d w^2) over d in [0, pi/2]. It is 1 for narrow facets. This
+// polynomial interpolates it at five Chebyshev nodes of w^2 in [0, 1], with an error below 1e-4.
+TERM float gaussian_volume(float w2)
+{
+    return 0.99992717f + w2 * (-0.66309756f + w2 * (0.24115347f + w2 * (-0.02326816f - w2 * 0.00701674f)));
+}
+
+// D(d), from tan^2 d.
+TERM float facet_density(int facets, float width, float tangent_squared)
+{
+    float w2 = width * width, rise = 1.0f + tangent_squared; // 1 / cos^2
+    if (facets == FACETS_BECKMANN) {
+        float fall = exp(-tangent_squared / w2);
+        return fall > 0.0f ? fall * rise * rise / (4.0f * w2) : 0.0f;
+    }
+    float quotient = rise / (w2 + tangent_squared);
+    if (facets == FACETS_GGX)
+        return quotient * quotient * w2 / 4.0f;
+    float d = arc_tangent(sqrt(tangent_squared));
+    return exp(-d * d / w2) / (4.0f * w2 * gaussian_volume(w2));
+}
+
+// Smith's lambda, the ratio of hidden to visible facets: for slopes of Beckmann (exp(-k^2) / (k sqrt pi) - erfc k) / 2.
+TERM float facet_lambda(int facets, float width, float cosine)
+{
+    float sine_squared = max(1.0f - cosine * cosine, 0.0f);
+    if (facets == FACETS_GGX)
+        return (sqrt(1.0f + width * width * sine_squared / max(cosine * cosine, 1e-12f)) - 1.0f) / 2.0f;
+    float k = min(cosine / (width * max(sqrt(sine_squared), 1e-6f)), 1e6f), t = 1.0f / (1.0f + 0.3275911f * k);
+    float scaled = // erfc k / exp(-k^2) as slope_erf
+        t * (0.254829592f + t * (-0.284496736f + t * (1.421413741f + t * (-1.453152027f + t * 1.061405429f))));
+    return max(exp(-k * k) * (0.56418958f / max(k, 1e-20f) - scaled) / 2.0f, 0.0f);
+}
+
+// G, from the cosines a of the light, b of the viewer, t of facet and light, d of facet and normal.
+TERM float facet_masking(int facets, int masking, float width, float cos_a, float cos_b, float cos_t, float cos_d)
+{
+    if (masking == MASKING_V_GROOVES)
+        return min(1.0f, 2.0f * cos_d * min(cos_a, cos_b) / cos_t);
+    float k = 0.79788456f * width;
+    if (masking == MASKING_SCHLICK)
+        return cos_a * cos_b / ((cos_a + k * (1.0f - cos_a)) * (cos_b + k * (1.0f - cos_b)));
+    return 1.0f / (1.0f + facet_lambda(facets, width, cos_a) + facet_lambda(facets, width, cos_b));
+}
+
+// c(s) of BANKS by Gamma(z + 1/2) / Gamma(z), z = s/2 + 3/2, from the first terms of its asymptotic series. The relative
+// error is below 5e-4 for s >= 1.
+TERM float thread_scale(float s)
+{
+    float z = s / 2.0f + 1.5f;
+    return sqrt(z - 0.25f + 1.0f / (32.0f * z)) * 0.28209479f;
+}
+
 // ---- Ward's facets ----
 
 // The contribution of a slope to the gloss: see value_of_slope of lobe_fit.c. With q the squared cosine of the facet,
@@ -353,7 +421,7 @@ TERM WardSlope ward_slope(bool is_bounded, float x, float y, float z, float slop
 TERM float ward_lobe(bool is_bounded, float slope_x, float slope_y, float steep, float cos_a, float cos_b, float weft,
                      float warp, float product)
 {
-    float determinant = max(weft * warp - product * product, 1e-12f);
+    float determinant = max(weft * warp - product * product, 1e-16f);
     float published = sqrt(cos_a / cos_b), bounded = cos_a / max(steep, 1e-30f);
     float squares = slope_x * slope_x * warp - 2.0f * slope_x * slope_y * product + slope_y * slope_y * weft;
     float value = exp2(-1.44269504f * squares / determinant) * (is_bounded ? bounded : published) /

@@ -15,6 +15,7 @@
 #define TERM_TABLE  static const
 #define abs         fabsf
 #define asin        asinf
+#define atan        atanf
 #define clamp       term_clamp
 #define cos         cosf
 #define exp         expf

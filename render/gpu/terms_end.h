@@ -3,6 +3,7 @@
 #undef TERM_TABLE
 #undef abs
 #undef asin
+#undef atan
 #undef clamp
 #undef cos
 #undef exp

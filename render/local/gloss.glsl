@@ -12,9 +12,7 @@ layout(location = 90) uniform vec3 thread_ratios[THREADS]; // of their light to 
 #endif
 
 const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
-const int GAUSSIAN = 0, BECKMANN = 1, GGX = 2;
 const int BOUNDED = 1;
-const int SMITH = 0, V_GROOVES = 1, QUOTIENT = 2; // QUOTIENT: Schlick's
 const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
 
 const float PI = 3.14159265;
@@ -49,67 +47,6 @@ vec3 fresnel(vec3 f0, Cosines c)
     return schlick_colour(f0, cosine);
 }
 
-// atan with full precision; the built-in function has only four digits.
-float arc_tangent(float x)
-{
-    float y = x * x;
-    if (x > 0.25)
-        return atan(x);
-    return x * (1.0 - y * (1.0 / 3.0 - y * (0.2 - y * (1.0 / 7.0 - y / 9.0))));
-}
-
-float gaussian_volume(float w2)
-{
-    return 0.99992717 + w2 * (-0.66309756 + w2 * (0.24115347 + w2 * (-0.02326816 - w2 * 0.00701674)));
-}
-
-float facets(float tangent2, float width)
-{
-    float w2 = width * width;
-    if (FACETS == BECKMANN) {
-        float rise = 1.0 + tangent2, fall = exp(-tangent2 / w2);
-        return fall > 0.0 ? fall * rise * rise / (4.0 * w2) : 0.0;
-    }
-    if (FACETS == GGX) {
-        float quotient = (1.0 + tangent2) / (w2 + tangent2);
-        return quotient * quotient * w2 / 4.0;
-    }
-    float d = arc_tangent(sqrt(tangent2));
-    return exp(-d * d / w2) / (4.0 * w2 * gaussian_volume(w2));
-}
-
-// Smith's lambda, the ratio of hidden to visible facets: (exp(-k^2) / (k sqrt pi) - erfc k) / 2, with erfc by
-// [Abramowitz and Stegun 7.1.26], error below 1.5e-7.
-float smith_lambda(float width, float cosine)
-{
-    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    if (sine <= 0.0)
-        return 0.0;
-    if (FACETS == GGX) {
-        float tangent = sine / max(cosine, 1e-6);
-        return 0.5 * (sqrt(1.0 + width * width * tangent * tangent) - 1.0);
-    }
-    float k = cosine / (width * sine), t = 1.0 / (1.0 + 0.3275911 * k);
-    float scaled =
-        t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
-    return max(0.5 * exp(-k * k) * (0.56418958 / k - scaled), 0.0);
-}
-
-// G / (pi n.v): times D and F it is f_r cos a of a Torrance-Sparrow surface.
-float masked(Cosines c, float width)
-{
-    float g;
-    if (MASKING == V_GROOVES) {
-        g = min(1.0, 2.0 * c.half_normal * min(c.a, c.b) / c.t);
-    } else if (MASKING == QUOTIENT) {
-        vec2 k = vec2(0.79788456 * width), cosines = vec2(c.a, c.b), seen = cosines / mix(k, vec2(1.0), cosines);
-        g = seen.x * seen.y;
-    } else {
-        g = 1.0 / (1.0 + smith_lambda(width, c.a) + smith_lambda(width, c.b));
-    }
-    return g / (PI * c.b);
-}
-
 float ward(Cosines c, vec3 squares, bool is_bounded)
 {
     vec2 slope = c.half_plane / c.half_normal;
@@ -125,18 +62,13 @@ vec2 thread_mirror(vec2 thread)
     return vec2(sine.x * sine.y - cosine.x * cosine.y, across * across);
 }
 
-float thread_scale(float s)
-{
-    float z = 0.5 * s + 1.5;
-    return sqrt(z - 0.25 + 1.0 / (32.0 * z)) * 0.28209479;
-}
-
 // f_r cos a without the Fresnel term.
 float lobe(Cosines c, float s, vec3 widening)
 {
     if (MODEL == TORRANCE_SPARROW) {
         float width = sqrt(facet_square(gloss_widths.x * gloss_widths.x, widening.x));
-        return facets(c.half_sine2 / (c.half_normal * c.half_normal), width) * masked(c, width);
+        return facet_density(FACETS, width, c.half_sine2 / (c.half_normal * c.half_normal)) *
+               facet_masking(FACETS, MASKING, width, c.a, c.b, c.t, c.half_normal) / (PI * c.b);
     }
     if (MODEL == WARD)
         return ward(c, squares_of(gloss_widths.xy, widening), WARD_FORM == BOUNDED);

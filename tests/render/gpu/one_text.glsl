@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 76
+#define ONE_TEXT_NUMBERS 81
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -133,6 +133,11 @@ TERM float one_text(int number, uint trial)
                : number == 72 ? mirror.y + mirror.z
                : number == 73 ? turned.x + turned.z
                : number == 74 ? lobe_exponent(e.x)
+               : number == 76 ? min(facet_density(int(3.0f * a.x), 0.05f + e.x, 2.0f * e.y), 100.0f)
+               : number == 77 ? facet_lambda(int(3.0f * a.x), 0.05f + e.x, 0.01f + 0.99f * e.y)
+               : number == 78 ? facet_masking(1, int(3.0f * a.x), 0.05f + e.x, 0.01f + e.y, 0.01f + b.x, 0.5f + 0.5f * b.y, d.x)
+               : number == 79 ? thread_scale(s)
+               : number == 80 ? arc_tangent(2.0f * e.x)
                               : texel_level(4.0f * d.x, 30.0f * e.y);
     return number == 58   ? seen.diffuse.x
            : number == 59 ? seen.diffuse.y
