@@ -61,6 +61,7 @@ struct tl_card_light {
     const struct tl_ground *ground; /* NULL: none */
 };
 #define TL_CARD_RAYS_MAX 8
+#define TL_CARD_LOBES    5 /* of a gloss (light.lobes), at most */
 /* Sends light, and traces what the listed vertices see of the regions. */
 bool tl_card_trace_points(tl_graphics_card *card, const struct tl_card_light *request, tl_error *error);
 

@@ -23,12 +23,14 @@ struct Part {
     vec4 sewing_thread;
     vec4 fuzz;             // colour, roughness
     vec4 fuzz_more;        // how far it follows the bumps
+    vec4 table;            // of lobe sets: glossiness at both ends, lobes, steps of glossiness
+    uvec4 table_first;     // its first vector; enum tl_facets, tl_masking
     vec4 map_rows[10];     // two of each map, from the mesh's UV
     uvec4 flags;           // bits; first triangle of the surface; maps, by bit; systems of threads
 };
 const uint IS_GLOSSY = 1u, IS_FACETED = 2u, HAS_OWN_BUMPS = 4u, OWN_ARE_MOMENTS = 8u, HAS_WEAVE_BUMPS = 16u,
            WEAVE_ARE_MOMENTS = 32u, HAS_YARNS = 64u, IS_SEWN = 128u, FADES = 256u, HAS_BACK = 512u, IS_BOUNDED = 1024u,
-           HAS_FUZZ = 2048u, IS_WOVEN = 4096u, HAS_MAP = 8192u, HAS_BUMPS = 16384u, LEAN = 1u << 20, TOKSVIG = 1u << 21;
+           HAS_FUZZ = 2048u, IS_WOVEN = 4096u, HAS_MAP = 8192u, HAS_BUMPS = 16384u, HAS_TABLE = 32768u, LEAN = 1u << 20, TOKSVIG = 1u << 21;
 layout(std430, binding = CARD_PARTS) restrict readonly buffer Parts
 {
     Part parts[];
@@ -212,3 +214,5 @@ vec3 ward_scale(WardSet w, vec3 plain, vec3 away, float sum_plain, float sum_awa
     vec3 sum = plain * sum_plain + away * sum_away;
     return (plain * w.albedo_plain + away * w.albedo_away) / max(sum, 1e-20);
 }
+
+#include "card_table.glsl"

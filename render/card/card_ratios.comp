@@ -45,7 +45,7 @@ layout(std430, binding = CARD_RATIOS) restrict writeonly buffer Ratios
     vec4 ratios[];
 };
 
-const uint SLICES = 8u, GLOSSES = 3u, SET_LOBES = 5u; // of the surface and two systems of threads; TL_LOBE_FIT_MAX each
+const uint SLICES = 8u, GLOSSES = 3u, SET_LOBES = 5u; // of the surface and two systems of threads; TL_CARD_LOBES each
 shared vec4 lobe_at[GLOSSES * SET_LOBES][32];         // direction in the environment; exponent
 shared vec4 lobe_weight[GLOSSES * SET_LOBES][32];     // its weight; later times the regions' gain
 shared uint lobe_counts[GLOSSES][32];
@@ -90,6 +90,15 @@ uint list_lobes(Vertex v, uint gloss, uint lane)
     if (cosine < 0.02)
         viewer = direction_or(viewer + v.normal * (0.02 - cosine), v.normal);
     Facets f = facets_of(v.part, v.normal, v.tangent, v.side, viewer);
+    if (gloss == 0u && (v.part.flags.x & HAS_TABLE) != 0u) {
+        TablePlace place = table_place(v.part, f.viewer, v.surface.glossiness);
+        for (uint k = 0u; k < uint(v.part.table.z); k++) {
+            TableLobe lobe = table_lobe(v.part, place, int(k));
+            lobe_at[k][lane] = vec4(into_environment(normalize(f.frame * lobe.local)), exp2(lobe.log_exponent));
+            lobe_weight[k][lane] = vec4(table_weight(lobe, v.surface.f0), 0.0);
+        }
+        return uint(v.part.table.z);
+    }
     WardSet w = ward_set(widths_of(v.part, int(gloss), v.surface.widening, v.tangent.w * v.side), f.viewer, is_bounded(v.part, int(gloss)),
                          v.part.turn.w);
     vec3 plain, away;

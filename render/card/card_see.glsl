@@ -61,7 +61,19 @@ Seen see(uint id, uint part_number, ivec2 pixel)
 }
 
 #ifdef RICH
-// The exact light of the environment through the lobes that stand for a gloss of facets.
+// The exact light of the environment through the lobes of a table.
+vec3 light_of_table(Seen s)
+{
+    TablePlace at = table_place(s.part, s.facets.viewer, s.surface.glossiness);
+    vec3 light = vec3(0.0);
+    for (int k = 0; k < int(s.part.table.z); k++) {
+        TableLobe lobe = table_lobe(s.part, at, k);
+        light += table_weight(lobe, s.surface.f0) * fetch_lobe(lobe_atlas, into_environment(s.facets.frame * lobe.local), lobe.log_exponent);
+    }
+    return light;
+}
+
+// ... and through those that stand for Ward's facets.
 vec3 light_of_set(Seen s, int gloss)
 {
     WardSet w = ward_set(widths_of(s.part, gloss, s.surface.widening, s.tangent.w), s.facets.viewer, is_bounded(s.part, gloss), s.part.turn.w);
@@ -79,7 +91,22 @@ vec3 light_of_set(Seen s, int gloss)
     return ward_scale(w, plain, away, sum_plain, sum_away) * (plain * light_plain + away * light_away);
 }
 
-// f_r cos of facets, for light from a disc.
+// f_r cos of Torrance and Sparrow's facets, for light from a disc (render/brdf/brdf.c).
+vec3 microfacets_under(Seen s, vec3 d, float radius)
+{
+    vec3 sum = d + s.viewer, h = sum * s.facets.frame;
+    float cos_a = dot(s.facets.frame[2], d), cos_b = s.facets.viewer.z, cos_t = 0.5 * length(sum);
+    if (!(cos_a > 0.0 && cos_b > 0.0))
+        return vec3(0.0);
+    float wider = detail_facet_square(1.0 - s.surface.glossiness) - detail_facet_square(1.0 - s.part.diffuse.a);
+    float width = sqrt(facet_square(s.part.ward[0].x, wider) + radius * radius / 8.0);
+    int facets = int(s.part.table_first.y), masking = int(s.part.table_first.z);
+    float value = facet_density(facets, width, (h.x * h.x + h.y * h.y) / (h.z * h.z)) *
+                  facet_masking(facets, masking, width, cos_a, cos_b, cos_t, h.z / length(h)) / (PI * cos_b);
+    return value * schlick_colour(s.surface.f0, cos_t);
+}
+
+// ... of Ward's.
 vec3 facets_under(Seen s, int gloss, vec3 d, float radius)
 {
     vec3 widths = widths_of(s.part, gloss, s.surface.widening, s.tangent.w), sum = d + s.viewer, h = sum * s.facets.frame, plain, away;
@@ -98,7 +125,7 @@ vec3 exact_gloss(Seen s)
 #ifdef RICH
     if (s.is_faceted) {
         for (int k = 0; k <= int(s.part.flags.w) && s.facets.viewer.z > 0.0; k++)
-            gloss += light_of_set(s, k);
+            gloss += k == 0 && (s.part.flags.x & HAS_TABLE) != 0u ? light_of_table(s) : light_of_set(s, k);
         return gloss;
     }
 #endif
@@ -114,7 +141,7 @@ vec3 gloss_under(Seen s, vec3 d, float radius)
 #ifdef RICH
     if (s.is_faceted) {
         for (int k = 0; k <= int(s.part.flags.w); k++)
-            gloss += facets_under(s, k, d, radius);
+            gloss += k == 0 && (s.part.flags.x & HAS_TABLE) != 0u ? microfacets_under(s, d, radius) : facets_under(s, k, d, radius);
         return gloss;
     }
 #endif

@@ -2,6 +2,7 @@
 
 #include "config/base/memory.h"
 #include "render/bounce/bounce_scene.h"
+#include "render/brdf/brdf.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,8 @@ struct card_part {
     float mean_colour[4], mean_specular[4], mean_gloss[4], mean_own[4], mean_weave[4];
     float sizes[4], rows[4], sewing_thread[4];
     float fuzz[4], fuzz_more[4];
+    float table[4];
+    uint32_t table_first[4];
     float map_rows[TL_MAP_USES][2][4];
     uint32_t flags[4];
 };
@@ -33,6 +36,7 @@ enum {
     IS_WOVEN = 4096,
     HAS_MAP = 8192,
     HAS_BUMPS = 16384,
+    HAS_TABLE = 32768,
     LEAN = 1 << 20,
     TOKSVIG = 1 << 21
 };
@@ -44,9 +48,10 @@ enum {
 static const char *refusal_of(const tl_material *material)
 {
     const struct tl_gloss *gloss = &material->gloss;
-    if (gloss->model != TL_REFLECT_PHONG && gloss->model != TL_REFLECT_WARD)
-        return "facets other than Ward's";
-    if (gloss->model == TL_REFLECT_WARD && gloss->fresnel != TL_FRESNEL_SCHLICK)
+    const bool is_phong = gloss->model == TL_REFLECT_PHONG;
+    if (!is_phong && gloss->model != TL_REFLECT_WARD && gloss->model != TL_REFLECT_TORRANCE_SPARROW)
+        return "reflectance other than Phong's, Ward's and that of microfacets";
+    if (!is_phong && gloss->fresnel != TL_FRESNEL_SCHLICK)
         return "a Fresnel term from an index";
     if (material->coat > 0)
         return "a coat";
@@ -292,10 +297,61 @@ static uint32_t flags_of(const struct tl_shade_materials *materials, const struc
                 {material->gloss.ward == TL_WARD_BOUNDED, IS_BOUNDED},
                 {part->has_fuzz, HAS_FUZZ},
                 {part->has_maps, HAS_MAP},
-                {part->has_maps && part->has_bumps, HAS_BUMPS}};
+                {part->has_maps && part->has_bumps, HAS_BUMPS},
+                {part->lobe_set, HAS_TABLE}};
     for (size_t i = 0; i < TL_COUNT(rows); i++)
         flags |= rows[i].is_so ? rows[i].flag : 0;
     return flags;
+}
+
+/* Notes the place of a part's table among all of them; `first` counts vectors. */
+static void fill_table(const struct tl_shade_part *part, uint32_t first, struct card_part *to)
+{
+    const struct tl_lobe_set_table *table = part->lobe_set;
+    to->table_first[0] = first;
+    to->table_first[1] = (uint32_t)part->material->gloss.facets;
+    to->table_first[2] = (uint32_t)part->material->gloss.masking;
+    const struct tl_brdf own =
+        tl_brdf_of(part->material, part->material->specular, part->material->glossiness);
+    to->ward[0][0] = own.gloss.width_weft * own.gloss.width_weft;
+    to->table[0] = table->gloss_low;
+    to->table[1] = table->gloss_high;
+    to->table[2] = (float)table->lobe_count;
+    to->table[3] = (float)table->gloss_count;
+}
+
+static size_t table_nodes(const struct tl_lobe_set_table *table)
+{
+    return (size_t)table->gloss_count * TL_LOBE_SET_COSINES * TL_LOBE_SET_AZIMUTHS;
+}
+
+/* Sends the tables of all parts one after the other; parts that share one have it once. */
+static bool send_tables(tl_graphics_card *card, const struct tl_shade_materials *materials,
+                        struct card_part *parts, tl_error *error)
+{
+    const size_t count = materials->first_parts[materials->surface_count],
+                 node = sizeof(struct tl_lobe_set_node);
+    struct tl_lobe_set_node *nodes = NULL;
+    size_t placed = 0;
+    for (size_t p = 0; p < count; p++) {
+        const struct tl_lobe_set_table *table = materials->parts[p].lobe_set;
+        size_t same = 0;
+        while (same < p && materials->parts[same].lobe_set != table)
+            same++;
+        if (!table)
+            continue;
+        fill_table(&materials->parts[p], (uint32_t)(placed * node / sizeof(vec4s)), &parts[p]);
+        if (same < p) {
+            parts[p].table_first[0] = parts[same].table_first[0];
+            continue;
+        }
+        nodes = tl_resize(nodes, placed + table_nodes(table), node);
+        memcpy(nodes + placed, table->nodes, table_nodes(table) * node);
+        placed += table_nodes(table);
+    }
+    bool fine = send_or_nothing(card, &card->buffers[CARD_LOBE_SETS], nodes, placed * node, error);
+    free(nodes);
+    return fine;
 }
 
 static void fill_part(const struct tl_shade_materials *materials, const struct tl_shade_part *part,
@@ -384,7 +440,7 @@ bool tl_card_send_materials(tl_graphics_card *card, const struct tl_card_surface
             fill_part(materials, &materials->parts[p], is_ground, ranges->first[s], &parts[p]);
             fill_albedos(&bounced[p], albedos[p]);
         }
-    fine = fine &&
+    fine = fine && send_tables(card, materials, parts, error) &&
            tl_buffer_fill(&card->buffers[CARD_PARTS], card->gpu, parts, count * sizeof *parts, error) &&
            tl_buffer_fill(&card->buffers[CARD_ALBEDOS], card->gpu, albedos, count * sizeof *albedos, error) &&
            send_triangle_parts(card, request, kinds, error);

@@ -257,6 +257,8 @@ const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_
         return "samples that are not pixels (image.scale, image.supersample)";
     if (settings->light.bounce == TL_BOUNCE_ONE)
         return "light that bounces once (light.bounce)";
+    if (settings->light.lobes > TL_CARD_LOBES)
+        return "so many lobes of a gloss (light.lobes)";
     return tl_card_refusal(frame->surfaces, frame->surface_count);
 }
 

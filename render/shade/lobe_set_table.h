@@ -12,15 +12,16 @@
 
 #include "render/brdf/lobe_fit.h"
 #include "render/env/quad.h"
+#include "render/gpu/vectors.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-#define TL_LOBE_SET_AZIMUTHS                                                                                 \
-    49 /* over half a turn: the fit is the same seen from the other side, mirrored                           \
-        */
-#define TL_LOBE_SET_COSINES 49
-#define TL_LOBE_SET_GLOSSES 9
+#include "render/gpu/terms_begin.h"
+
+#include "render/shade/lobe_set_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 /* One node: lobes in the local frame (tangent, bitangent, normal). Two quads each. */
 struct tl_lobe_set_lobe {
@@ -45,10 +46,6 @@ void tl_lobe_set_table_make(const tl_material *material, float gloss_low, float 
                             struct tl_lobe_set_table *out);
 void tl_lobe_set_table_release(struct tl_lobe_set_table *table);
 
-/* Schlick's term is affine in F0 from here on; below, a reflectance is in proportion to this one (fresnel.h).
- */
-#define TL_LOBE_SET_LOW_F0 0.02f
-
 /* A place between nodes: the first of two, and the share of the second. */
 struct tl_lobe_set_between {
     int first;
@@ -61,22 +58,6 @@ TL_INLINE struct tl_lobe_set_between tl_lobe_set_between(float at, int count)
     int first = (int)at;
     first = first < count - 1 ? first : count > 1 ? count - 2 : 0;
     return (struct tl_lobe_set_between){first, at - (float)first};
-}
-
-/* Towards a grazing viewer the fit changes quickly: elevations, as shares of a right angle, are squared
- * distances from there. */
-#define TL_LOBE_SET_ROWS  ((float)TL_LOBE_SET_COSINES - 0.98f)
-#define TL_LOBE_SET_FIRST 0.02f
-
-/* atan2 over [0, pi], y >= 0, within 2e-5 rad: a minimax polynomial of atan over [0, 1]. */
-TL_INLINE float tl_lobe_set_azimuth(float x, float y)
-{
-    float along = fabsf(x), maximum = tl_maxf(tl_maxf(along, y), 1e-30f);
-    float q = tl_minf(along, y) / maximum, square = q * q;
-    float series = -0.11643287f + square * (0.05265332f - 0.01172120f * square);
-    float angle = q * (0.99997726f + square * (-0.33262347f + square * (0.19354346f + square * series)));
-    angle = y > along ? 1.57079633f - angle : angle;
-    return x < 0 ? 3.14159265f - angle : angle;
 }
 
 TL_INLINE const struct tl_lobe_set_node *tl_lobe_set_nodes(const struct tl_lobe_set_table *table, int gloss,
@@ -117,13 +98,9 @@ TL_INLINE struct tl_lobe_set_place tl_lobe_set_place(const struct tl_lobe_set_ta
                                                      float cosine, float glossiness)
 {
     float side = y < 0 ? -1.0f : 1.0f;
-    struct tl_lobe_set_between column = tl_lobe_set_between(tl_lobe_set_azimuth(side * x, side * y) *
-                                                                ((TL_LOBE_SET_AZIMUTHS - 1) / 3.14159265f),
-                                                            TL_LOBE_SET_AZIMUTHS);
-    float sine = sqrtf(tl_maxf(1 - cosine * cosine, 0));
-    float elevation = tl_lobe_set_azimuth(sine, cosine) * (2 / 3.14159265f);
-    struct tl_lobe_set_between row =
-        tl_lobe_set_between(sqrtf(elevation) * TL_LOBE_SET_ROWS - TL_LOBE_SET_FIRST, TL_LOBE_SET_COSINES);
+    struct tl_lobe_set_between column =
+        tl_lobe_set_between(lobe_set_column(side * x, side * y), TL_LOBE_SET_AZIMUTHS);
+    struct tl_lobe_set_between row = tl_lobe_set_between(lobe_set_row(cosine), TL_LOBE_SET_COSINES);
     struct tl_lobe_set_between gloss =
         tl_lobe_set_between((glossiness - table->gloss_low) / (table->gloss_high - table->gloss_low) *
                                 (float)(table->gloss_count - 1),
@@ -156,21 +133,11 @@ struct tl_lobe_set_shares {
     tl_quad low, high;
 };
 
-TL_INLINE float tl_lobe_set_high_share(float f0)
-{
-    return tl_maxf((f0 - TL_LOBE_SET_LOW_F0) * (1 / (1 - TL_LOBE_SET_LOW_F0)), 0);
-}
-
-TL_INLINE float tl_lobe_set_low_share(float f0)
-{
-    return f0 < TL_LOBE_SET_LOW_F0 ? f0 * (1 / TL_LOBE_SET_LOW_F0) : 1 - tl_lobe_set_high_share(f0);
-}
-
 TL_INLINE struct tl_lobe_set_shares tl_lobe_set_shares(tl_quad f0)
 {
     return (struct tl_lobe_set_shares){
-        {tl_lobe_set_low_share(f0[0]), tl_lobe_set_low_share(f0[1]), tl_lobe_set_low_share(f0[2]), 0},
-        {tl_lobe_set_high_share(f0[0]), tl_lobe_set_high_share(f0[1]), tl_lobe_set_high_share(f0[2]), 0}};
+        {lobe_set_low_share(f0[0]), lobe_set_low_share(f0[1]), lobe_set_low_share(f0[2]), 0},
+        {lobe_set_high_share(f0[0]), lobe_set_high_share(f0[1]), lobe_set_high_share(f0[2]), 0}};
 }
 
 /* The lobes towards a viewer above the surface, as tl_lobe_fit_make gives them. Returns their number. */
