@@ -92,7 +92,8 @@ static struct tl_render_settings resolve(const tl_renderer *renderer,
     const tl_gpu *gpu = renderer->resources.gpu;
     const bool is_wanted = used.light.device == TL_DEVICE_CARD ||
                            (used.light.device == TL_DEVICE_AUTO && !tl_gpu_is_software(gpu));
-    used.light.device = is_wanted && !tl_card_gl_refusal(gpu) ? TL_DEVICE_CARD : TL_DEVICE_CPU;
+    const bool can = !renderer->card_fails && !tl_card_gl_refusal(gpu);
+    used.light.device = is_wanted && can ? TL_DEVICE_CARD : TL_DEVICE_CPU;
     return used;
 }
 
@@ -432,6 +433,12 @@ bool tl_renderer_draw(tl_renderer *renderer, const tl_frame *frame, const struct
     release_unused(resources, &used.detail);
     const struct tl_plan_input input = plan_input(renderer, facts, changed, read_of(frame));
     bool fine = run_plan(renderer, &input, &renderer->plan, error);
+    if (!fine && facts & TL_BIT(TL_SCENE_CARD) && settings->light.device == TL_DEVICE_AUTO) {
+        tl_warn("%s: the CPU draws from now on", error->message);
+        *error = (tl_error){0};
+        renderer->card_fails = true;
+        return tl_renderer_draw(renderer, frame, settings, error);
+    }
     const bool waits = resources->facts & TL_BIT(TL_SCENE_BOUNCE) && !resources->bounce.is_done;
     const bool traces = resources->facts & TL_BIT(TL_SCENE_SHADOWS);
     renderer->rest.is_done = (resources->points_are_done || !traces) && !waits;
@@ -545,6 +552,8 @@ void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *fr
         snprintf(out, size, "the CPU, as light.device states");
     else if (settings->light.device == TL_DEVICE_AUTO && tl_gpu_is_software(gpu))
         snprintf(out, size, "the CPU: OpenGL runs on it as well");
+    else if (renderer->card_fails)
+        snprintf(out, size, "the CPU: a frame of the graphics card failed");
     else if (tl_card_gl_refusal(gpu))
         snprintf(out, size, "the CPU: %s", tl_card_gl_refusal(gpu));
     else if (used.light.ratio_at != TL_RATIO_AT_VERTICES)

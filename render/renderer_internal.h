@@ -24,6 +24,7 @@ struct tl_renderer {
     double slowness; /* tl_cost_slowness of the last frame; 0 before the first */
     uint64_t shaders_stamp;
     tl_timer *timer; /* NULL: GL runs on the CPU */
+    bool card_fails; /* the graphics card could not draw a frame: the CPU draws from then on */
 };
 
 #endif

@@ -24,6 +24,7 @@ void tl_card_destroy(tl_graphics_card **card)
         tl_buffer_destroy(&c->buffers[i]);
     tl_texture_destroy(&c->ids);
     tl_texture_destroy(&c->depth);
+    tl_texture_destroy(&c->light);
     tl_texture_destroy(&c->no_map);
     for (int i = 0; i < TL_SUNS_MAX; i++) {
         tl_texture_destroy(&c->coarse[i]);
@@ -42,9 +43,9 @@ size_t tl_card_bytes(const tl_graphics_card *card)
     if (!card)
         return 0;
     size_t bytes = tl_texture_bytes(&card->ids) + tl_texture_bytes(&card->depth) +
-                   tl_texture_bytes(&card->no_map) + tl_texture_bytes(&card->lobe_atlas) +
-                   tl_texture_bytes(&card->gain_atlas) + card->frame_buffer.bytes + card->blends.bytes +
-                   tl_card_points_bytes(&card->points);
+                   tl_texture_bytes(&card->light) + tl_texture_bytes(&card->no_map) +
+                   tl_texture_bytes(&card->lobe_atlas) + tl_texture_bytes(&card->gain_atlas) +
+                   card->frame_buffer.bytes + card->blends.bytes + tl_card_points_bytes(&card->points);
     for (int i = 0; i < CARD_BUFFERS; i++)
         bytes += card->buffers[i].bytes;
     for (int i = 0; i < TL_SUNS_MAX; i++)

@@ -45,7 +45,7 @@ bool tl_card_send_surfaces(tl_graphics_card *card, const struct tl_card_surfaces
 
 struct tl_card_view {
     const struct tl_view *view;
-    int width, height; /* pixels, one sample each */
+    int width, height; /* samples */
 };
 /* Finds the nearest triangle at every pixel, and lists the vertices that are seen. */
 bool tl_card_see(tl_graphics_card *card, const struct tl_card_view *request, tl_error *error);
@@ -77,8 +77,9 @@ bool tl_card_trace_bounce(tl_graphics_card *card, const struct tl_card_bounce *r
 bool tl_card_make_ratios(tl_graphics_card *card, bool bounces, tl_error *error);
 /* Traces what every pixel sees of the suns. */
 bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error);
-/* Lights every pixel of an RGBA32F texture as large as the view: premultiplied by coverage, rows upwards. The
- * texture becomes the mean of what is made and so many images `before` it; 0: what is made. */
+/* Lights every sample of the view, and makes the picture of them: RGBA32F, premultiplied by coverage, rows
+ * upwards, whose sides are a whole number of times smaller. The texture becomes the mean of what is made and
+ * so many images `before` it; 0: what is made. */
 bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, tl_error *error);
 
 #endif

@@ -18,6 +18,7 @@
     PROGRAM(ratios, "card_ratios.comp", NULL)                                                                \
     PROGRAM(sun_coarse, "card_sun_coarse.comp", NULL)                                                        \
     PROGRAM(sun_fine, "card_sun_fine.comp", NULL)                                                            \
+    PROGRAM(resolve, "card_resolve.comp", NULL)                                                              \
     PROGRAM(shade_nothing, "card_shade.comp", "#define NOTHING\n")                                           \
     PROGRAM(shade_plain, "card_shade.comp", NULL)                                                            \
     PROGRAM(shade_rich, "card_shade.comp", "#define RICH\n")
@@ -68,7 +69,7 @@ struct tl_graphics_card {
     tl_texture no_map; /* one texel of 0 */
 
     /* State of the view. */
-    tl_texture ids, depth;
+    tl_texture ids, depth, light; /* of the samples */
 
     /* State of the light. */
     uint64_t light_revision;

@@ -2,8 +2,8 @@
 // The light of one class of materials, tile by tile: exact light times the interpolated ratio, and suns (render/shade).
 #include "card_frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(location = 0) uniform ivec3 kind; // class, first tile of its list, images before this one
-layout(rgba32f, binding = 0) restrict uniform image2D light_image;
+layout(location = 0) uniform ivec2 kind; // class, first tile of its list
+layout(rgba16f, binding = 0) restrict writeonly uniform image2D light_image;
 layout(std430, binding = CARD_TILES) restrict readonly buffer Tiles
 {
     uint tiles[];
@@ -68,13 +68,6 @@ vec3 light_of(Seen s, ivec2 pixel)
 }
 #endif
 
-void write(ivec2 pixel, vec4 light)
-{
-    if (kind.z > 0)
-        light = mix(imageLoad(light_image, pixel), light, 1.0 / float(kind.z + 1));
-    imageStore(light_image, pixel, light);
-}
-
 void main()
 {
     uint tile = tiles[uint(kind.y) + gl_WorkGroupID.x];
@@ -84,12 +77,12 @@ void main()
     uint id = texelFetch(ids, pixel, 0).r;
 #ifdef NOTHING
     if (id == 0u)
-        write(pixel, vec4(0.0));
+        imageStore(light_image, pixel, vec4(0.0));
 #else
     uint part = id != 0u ? triangle_parts[(id & 0x7fffffffu) - 1u] : 0u;
     if (part >> 16 != uint(kind.x))
         return;
     Seen s = see(id, part & 0xfffu, pixel);
-    write(pixel, vec4(light_of(s, pixel) * s.cover, s.cover));
+    imageStore(light_image, pixel, vec4(light_of(s, pixel) * s.cover, s.cover));
 #endif
 }

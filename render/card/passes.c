@@ -230,14 +230,22 @@ bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, 
     tl_card_fit_texture(card, &card->no_map, GL_RGBA16F, 1, 1);
     for (unsigned i = 0; i < TL_SUNS_MAX; i++)
         glBindTextureUnit(6 + i, card->sun_seen[i].id != 0 ? card->sun_seen[i].id : card->no_map.id);
-    glBindImageTexture(0, image->id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    tl_card_fit_texture(card, &card->light, GL_RGBA16F, card->frame.size[0], card->frame.size[1]);
+    glBindImageTexture(0, card->light.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     for (int i = 0; i < card->class_count; i++) {
         glUseProgram(i == 0 ? card->shade_nothing.id : i == 1 ? card->shade_plain.id : card->shade_rich.id);
         if (i > 1)
             bind_class(card, &card->classes[i]);
-        glUniform3i(0, i, i * tiles, before);
+        glUniform2i(0, i, i * tiles);
         tl_gpu_dispatch_indirect(&card->buffers[CARD_WORK], sizeof(uint32_t) * 4 * (size_t)i);
     }
+    tl_gpu_barrier();
+    glUseProgram(card->resolve.id);
+    glUniform1i(0, card->frame.size[0] / image->width);
+    glUniform1i(1, before);
+    glBindTextureUnit(0, card->light.id);
+    glBindImageTexture(0, image->id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    tl_gpu_dispatch(tl_gpu_groups((size_t)image->width, 8), tl_gpu_groups((size_t)image->height, 8), 1);
     tl_gpu_barrier();
     return true;
 }

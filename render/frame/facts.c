@@ -250,11 +250,6 @@ static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_setting
 
 const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
-    const struct tl_image_params *image = &settings->image;
-    int columns, rows;
-    tl_image_samples(image, &columns, &rows);
-    if (columns != image->width || rows != image->height)
-        return "samples that are not pixels (image.scale, image.supersample)";
     if (settings->light.bounce == TL_BOUNCE_ONE)
         return "light that bounces once (light.bounce)";
     if (settings->light.lobes > TL_CARD_LOBES)

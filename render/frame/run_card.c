@@ -11,10 +11,17 @@ bool tl_run_card_surfaces(const struct tl_card_surfaces_job *job, tl_error *erro
     return tl_card_send_surfaces(job->card, &request, error);
 }
 
+/* Samples of a pixel along each side. There are never fewer samples than pixels: the card has the time. */
+static int samples_of(const struct tl_size_input *size)
+{
+    return size->columns > size->options.width ? size->columns / size->options.width : 1;
+}
+
 bool tl_run_card_ids(const struct tl_card_ids_job *job, tl_error *error)
 {
-    const struct tl_card_view request = {
-        .view = &job->shift->view, .width = job->size->columns, .height = job->size->rows};
+    const struct tl_card_view request = {.view = &job->shift->view,
+                                         .width = samples_of(job->size) * job->size->options.width,
+                                         .height = samples_of(job->size) * job->size->options.height};
     return tl_card_see(job->card, &request, error);
 }
 
@@ -55,6 +62,6 @@ bool tl_run_card_suns(const struct tl_card_suns_job *job, tl_error *error)
 bool tl_run_card_shade(const struct tl_card_shade_job *job, tl_error *error)
 {
     struct tl_linear_image *image = &job->present->image;
-    tl_linear_image_begin_gpu(image, job->gpu, job->size->columns, job->size->rows);
+    tl_linear_image_begin_gpu(image, job->gpu, job->size->options.width, job->size->options.height);
     return tl_card_shade(job->card, &image->target.colours[0], job->shift->before, error);
 }
