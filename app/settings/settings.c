@@ -18,7 +18,7 @@
 /* Names that stand for built-in assets (assets/garment.h, assets/specimen/specimen.h, assets/avatar.h,
  * assets/environment/studio.h), and "none". */
 static const char *const garment_names[] = {"dress", "skirt",  "layers", "trousers", "shirt", "sheet",
-                                            "disc",  "sphere", "torus",  "none",     NULL};
+                                            "disc",  "sphere", "torus",  "plate",    "none",  NULL};
 static const char *const avatar_names[] = {"auto", "form", "figure", "ball", "none", NULL};
 static const char *const drape_names[] = {"auto", "authored", "settle", NULL};
 static const char *const body_detail_names[] = {"auto", "full", NULL};

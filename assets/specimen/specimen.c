@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-const char *const tl_specimen_names[] = {"sheet", "disc", "sphere", "torus", NULL};
+const char *const tl_specimen_names[] = {"sheet", "disc", "sphere", "torus", "plate", NULL};
 
 #define SHEET_SIDE_M    0.5
 #define SHEET_HEIGHT_M  0.44f
@@ -18,6 +18,7 @@ const char *const tl_specimen_names[] = {"sheet", "disc", "sphere", "torus", NUL
 #define TORUS_TUBE_M    0.055f
 #define SOLID_HEIGHT_M  0.20f
 #define TORUS_TILT      1.05f /* rad: its axis, from upright towards the viewer */
+#define PLATE_RADIUS_M  0.15f
 
 static tl_material *plain_material(const char *name)
 {
@@ -54,6 +55,7 @@ struct profile {
     float from, to;   /* rad: angles along the tube that v runs through, from the top outwards */
     vec3s centre;
     float tilt;
+    bool flat; /* a level plate of radius `tube` instead: v runs from its middle to its rim */
 };
 
 static vec3s tilted(vec3s p, float angle)
@@ -74,6 +76,10 @@ static void place_vertex(tl_mesh *mesh, size_t index, const struct profile *prof
     normal.y = cosf(along);
     vec3s place =
         glms_vec3_add(glms_vec3_scale(outwards, profile->ring), glms_vec3_scale(normal, profile->tube));
+    if (profile->flat) {
+        normal = (vec3s){{0, 1, 0}};
+        place = glms_vec3_scale(outwards, profile->tube * v);
+    }
     mesh->normals[index] = tilted(normal, profile->tilt);
     mesh->positions[index] = glms_vec3_add(profile->centre, tilted(place, profile->tilt));
     float girth = 2 * (float)M_PI * (profile->ring + profile->tube);
@@ -101,7 +107,7 @@ static tl_mesh revolve(const struct profile *profile, float edge_m)
                 memcpy(&mesh.indices[mesh.index_count], upper, sizeof upper);
                 mesh.index_count += 3;
             }
-            if (!(poles && j == along - 1)) {
+            if (!(poles && !profile->flat && j == along - 1)) {
                 memcpy(&mesh.indices[mesh.index_count], lower, sizeof lower);
                 mesh.index_count += 3;
             }
@@ -118,6 +124,9 @@ static const struct profile torus_profile = {.ring = TORUS_RING_M,
                                              .to = 2 * (float)M_PI,
                                              .centre = {{0, SOLID_HEIGHT_M, 0}},
                                              .tilt = TORUS_TILT};
+
+static const struct profile plate_profile = {
+    .tube = PLATE_RADIUS_M, .to = 1, .centre = {{0, SOLID_HEIGHT_M, 0}}, .tilt = TORUS_TILT, .flat = true};
 
 /* Level cloth, its warp away from the viewer. */
 static tl_garment cut_level(const char *name, const struct tl_curve *outline, float edge_m, float height_m)
@@ -186,6 +195,8 @@ bool tl_specimen_make(const char *name, float edge_m, tl_garment *out)
         *out = (tl_garment){.model = model_of(name, revolve(&sphere_profile, edge_m)), .solid = true};
     else if (strcmp(name, "torus") == 0)
         *out = (tl_garment){.model = model_of(name, revolve(&torus_profile, edge_m)), .solid = true};
+    else if (strcmp(name, "plate") == 0)
+        *out = (tl_garment){.model = model_of(name, revolve(&plate_profile, edge_m)), .solid = true};
     else
         return false;
     return true;

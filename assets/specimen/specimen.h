@@ -8,7 +8,8 @@
 
 /* "sheet": a square of 0.5 m that lies above the ball and falls. "disc": Cusick's drape test (BS 5058, ISO
  * 9073-9), a disc 30 cm across that lies level, 0.4 m up, its middle held by plates of 18 cm, which are not
- * drawn. "sphere", "torus": solid, they do not move. */
+ * drawn. "sphere", "torus", "plate": solid, they do not move; the weft of the plate, a flat disc, runs in
+ * circles about its middle. */
 extern const char *const tl_specimen_names[]; /* NULL-terminated */
 
 /* Makes the shape called `name` with edges of about `edge_m`. False when the name is unknown. */

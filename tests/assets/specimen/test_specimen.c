@@ -59,6 +59,33 @@ static void test_sphere_normals_point_from_its_centre(void **state)
     drop(&sphere);
 }
 
+/* A flat disc whose weft runs in circles: u turns about its middle, as its tangents do. */
+static void test_plate(void **state)
+{
+    (void)state;
+    const vec3s middle = {{0, 0.2f, 0}};
+    tl_garment plate = make("plate", 0.006f);
+    const tl_mesh *mesh = &plate.model.mesh;
+    double area = 0;
+    assert_true(plate.solid);
+    for (size_t i = 0; i < mesh->index_count; i += 3) {
+        vec3s p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = mesh->positions[mesh->indices[i + (size_t)k]];
+        const vec3s across = glms_vec3_cross(glms_vec3_sub(p[1], p[0]), glms_vec3_sub(p[2], p[0]));
+        assert_true(glms_vec3_dot(across, mesh->normals[0]) > 0);
+        area += (double)glms_vec3_norm(across) / 2;
+    }
+    const double corners = 2 * M_PI * 0.15 / 0.006, circle = M_PI * 0.15 * 0.15;
+    assert_near(area, circle * (1 - 2 * M_PI * M_PI / 3 / (corners * corners)), 1e-4 * circle);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const vec3s out = glms_vec3_sub(mesh->positions[v], middle);
+        assert_near(glms_vec3_dot(out, mesh->normals[v]), 0, 1e-6);
+        assert_near(glms_vec3_norm(out), mesh->uvs[v].y, 1e-6);
+    }
+    drop(&plate);
+}
+
 /* The flat sheet's UVs are its pattern. */
 static void test_uvs_are_metric(void **state)
 {
@@ -150,11 +177,9 @@ static void test_drape_of_a_cone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_volumes),
-        cmocka_unit_test(test_sphere_normals_point_from_its_centre),
-        cmocka_unit_test(test_drape_of_a_cone),
-        cmocka_unit_test(test_uvs_are_metric),
-        cmocka_unit_test(test_disc),
+        cmocka_unit_test(test_volumes),        cmocka_unit_test(test_sphere_normals_point_from_its_centre),
+        cmocka_unit_test(test_plate),          cmocka_unit_test(test_drape_of_a_cone),
+        cmocka_unit_test(test_uvs_are_metric), cmocka_unit_test(test_disc),
         cmocka_unit_test(test_unknown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
