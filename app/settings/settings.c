@@ -10,6 +10,7 @@
 #include "config/base/log.h"
 #include "config/base/memory.h"
 #include "config/embedded.h"
+#include "render/light/light.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -407,6 +408,12 @@ static bool is_more_than_maps_show(const struct tl_material_params *look)
     return look->model != TL_REFLECT_PHONG || look->openness > 0 || look->fuzz > 0;
 }
 
+/* ... and what no pass over shadow maps shows: those that read nothing but filter chains draw any gloss. */
+static bool is_more_than_chains_show(const struct tl_material_params *look)
+{
+    return look->openness > 0 || look->fuzz > 0;
+}
+
 static bool is_layered(const struct tl_material_params *look)
 {
     return look->coat > 0 || look->transmission[0] > 0 || look->transmission[1] > 0 ||
@@ -434,7 +441,9 @@ static void warn_of_unused_options(const struct tl_settings *settings)
     const struct tl_render_settings drawn = tl_settings_render(settings);
     const struct tl_light_params *light = &drawn.light;
     bool by_maps = light->method == TL_METHOD_MAPS;
-    bool layers = has(settings, is_layered), others = has(settings, is_more_than_maps_show);
+    bool layers = has(settings, is_layered);
+    bool others =
+        has(settings, tl_light_sums_lobes(light) ? is_more_than_chains_show : is_more_than_maps_show);
     bool shows_all =
         light->method == TL_METHOD_REFERENCE || (!by_maps && light->visibility == TL_VISIBILITY_RAYS);
     if (by_maps && others)
@@ -443,8 +452,10 @@ static void warn_of_unused_options(const struct tl_settings *settings)
     else if (!by_maps && !shows_all && (layers || others))
         tl_warn(
             "material: model, coat, fuzz, transmission and openness are shown by light.visibility rays and "
-            "by light.method reference only: shadow maps know two plain lobes; light.method maps shows coat "
-            "and transmission, without shadows");
+            "by light.method reference only: shadow maps know two plain lobes, and model where light comes "
+            "from "
+            "filter chains alone, as in preset paper; light.method maps shows coat and transmission, without "
+            "shadows");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn("light.composition: rays always compose by ratio; this option is for light.visibility vsm "

@@ -285,6 +285,9 @@ static tl_bits sample_facts(const tl_frame *frame, const struct tl_render_settin
         facts |= TL_BIT(TL_SCENE_BLUR);
     if (!rays && tl_light_source(light) == TL_LIGHT_CHAIN)
         facts |= TL_BIT(TL_SCENE_CHAINS);
+    if (tl_light_sums_lobes(light) &&
+        tl_materials_have(frame->surfaces, frame->surface_count, tl_material_is_faceted))
+        facts |= TL_BIT(TL_SCENE_SAMPLES) | TL_BIT(TL_SCENE_LOBE_SUMS);
     if (!rays && tl_light_source(light) == TL_LIGHT_SLICES)
         facts |= TL_BIT(TL_SCENE_SLICES);
     if (rays || tl_light_needs_exact(light))

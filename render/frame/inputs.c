@@ -209,7 +209,7 @@ static void count_rest(const tl_frame *frame, const struct tl_render_settings *s
 
 static struct tl_lobes_input lobes_of(const struct tl_light_params *light)
 {
-    return (struct tl_lobes_input){.all = tl_light_is_composed(light),
+    return (struct tl_lobes_input){.all = tl_light_is_composed(light) || tl_light_sums_lobes(light),
                                    .are_blended = light->lobe == TL_LOBE_SINGLE};
 }
 

@@ -61,6 +61,7 @@
     JOB(ids, TL_FACT(RATIOS), "the number of the nearest triangle at every pixel")                           \
     JOB(shade_materials, TL_FACT(PIXELS), "materials, their maps and fits to the CPU")                       \
     JOB(samples, TL_FACT(SAMPLES), "the covered samples to the CPU")                                         \
+    JOB(lobe_sums, TL_FACT(LOBE_SUMS), "gloss of facets as sums of cosine lobes")                            \
     JOB(transparency, TL_FACT(TRANSPARENCY), "rays: what lies behind open cloth and shines through it")      \
     JOB(trace, 0, "surfaces to what rays are traced in")                                                     \
     JOB(mirrors, TL_FACT(MIRRORS), "rays: what near mirrors show")                                           \
@@ -231,10 +232,14 @@
     IO(AFTER, TL_INPUT_VIEW) IO(AFTER, TL_INPUT_DEVICE) IO(USES, card) IO(USES, gpu)                         \
     IO(WRITES, present)
 
+#define TL_JOB_lobe_sums(IO)                                                                                 \
+    IO(READS, samples) IO(READS, shapes) IO(READS, camera) IO(READS, light_options) IO(WRITES, lobe_sums)    \
+    IO(USES, gpu)
+
 #define TL_JOB_light(IO)                                                                                     \
     IO(READS, gbuffer) IO(READS, pems) IO(READS, slices) IO(READS, regions)                                  \
-    IO(READS, suns) IO(READS, lobe_levels) IO(READS, exact) IO(READS, maps)                                  \
-    IO(READS, casters) IO(READS, ground) IO(READS, ground_input) IO(READS, yaw)                              \
+    IO(READS, suns) IO(READS, lobe_levels) IO(READS, exact) IO(READS, maps) IO(READS, lobe_sums)             \
+    IO(READS, casters) IO(READS, ground) IO(READS, ground_input) IO(READS, yaw) IO(SEES, facts)              \
     IO(READS, camera) IO(READS, round) IO(READS, light_options) IO(AFTER, TL_MADE_MAPS)                      \
     IO(AFTER, TL_INPUT_LAMPS) IO(AFTER, TL_INPUT_VIEW) IO(WRITES, light) IO(USES, lighting)                  \
     IO(USES, gpu)

@@ -60,6 +60,7 @@
     BIT(TL_MADE_SHADE_MATERIALS, "materials on the CPU", surfaces) /* materials and their maps on the CPU */ \
     BIT(TL_MADE_RATIOS, "ratios at vertices", rays) /* of seen to exact light, at vertices */                \
     BIT(TL_MADE_SUN_PIXELS, "suns at pixels", rays) /* what every pixel sees of the suns */                  \
+    BIT(TL_MADE_LOBE_SUMS, "sums of lobes", targets) /* of facets, for passes */                             \
     BIT(TL_MADE_SAMPLES, "samples", rays)                                                                    \
     BIT(TL_MADE_TRANSPARENCY, "what is seen through cloth", transparency) /* samples behind open cloth */    \
     BIT(TL_MADE_MIRRORS, "what mirrors show", other) /* samples that near mirrors reflect */                 \
@@ -97,6 +98,7 @@
     FACT(TL_SCENE_PASSES, "light passes") /* passes on the GPU light the samples */                          \
     FACT(TL_SCENE_CHAINS, "filter chains") /* the passes read filter chains */                               \
     FACT(TL_SCENE_SLICES, "exact slices") /* the passes read exact slices */                                 \
+    FACT(TL_SCENE_LOBE_SUMS, "gloss of facets for light passes") /* they draw it as sums of lobes */         \
     FACT(TL_SCENE_EXACT, "exact light") /* exact light of the whole environment is read */                   \
     FACT(TL_SCENE_BLUR, "variance maps") /* shadow maps are variance maps */                                 \
     FACT(TL_SCENE_DETAIL, "samples that read detail maps") /* a material's bumps need maps of their own */   \

@@ -18,6 +18,7 @@
 #include "render/frame/inputs.h"
 #include "render/frame/prepared.h"
 #include "render/light/light.h"
+#include "render/light/lobe_sums.h"
 #include "render/light/mirrors.h"
 #include "render/light/transparency.h"
 #include "render/local/local.h"
@@ -114,6 +115,7 @@ struct tl_envmap_source {
           pixel_triangles_bytes, tl_pixel_triangles_release)                                                 \
     OWNED(sun_pixels, TL_MADE_SUN_PIXELS, struct tl_sun_pixels, tl_sun_pixels_bytes, tl_sun_pixels_release)  \
     OWNED(samples, TL_MADE_SAMPLES, struct tl_samples, samples_bytes, tl_samples_release)                    \
+    OWNED(lobe_sums, TL_MADE_LOBE_SUMS, struct tl_lobe_sums, tl_lobe_sums_bytes, tl_lobe_sums_release)       \
     OWNED(transparency, TL_MADE_TRANSPARENCY, struct tl_transparency,                                        \
           tl_transparency_bytes, tl_transparency_release)                                                    \
     OWNED(mirrors, TL_MADE_MIRRORS, struct tl_mirrors, no_bytes, tl_mirrors_release)                         \

@@ -20,6 +20,8 @@ bool tl_run_light(const struct tl_light_job *job, tl_error *error)
                                              .exact = job->exact->lobes,
                                              .exact_revision = job->exact->revision,
                                              .slices = &job->slices->maps,
+                                             .sums = *job->facts & TL_BIT(TL_SCENE_LOBE_SUMS) ? job->lobe_sums
+                                                                                              : NULL,
                                              .regions = job->regions,
                                              .suns = job->suns,
                                              .maps = job->maps,
@@ -30,6 +32,17 @@ bool tl_run_light(const struct tl_light_job *job, tl_error *error)
                                              .round = *job->round,
                                              .params = job->light_options};
     return tl_lighting_draw(job->lighting, job->gpu, &request, job->light, error);
+}
+
+bool tl_run_lobe_sums(const struct tl_lobe_sums_job *job, tl_error *error)
+{
+    (void)error;
+    const struct tl_lobe_sums_request request = {.samples = job->samples,
+                                                 .ranges = &job->shapes->ranges,
+                                                 .eye = job->camera->view.eye,
+                                                 .max_count = job->light_options->lobes};
+    tl_lobe_sums_make(job->lobe_sums, job->gpu, &request);
+    return true;
 }
 
 /* A still image takes all its rounds before it is lit. */

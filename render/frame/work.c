@@ -155,6 +155,7 @@ void tl_work_estimate(const struct tl_work_sizes *s, struct tl_work out[TL_JOB_C
         ROW(ids, 0.3 * draws, 5e-5 * draws * s->triangles, 1.5e-6 * (s->texels + outline),
             1.5e-6 * s->covered),
         ROW(samples, 1e-5 * s->texels, 4e-5 * s->covered),
+        ROW(lobe_sums, 2e-4 * s->covered, 3e-6 * s->texels * s->lobes),
         [TL_JOB_NUMBER_transparency] = sample_rays,
         ROW(trace, 1e-4 * s->triangles),
         [TL_JOB_NUMBER_mirrors] = sample_rays,

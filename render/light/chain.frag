@@ -1,7 +1,7 @@
 #version 450 core
 // One additive pass over some of the regions, their light from filter chains [Knuth et al. 2014, eq. 5]: c += VIS_i
 // PEM_i; or, after the exact light, what is missing: c += (VIS_i - 1) PEM_i. PARABOLOIDS: these are cropped paraboloid
-// maps.
+// maps. LOBE_SUMS: gloss of facets is a sum of lobes, each looked up in the PEMs [op. cit., 6].
 #ifdef PARABOLOIDS
 #include "paraboloids.glsl"
 #endif
@@ -17,6 +17,13 @@ layout(location = 5) uniform float already_there;  // 0, or 1 after the exact li
 
 layout(binding = 5) uniform sampler2D lobe_levels;
 layout(binding = 6) uniform samplerCubeArray pems;
+
+#ifdef LOBE_SUMS
+const int SUM_MAX = 16;                     // TL_LOBE_SUMS_MAX
+layout(location = 9) uniform int sum_count; // lobes of a sample at most
+// Two layers a lobe: direction and 1 / exponent; weight, and 1 where there is a lobe.
+layout(binding = 10) uniform sampler2DArray lobe_sums;
+#endif
 
 layout(location = 0) out vec4 light;
 
@@ -71,10 +78,35 @@ void main()
     } else {
         PLACE d = pem_place(into_environment(place.normal)), m = pem_place(into_environment(place.mirror));
         float diffuse_level = lobe_level(0.0), gloss_level = lobe_level(place.glossiness);
+#ifdef LOBE_SUMS
+        PLACE at[SUM_MAX];
+        float levels[SUM_MAX];
+        vec3 weights[SUM_MAX];
+        int count = 0;
+        for (int k = 0; k < sum_count; k++) {
+            ivec2 texel = ivec2(gl_FragCoord.xy);
+            vec4 axis = texelFetch(lobe_sums, ivec3(texel, 2 * k), 0);
+            vec4 weight = texelFetch(lobe_sums, ivec3(texel, 2 * k + 1), 0);
+            if (weight.a == 0.0)
+                break;
+            at[count] = pem_place(into_environment(axis.xyz));
+            levels[count] = lobe_level(1.0 - axis.w);
+            weights[count++] = weight.rgb;
+        }
+        for (int i = 0; i < region_range.y; i++) {
+            vec3 both = place.kd * pem(i, d, diffuse_level);
+            if (count == 0)
+                both += place.ks * pem(i, m, gloss_level);
+            for (int k = 0; k < count; k++)
+                both += weights[k] * pem(i, at[k], levels[k]);
+            sum += share(i, place) * both;
+        }
+#else
         for (int i = 0; i < region_range.y; i++) {
             vec3 both = place.kd * pem(i, d, diffuse_level) + place.ks * pem(i, m, gloss_level);
             sum += share(i, place) * both;
         }
+#endif
     }
     light = vec4(sum * pem_scale * place.cover, 0.0);
 }

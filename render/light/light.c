@@ -18,13 +18,14 @@ enum {
     ALREADY_THERE,
     MAP_LIMITS,
     GROUND_DISC,
-    PARABOLOID_DENSITY
+    PARABOLOID_DENSITY,
+    SUM_COUNT
 };
 enum { COUNTS = 0, COMPOSITION = 5, LAST_EXPONENT = 8, LOBE_PLACES };
 /* Texture units; the G-buffer's layers without the triangles come first. */
-enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT };
-/* The program of chains that are paraboloid maps. */
-#define PARABOLOIDS TL_LIGHT_SOURCES
+enum { LEVELS_UNIT = 5, PEMS_UNIT, MAPS_UNIT, LOBES_UNIT, SUN_MAPS_UNIT, SUMS_UNIT };
+/* The programs of chains that are paraboloid maps, or that look sums of lobes up. */
+enum { PARABOLOIDS = TL_LIGHT_SOURCES, LOBE_SUMS, PARABOLOID_SUMS };
 /* Values of the uniform in regions.frag. */
 enum composition { SUM, DIFFERENCE, RATIO, OCCLUSION, OCCLUSION_COLOUR, UNSHADOWED };
 
@@ -65,6 +66,13 @@ static bool begins_exact(const struct tl_light_params *params)
 bool tl_light_needs_exact(const struct tl_light_params *params)
 {
     return tl_light_source(params) != TL_LIGHT_CHAIN || begins_exact(params);
+}
+
+bool tl_light_sums_lobes(const struct tl_light_params *params)
+{
+    return (params->method == TL_METHOD_PEM || params->method == TL_METHOD_UNSHADOWED) &&
+           params->visibility != TL_VISIBILITY_RAYS && params->lobe == TL_LOBE_DUAL &&
+           !tl_light_needs_exact(params);
 }
 
 bool tl_light_is_composed(const struct tl_light_params *params)
@@ -143,8 +151,13 @@ static const tl_program *program_of(struct tl_lighting *lighting, tl_gpu *gpu, i
         [TL_LIGHT_EXACT] = {"#define EXACT\n", "#define EXACT\n", "#define EXACT\n"},
         [PARABOLOIDS] = {"#define PARABOLOIDS\n#define VSM\n", "#define PARABOLOIDS\n#define DEPTH\n",
                          "#define PARABOLOIDS\n"},
+        [LOBE_SUMS] = {"#define LOBE_SUMS\n#define VSM\n", "#define LOBE_SUMS\n#define DEPTH\n",
+                       "#define LOBE_SUMS\n"},
+        [PARABOLOID_SUMS] = {"#define LOBE_SUMS\n#define PARABOLOIDS\n#define VSM\n",
+                             "#define LOBE_SUMS\n#define PARABOLOIDS\n#define DEPTH\n",
+                             "#define LOBE_SUMS\n#define PARABOLOIDS\n"},
     };
-    bool chain = source == TL_LIGHT_CHAIN || source == PARABOLOIDS;
+    bool chain = source == TL_LIGHT_CHAIN || source >= PARABOLOIDS;
     tl_program *program = &lighting->programs[source][kind];
     if (!program->id && !tl_program_create_variant(gpu, tl_embedded_shaders, "fullscreen.vert",
                                                    chain ? "chain.frag" : "regions.frag",
@@ -314,9 +327,10 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     const struct tl_light_params *params = request->params;
     const struct tl_pems *pems = request->pems;
     bool shadowed = params->method != TL_METHOD_UNSHADOWED, exact_first = begins_exact(params);
-    const tl_program *program =
-        program_of(lighting, gpu, pems->paraboloids ? PARABOLOIDS : TL_LIGHT_CHAIN,
-                   shadowed ? (enum tl_visibility)params->visibility : TL_VISIBILITY_RAYS, error);
+    const int source = request->sums ? (pems->paraboloids ? PARABOLOID_SUMS : LOBE_SUMS)
+                                     : (pems->paraboloids ? PARABOLOIDS : TL_LIGHT_CHAIN);
+    const tl_program *program = program_of(
+        lighting, gpu, source, shadowed ? (enum tl_visibility)params->visibility : TL_VISIBILITY_RAYS, error);
     if (!program || (exact_first && !draw_regions(lighting, gpu, request, TL_LIGHT_EXACT, error)))
         return false;
     use_program(program, request);
@@ -324,6 +338,10 @@ static bool draw_chains(struct tl_lighting *lighting, tl_gpu *gpu, const struct 
     if (pems->paraboloids)
         glUniform2i(PARABOLOID_DENSITY, tl_paraboloid_density(pems->size, 0),
                     pems->paraboloids[0].level_count);
+    if (request->sums) {
+        glUniform1i(SUM_COUNT, request->sums->count);
+        glBindTextureUnit(SUMS_UNIT, request->sums->lobes.id);
+    }
     glUniform1f(ALREADY_THERE, params->composition == TL_COMPOSE_DIFFERENCE ? 1 : 0);
     glBindTextureUnit(LEVELS_UNIT, request->lobe_levels->id);
     for (int pass = 0; pass < pems->array_count; pass++) {

@@ -14,6 +14,7 @@
 #include "render/env/sun.h"
 #include "render/gbuffer/gbuffer.h"
 #include "render/light/light_buffer.h"
+#include "render/light/lobe_sums.h"
 #include "render/light/options.h"
 #include "render/pem/lobe.h"
 #include "render/pem/pems.h"
@@ -28,12 +29,14 @@ enum tl_light_source { TL_LIGHT_CHAIN, TL_LIGHT_SLICES, TL_LIGHT_LOBES, TL_LIGHT
 enum tl_light_source tl_light_source(const struct tl_light_params *params);
 /* Whether the exact light of the whole environment is read (env/lobes.h). */
 bool tl_light_needs_exact(const struct tl_light_params *params);
+/* Whether gloss of facets is drawn as a sum of lobes by passes: those that look nothing but PEMs up. */
+bool tl_light_sums_lobes(const struct tl_light_params *params);
 /* Whether the light of every sample is composed on the CPU, which draws all lobes of a material; what draws
  * with GL has two. */
 bool tl_light_is_composed(const struct tl_light_params *params);
 
-/* Programs: one a source, and another one for chains that are paraboloid maps. */
-#define TL_LIGHT_PROGRAMS  (TL_LIGHT_SOURCES + 1)
+/* Programs: one a source, and for chains others that are paraboloid maps, sums of lobes, or both. */
+#define TL_LIGHT_PROGRAMS  (TL_LIGHT_SOURCES + 3)
 #define TL_LIGHT_MAP_KINDS 3 /* enum tl_visibility, none instead of rays */
 
 /* GL programs that draw light, and the table of exponents that they look up. A cache: affects speed, never
@@ -63,6 +66,7 @@ struct tl_light_request {
     const struct tl_lobes *exact;       /* where tl_light_needs_exact */
     uint64_t exact_revision;            /* ... of their cube */
     const struct tl_slice_maps *slices; /* of SLICES */
+    const struct tl_lobe_sums *sums;    /* where gloss of facets is drawn so; or NULL */
     const struct tl_regions *regions;
     const struct tl_suns *suns;
     const tl_shadow_maps *maps; /* drawn, unless the method is UNSHADOWED */

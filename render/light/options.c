@@ -86,8 +86,8 @@ static const struct tl_option light_rows[] = {
                   "bounced light is renewed at every N-th of the vertices that are seen in each frame of "
                   "motion, at a fourth of that elsewhere; larger: faster, it lags"),
     TL_OPTION_INT(light_params, lobes, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT, 1, TL_LOBE_FIT_MAX, "",
-                  "rays: maximum number of cosine lobes that approximate gloss of another shape; larger: "
-                  "more exact, slower"),
+                  "rays and filter chains: maximum number of cosine lobes that approximate gloss of another "
+                  "shape; larger: more exact, slower"),
     TL_OPTION_BOOL(
         light_params, reflect_scene, TL_AFFECTS_APPEARANCE | TL_AFFECTS_LIGHT,
         "mirrors (exponent 200 and more) reflect nearby lit surfaces; off: these reflect as black"),

@@ -52,7 +52,7 @@ struct tl_light_params { /* table "light" */
     float repair_rest;   /* ... once nothing moves, when it is more */
     int bounce;          /* enum tl_light_bounce, of rays */
     int bounce_shares;   /* ... in motion traced at every N-th of the vertices that are seen */
-    int lobes;           /* rays: cosine lobes at most that stand for a gloss of facets */
+    int lobes;           /* rays and chains: cosine lobes at most that stand for a gloss of facets */
     bool reflect_scene;  /* near mirrors (s >= TL_MIRROR_EXPONENT) see the lit scene; false: black */
     int map_size;        /* texels, side of a shadow map */
     int moments;         /* enum tl_moments, of variance maps */

@@ -5,6 +5,7 @@
 #include "render/env/from_environment.h"
 #include "render/env/lobes.h"
 #include "render/light/terms.h"
+#include "render/pem/pems.h"
 #include "render/pem/regions.h"
 
 #include "tests/testing.h"
@@ -404,6 +405,56 @@ static void test_threads_by_maps(void **state)
     test_scene_close(&scene);
 }
 
+/* Relative RMSE of the scene's image against `exact`. */
+static double error_of(const struct test_scene *scene, tl_renderer *renderer, const tl_image *exact)
+{
+    return test_scene_error(scene, renderer, exact).rel_rmse;
+}
+
+/* Gloss of facets, by PEMs, lobe by lobe: nearer to its integral by ray tracing than the lobe about the
+ * mirror direction that stood for it. On a ball nothing is in the way of any light. */
+static void test_sums_of_lobes(void **state)
+{
+    const struct test_device *device = *state;
+    const struct tl_gloss glosses[] = {
+        {.model = TL_REFLECT_WARD, .ward = TL_WARD_BOUNDED, .width_weft = 0.5f, .width_warp = 0.1f},
+        {.model = TL_REFLECT_TORRANCE_SPARROW, .width_weft = 0.4f, .width_warp = 0.4f}};
+    for (size_t i = 0; i < sizeof glosses / sizeof *glosses; i++) {
+        struct test_scene scene;
+        test_scene_open(&scene, test_environment(64, 32, test_daylight), (vec3s){{0.5f, 0.8f, 2}},
+                        (vec3s){{0, 0.3f, 0}}, 25, 48, 48);
+        tl_material *material = test_scene_add(&scene, test_sphere((vec3s){{0, 0.3f, 0}}, 0.3f, 32));
+        material->diffuse = (vec3s){{0.05f, 0.02f, 0.01f}};
+        material->specular = (vec3s){{0.5f, 0.4f, 0.3f}};
+        material->glossiness = 0.9f;
+        material->gloss = glosses[i];
+        test_scene_refresh(&scene);
+        scene.settings.light.method = TL_METHOD_REFERENCE;
+        scene.settings.reference.strata = 1024;
+        tl_image exact = test_scene_draw(&scene, device->renderer);
+        scene.settings.light.method = TL_METHOD_UNSHADOWED;
+        scene.settings.light.lobe = TL_LOBE_DUAL;
+        scene.settings.light.pem_size = 64;
+        scene.settings.light.lobes = 5;
+        double sum = error_of(&scene, device->renderer, &exact);
+        scene.settings.light.pem_layout = TL_PEM_PARABOLOID;
+        double in_paraboloids = error_of(&scene, device->renderer, &exact);
+        scene.settings.light.pem_layout = TL_PEM_CUBE;
+        scene.settings.light.lobes = 1;
+        double one = error_of(&scene, device->renderer, &exact);
+        scene.shapes[0].material.gloss.model = TL_REFLECT_PHONG;
+        test_scene_refresh(&scene);
+        double phong = error_of(&scene, device->renderer, &exact);
+        printf("model %d: five lobes %.3f, in paraboloids %.3f, one lobe %.3f, about the mirror direction "
+               "%.3f\n",
+               (int)glosses[i].model, sum, in_paraboloids, one, phong);
+        assert_true(sum < 0.4 * phong && in_paraboloids < 0.4 * phong);
+        assert_true(i > 0 || sum < 0.4 * one); /* a strongly anisotropic gloss is no lobe */
+        tl_image_release(&exact);
+        test_scene_close(&scene);
+    }
+}
+
 /* From below the ground is not there: a ball stands in the same pixels as without it, and nothing else does.
  */
 static void test_ground_from_below(void **state)
@@ -447,6 +498,7 @@ int main(void)
         cmocka_unit_test(test_sun_casts_a_shadow),
         cmocka_unit_test(test_average_restarts),
         cmocka_unit_test(test_threads_by_maps),
+        cmocka_unit_test(test_sums_of_lobes),
         cmocka_unit_test(test_ground_from_below),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);

@@ -287,7 +287,7 @@ static const struct tl_experiment experiments[] = {
              "right of figure 3. Its normals are all the same: what varies is the tangent.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "plate",
-     .base = {LAMPLIT, UNSEWN, "material.model=banks", SPECULAR},
+     .base = {LAMPLIT, UNSEWN, "material.model=banks", "material.glossiness=0.98", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
      .ids = {"A5"},
      METHODS(techniques)},
