@@ -540,13 +540,20 @@ void tl_renderer_plan(const tl_renderer *renderer, const tl_frame *frame,
     make_plan(renderer, &input, &counts, &used, out);
 }
 
+bool tl_renderer_is_on_card(const tl_renderer *renderer, const tl_frame *frame,
+                            const struct tl_render_settings *settings)
+{
+    const struct tl_render_settings used = resolve(renderer, settings);
+    return used.light.device == TL_DEVICE_CARD && tl_frame_facts(frame, &used) & TL_BIT(TL_SCENE_CARD);
+}
+
 void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *frame,
                                  const struct tl_render_settings *settings, char *out, size_t size)
 {
     const struct tl_render_settings used = resolve(renderer, settings);
     const tl_gpu *gpu = renderer->resources.gpu;
     const char *refusal = tl_frame_card_refusal(frame, &used);
-    if (tl_frame_facts(frame, &used) & TL_BIT(TL_SCENE_CARD))
+    if (tl_renderer_is_on_card(renderer, frame, settings))
         snprintf(out, size, "the graphics card, by %s", tl_gpu_name(gpu));
     else if (settings->light.device == TL_DEVICE_CPU)
         snprintf(out, size, "the CPU, as light.device states");

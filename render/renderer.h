@@ -116,6 +116,9 @@ bool tl_renderer_show_image(tl_renderer *renderer, tl_image *out, tl_error *erro
 bool tl_renderer_show_columns(tl_renderer *renderer, int width, int height, int first, int end,
                               tl_error *error);
 
+/* Returns whether the graphics card would draw the frame. */
+bool tl_renderer_is_on_card(const tl_renderer *renderer, const tl_frame *frame,
+                            const struct tl_render_settings *settings);
 /* Describes who draws the frame, the graphics card or the CPU, and why, in up to `size` bytes. */
 void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *frame,
                                  const struct tl_render_settings *settings, char *out, size_t size);

@@ -260,6 +260,24 @@ static void choose_whole(tl_quality_governor *governor, const struct tl_budget *
     governor->choice.levels = levels_of(best);
 }
 
+/* Whether the graphics card draws frames whose ratios are at vertices. */
+static bool has_card(const struct coming *coming, const tl_frame *frame)
+{
+    const struct tl_render_settings at = at_level(coming, TL_CONTROL_RATIO, 1);
+    return coming->governor->level_counts[TL_CONTROL_RATIO] > 1 &&
+           tl_renderer_is_on_card(coming->renderer, frame, &at);
+}
+
+/* The levels of the graphics card, whatever the budget: it traces everything in every frame, and cheaper
+ * levels would save none of its time. */
+static void choose_card(tl_quality_governor *governor, const struct tl_budget *budget)
+{
+    uint8_t levels[TL_BUDGET_CONTROLS_MAX] = {[TL_CONTROL_RATIO] = 1};
+    governor->choice.lasting_ms = governor->choice.predicted_ms = governor->choice.min_ms =
+        budget->cost(budget->context, levels);
+    governor->choice.levels = levels_of(levels);
+}
+
 struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governor, tl_renderer *renderer,
                                                     const tl_frame *frame, const struct tl_settings *settings)
 {
@@ -276,7 +294,10 @@ struct tl_quality_choice tl_quality_governor_choose(tl_quality_governor *governo
     const struct tl_budget budget = budget_of(governor, &coming);
     governor->level_counts[TL_CONTROL_SCALE] = budget.level_counts[TL_CONTROL_SCALE];
     governor->choice.reason[0] = '\0';
-    if (governor->budget_ms > 0 && governor->rested < REST_FRAMES && governor->cloth.runs > 0)
+    const bool is_hurried = governor->budget_ms > 0 && governor->rested < REST_FRAMES;
+    if (is_hurried && has_card(&coming, frame))
+        choose_card(governor, &budget);
+    else if (is_hurried && governor->cloth.runs > 0)
         choose_in_motion(governor, &budget);
     else
         choose_whole(governor, &budget);
