@@ -403,21 +403,21 @@ static void choose_role(struct tl_scene_params *scene)
 }
 
 /* Parts of a material beyond two lobes: those that environment maps do not show, and those that they do. */
-static bool is_more_than_maps_show(const struct tl_material_params *look)
+static bool is_more_than_maps_show(const struct tl_material_params *material)
 {
-    return look->model != TL_REFLECT_PHONG || look->openness > 0 || look->fuzz > 0;
+    return material->model != TL_REFLECT_PHONG || material->openness > 0 || material->fuzz > 0;
 }
 
 /* ... and what no pass over shadow maps shows: those that read nothing but filter chains draw any gloss. */
-static bool is_more_than_chains_show(const struct tl_material_params *look)
+static bool is_more_than_chains_show(const struct tl_material_params *material)
 {
-    return look->openness > 0 || look->fuzz > 0;
+    return material->openness > 0 || material->fuzz > 0;
 }
 
-static bool is_layered(const struct tl_material_params *look)
+static bool is_layered(const struct tl_material_params *material)
 {
-    return look->coat > 0 || look->transmission[0] > 0 || look->transmission[1] > 0 ||
-           look->transmission[2] > 0;
+    return material->coat > 0 || material->transmission[0] > 0 || material->transmission[1] > 0 ||
+           material->transmission[2] > 0;
 }
 
 /* Whether a material of the scene is such; a swatch's options that are not given are zero. */

@@ -48,20 +48,20 @@ static struct gust_table tabulate(const struct tl_wind *wind, size_t triangle_co
                                   const struct tl_particles *particles)
 {
     struct gust_table table = {.lateness = lateness(wind)};
-    double least = HUGE_VAL, most = -HUGE_VAL;
+    double minimum = HUGE_VAL, maximum = -HUGE_VAL;
     for (size_t i = 0; i < particles->count; i++) {
         double late_s = wind->time_s - vec3d_dot(particles->x[i], table.lateness);
-        least = fmin(least, late_s);
-        most = fmax(most, late_s);
+        minimum = fmin(minimum, late_s);
+        maximum = fmax(maximum, late_s);
     }
-    double count = ceil((most - least) / GUST_STEP_S) + 2;
+    double count = ceil((maximum - minimum) / GUST_STEP_S) + 2;
     if (!(count < (double)triangle_count))
         return table;
-    table.first_s = least;
+    table.first_s = minimum;
     table.count = (size_t)count;
     table.gusts = TL_NEW_ARRAY(double, table.count);
     for (size_t i = 0; i < table.count; i++)
-        table.gusts[i] = gust_at(least + GUST_STEP_S * (double)i);
+        table.gusts[i] = gust_at(minimum + GUST_STEP_S * (double)i);
     return table;
 }
 

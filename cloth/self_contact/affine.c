@@ -7,13 +7,13 @@
 /* Bound of the determinant. */
 #define INVERTIBLE 0.1
 
-/* The rows of a symmetric or any other 3x3 matrix's inverse; false if its determinant is below `least`. */
-static bool invert(const vec3d rows[3], double least, vec3d out[3])
+/* The rows of a symmetric or any other 3x3 matrix's inverse; false if its determinant is below `minimum`. */
+static bool invert(const vec3d rows[3], double minimum, vec3d out[3])
 {
     vec3d columns[3] = {vec3d_cross(rows[1], rows[2]), vec3d_cross(rows[2], rows[0]),
                         vec3d_cross(rows[0], rows[1])};
     double determinant = vec3d_dot(rows[0], columns[0]);
-    if (!(determinant > least))
+    if (!(determinant > minimum))
         return false;
     double per = 1 / determinant;
     out[0] = (vec3d){columns[0].x * per, columns[1].x * per, columns[2].x * per};

@@ -229,22 +229,22 @@ static void measure_spokes(struct tl_near *near, uint32_t hub, const vec3d *x)
         near->spokes[k] = in_axes(axes, vec3d_sub(x[near->ring[k]], x[hub]));
 }
 
-/* Lowers `least` to the bounds of a batch, and empties it. */
-static void take_least(const struct tl_near *near, struct near_batch *batch, double *least)
+/* Lowers `minimum` to the bounds of a batch, and empties it. */
+static void take_minimum(const struct tl_near *near, struct near_batch *batch, double *minimum)
 {
     float bounds[TL_LANES];
     if (batch->count == 0)
         return;
     bound_batch(near, batch, bounds);
     for (int i = 0; i < batch->count; i++)
-        *least = tl_min(*least, (double)bounds[i]);
+        *minimum = tl_min(*minimum, (double)bounds[i]);
     batch->count = 0;
 }
 
 /* Nearest distance of features of two triangles around one hub (their corner 0) that do not touch: their far
- * corners and triangles, and pairs of sides of which one at least faces the hub. */
+ * corners and triangles, and pairs of sides of which one or more face the hub. */
 static void clear_between(const struct tl_near *near, const uint32_t a[3], const uint32_t b[3],
-                          struct near_batch batches[2], double *least)
+                          struct near_batch batches[2], double *minimum)
 {
     const struct tl_near_pair pairs[] = {
         corner_and_triangle(a, 1, b), corner_and_triangle(a, 2, b), corner_and_triangle(b, 1, a),
@@ -253,13 +253,13 @@ static void clear_between(const struct tl_near *near, const uint32_t a[3], const
     for (size_t i = 0; i < TL_COUNT(pairs); i++) {
         struct near_batch *batch = &batches[pairs[i].edges];
         if (!touches(near, &pairs[i]) && add_to_batch(near, pairs[i], batch))
-            take_least(near, batch, least);
+            take_minimum(near, batch, minimum);
     }
 }
 
 static void measure_hub(struct tl_near *near, uint32_t hub, const vec3d *x)
 {
-    double least = HUGE_VAL;
+    double minimum = HUGE_VAL;
     struct near_batch batches[2];
     batches[0].count = batches[1].count = 0;
     measure_spokes(near, hub, x);
@@ -268,12 +268,12 @@ static void measure_hub(struct tl_near *near, uint32_t hub, const vec3d *x)
         fan_triangle(near, k, a);
         for (uint32_t m = near->fans.first[hub]; m < k; m++) {
             fan_triangle(near, m, b);
-            clear_between(near, a, b, batches, &least);
+            clear_between(near, a, b, batches, &minimum);
         }
     }
     for (int i = 0; i < 2; i++)
-        take_least(near, &batches[i], &least);
-    near->clear[hub] = least;
+        take_minimum(near, &batches[i], &minimum);
+    near->clear[hub] = minimum;
 }
 
 /* The distance by which features around a hub can come nearer, in all. */
