@@ -118,8 +118,9 @@ bool tl_run_bounce(const struct tl_bounce_job *job, tl_error *error)
 
 static uint64_t light_revision(const struct tl_ratios_job *job)
 {
-    const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
-    uint64_t hash = tl_hash(TL_HASH_START, parts, sizeof parts);
+    uint64_t hash = tl_hash(TL_HASH_START, job->regions_revision, sizeof *job->regions_revision);
+    hash = tl_hash(hash, &job->shapes->revision, sizeof job->shapes->revision);
+    hash = tl_hash(hash, &job->environment->revision, sizeof job->environment->revision);
     hash = tl_hash(hash, job->light_options, sizeof *job->light_options);
     return tl_hash(hash, job->yaw, sizeof *job->yaw);
 }

@@ -36,7 +36,7 @@ static int most_lobes(const struct tl_lobe_sums_request *request)
 static int count_layers(const struct tl_lobe_sums_request *request)
 {
     const size_t texels = (size_t)request->samples->width * (size_t)request->samples->height;
-    const int fit = (int)(BYTES_MAX / (LAYERS * CHANNELS * sizeof(uint16_t)) / (texels + 1));
+    const int fit = (int)(BYTES_MAX / (sizeof(uint16_t) * LAYERS * CHANNELS) / (texels + 1));
     const int most = most_lobes(request);
     return LAYERS * (most < fit ? most : fit > 1 ? fit : 1);
 }
