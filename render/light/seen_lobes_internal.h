@@ -32,7 +32,7 @@ struct tl_lobe_terms {
 
 /* Share of a lobe's peak, 1e-12, below which it is left out. Beside a sun, 1e5 times as bright as the rest
  * where suns stay in their regions, that is what a float's last digit is to the sum. */
-#define TL_NEGLIGIBLE_LOG2 -40.0f
+#define TL_NEGLIGIBLE_LOG2 (-40.0f)
 
 TL_INLINE void tl_find_lobe_terms(const struct tl_region_lights *lights, const struct tl_fitted_lobe *lobes,
                                   int count, struct tl_lobe_terms *terms)

@@ -488,14 +488,14 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
         under[i] = lobes.under;
         for (int k = 0; k < FUZZ_POWERS; k++) {
             weights[k][i] = lobes.weights[k];
-            place_fetch(&fetch[k], i, maps[TL_FUZZ_INDEX(k)].side, place);
+            place_fetch(&fetch[k], i, maps[(size_t)TL_FUZZ_INDEX(k)].side, place);
         }
     }
     tl_quad fibres[TL_LANES];
     for (int i = 0; i < look->count; i++) {
         tl_quad sum = {0, 0, 0, 0};
         for (int k = 0; k < FUZZ_POWERS; k++)
-            sum += weights[k][i] * fetch_lane(&maps[TL_FUZZ_INDEX(k)], &fetch[k], i);
+            sum += weights[k][i] * fetch_lane(&maps[(size_t)TL_FUZZ_INDEX(k)], &fetch[k], i);
         for (int c = 0; c < 3; c++)
             sum[c] = tl_maxf(sum[c], 0);
         fibres[i] = sum * lanes->fuzz_ratio[i];
