@@ -219,17 +219,18 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     const struct tl_lobe_set_table *set = one->materials->parts[part].lobe_set;
     const bool is_faceted = one->materials->parts[part].is_faceted;
     *light = (vec3s){{0, 0, 0}};
-    assert_int_equal(is_faceted, point->layered && point->layers.faceted);
+    assert_int_equal(is_faceted, point->layered && point->layers.lobes.is_faceted);
     if (!is_faceted) {
         *light = glms_vec3_mul(point->glossy, exact_light(one, point->axis, point->exponent));
     } else {
-        for (int g = 0; g < point->layers.gloss.count; g++) {
+        for (int g = 0; g < point->layers.lobes.gloss.count; g++) {
             struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-            int count = g == 0 && set ? tl_lobe_set_table_look_up(set, &point->layers.frame, point->viewer,
-                                                                  point->f0, point->glossiness, lobes)
-                                      : tl_lobe_fit_make(&point->layers.gloss.items[g], &point->layers.frame,
-                                                         point->viewer, 1,
-                                                         one->materials->parts[part].lobe_set_count, lobes);
+            int count =
+                g == 0 && set
+                    ? tl_lobe_set_table_look_up(set, &point->layers.lobes.frame, point->viewer, point->f0,
+                                                point->glossiness, lobes)
+                    : tl_lobe_fit_make(&point->layers.lobes.gloss.items[g], &point->layers.lobes.frame,
+                                       point->viewer, 1, one->materials->parts[part].lobe_set_count, lobes);
             for (int k = 0; k < count; k++)
                 *light = glms_vec3_add(
                     *light,
@@ -241,11 +242,11 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
         vec3s direction = tl_turn_direction(sun->direction, one->yaw);
         float broad = lobe_broadened_exponent(point->exponent, sun->radius * GLM_SQRT1_2f);
         suns[i] = glms_vec3_scale(point->glossy, lobe_cosine(broad, glms_vec3_dot(direction, point->axis)));
-        for (int g = 0; is_faceted && g < point->layers.gloss.count; g++)
-            suns[i] =
-                glms_vec3_add(g == 0 ? glms_vec3_zero() : suns[i],
-                              tl_brdf_gloss_under_disc(&point->layers.gloss.items[g], &point->layers.frame,
-                                                       direction, point->viewer, sun->radius));
+        for (int g = 0; is_faceted && g < point->layers.lobes.gloss.count; g++)
+            suns[i] = glms_vec3_add(g == 0 ? glms_vec3_zero() : suns[i],
+                                    tl_brdf_gloss_under_disc(&point->layers.lobes.gloss.items[g],
+                                                             &point->layers.lobes.frame, direction,
+                                                             point->viewer, sun->radius));
     }
 }
 
