@@ -146,7 +146,7 @@ void main()
     // The regions.
     bool has_fuzz = (v.part.flags.x & HAS_FUZZ) != 0u;
     vec3 diffuse = vec3(0.0), seen_fibres = vec3(0.0), all_fibres = vec3(0.0);
-    Fibres fibres = fibres_of(v.part, v.normal, v.surface.shown, v.viewer);
+    Fibres fibres = fibres_of(v.part, v.normal, v.normal, v.viewer);
     vec3 axis = into_environment(fibres.axis);
     for (uint group = slice; group < uint(counts.x + 3) / 4u; group += SLICES) {
         uint seen = visible[group * uint(counts.z) + at];
