@@ -190,6 +190,7 @@ void tl_renderer_forget(tl_renderer *renderer)
     tl_shadow_maps_forget(renderer->resources.maps); /* some are older than the frame */
     tl_bounce_release(&renderer->resources.bounce);
     tl_ratios_release(&renderer->resources.ratios); /* half of them are of the frame before */
+    tl_card_forget(renderer->resources.card);
 }
 
 bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
@@ -206,6 +207,7 @@ bool tl_renderer_forget_scene(tl_renderer *renderer, tl_error *error)
     renderer->resources.points = tl_points_create();
     tl_bounce_release(&renderer->resources.bounce);
     tl_ratios_release(&renderer->resources.ratios);
+    tl_card_forget(renderer->resources.card);
     tl_trace_destroy(&renderer->resources.trace);
     renderer->resources.trace = tl_trace_create(error);
     return renderer->resources.trace != NULL;

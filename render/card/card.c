@@ -38,6 +38,11 @@ void tl_card_destroy(tl_graphics_card **card)
     *card = NULL;
 }
 
+void tl_card_forget(tl_graphics_card *card)
+{
+    card->bounce_frames = 0;
+}
+
 size_t tl_card_bytes(const tl_graphics_card *card)
 {
     if (!card)

@@ -27,6 +27,8 @@ typedef struct tl_graphics_card tl_graphics_card;
 tl_graphics_card *tl_card_create(tl_gpu *gpu);
 void tl_card_destroy(tl_graphics_card **card);
 size_t tl_card_bytes(const tl_graphics_card *card);
+/* Discards what follows from earlier frames: bounced light. */
+void tl_card_forget(tl_graphics_card *card);
 bool tl_card_reload(tl_graphics_card *card, tl_error *error); /* its shaders */
 
 /* Returns why the graphics card cannot draw these surfaces' materials; NULL: it can. A constant text. */
