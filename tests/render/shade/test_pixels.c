@@ -1,12 +1,10 @@
 /* Pictures of ratios at vertices against pictures of ratios at every sample, as drawn by the renderer: the
  * same cover, nearly the same light, whatever the material, the side, the turn of the light, the resolution;
  * the same bits at any number of threads, and the same bits as without where the scene needs samples. */
-#include "tests/render/scenes.h"
+#include "tests/render/drawn_scene.h"
 
-#include "assets/weave/weave.h"
 #include "render/metrics/compare.h"
 #include "render/present/resample.h"
-#include "render/reference/random.h"
 
 #include "tests/testing.h"
 
@@ -19,210 +17,23 @@
 #define HEIGHT       400
 #define SMALL_WIDTH  72
 #define SMALL_HEIGHT 64
-#define TEXELS       64 /* a side of the maps */
-
-enum { MAP_COLOUR, MAP_NORMAL, MAP_GLOSS, MAP_HOLES, MAP_COUNT };
-
-struct drawn_scene {
-    struct test_scene scene, plain; /* with and without what an editor changed */
-    tl_image maps[MAP_COUNT];
-    tl_weave weave, streaked;
-};
-
-/* A dim blue sky, a warm wide lamp on one side, a sun on the other: nothing is the same when it is turned.
- * The sun is so small that its penumbrae are as narrow as the samples' path looks for them; pixels find wider
- * ones, too (test_sun_pixels.c). */
-static vec3s lopsided(vec3s d)
-{
-    if (glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.7f, 0.9f, 0.4f}})) > 0.99996f)
-        return (vec3s){{9000, 8100, 7200}};
-    float lamp = fmaxf(glms_vec3_dot(d, glms_vec3_normalize((vec3s){{-0.8f, 0.5f, 0.5f}})), 0);
-    float warm = 2.5f * powf(lamp, 12);
-    return (vec3s){{0.15f + warm, 0.2f + 0.6f * warm, 0.3f + 0.1f * d.y + 0.3f * warm}};
-}
-
-static void make_maps(struct drawn_scene *drawn)
-{
-    struct tl_random random = tl_random_begin(18, 1);
-    drawn->maps[MAP_COLOUR] = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
-    drawn->maps[MAP_NORMAL] = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
-    drawn->maps[MAP_GLOSS] = tl_image_create(TEXELS, TEXELS, 1, TL_IMAGE_U8);
-    drawn->maps[MAP_HOLES] = tl_image_create(TEXELS, TEXELS, 4, TL_IMAGE_U8);
-    drawn->maps[MAP_NORMAL].linear = drawn->maps[MAP_GLOSS].linear = true;
-    for (size_t y = 0; y < TEXELS; y++)
-        for (size_t x = 0; x < TEXELS; x++) {
-            size_t i = y * TEXELS + x;
-            /* Stripes across u, so that a map that is mirrored or turned shows. */
-            uint8_t stripe = x % 16 < 5 ? 60 : 200;
-            uint8_t *colour = tl_image_bytes(&drawn->maps[MAP_COLOUR]) + 3 * i;
-            colour[0] = stripe, colour[1] = (uint8_t)(2 * x + y), colour[2] = 120;
-            vec3s n =
-                glms_vec3_normalize((vec3s){{0.3f * sinf(0.8f * (float)x), 0.2f * cosf(0.4f * (float)y), 1}});
-            for (size_t c = 0; c < 3; c++)
-                tl_image_bytes(&drawn->maps[MAP_NORMAL])[3 * i + c] =
-                    (uint8_t)lroundf(255 * (0.5f + 0.5f * n.raw[c]));
-            tl_image_bytes(&drawn->maps[MAP_GLOSS])[i] = (uint8_t)(200 + 55 * tl_random_unit(&random));
-            uint8_t *holes = tl_image_bytes(&drawn->maps[MAP_HOLES]) + 4 * i;
-            holes[0] = holes[1] = holes[2] = 180;
-            holes[3] = x % 16 < 4 && y % 16 < 6 ? 0 : 255;
-        }
-}
-
-static struct tl_map map_of(const tl_image *image)
-{
-    return (struct tl_map){.image = image, .transform = {.scale = {3, 2}, .rotation = 0.2f}};
-}
-
-/* A ball under a draped sheet above the ground. */
-static void open_scene(struct drawn_scene *drawn, int width, int height)
-{
-    *drawn = (struct drawn_scene){0};
-    make_maps(drawn);
-    struct test_scene *scene = &drawn->scene;
-    test_scene_open(scene, test_environment(512, 256, lopsided), (vec3s){{0.8f, 1.5f, 2}},
-                    (vec3s){{0, 0.6f, 0}}, 40, width, height);
-    test_scene_add(scene, test_sphere((vec3s){{0, 0.45f, 0}}, 0.38f, 32));
-    test_scene_add(scene, test_sheet(1, 0.55f, 0.07f, 2, 48));
-    struct tl_render_settings *settings = &scene->settings;
-    settings->light.visibility = TL_VISIBILITY_RAYS;
-    settings->light.method = TL_METHOD_PEM;
-    settings->light.lobe = TL_LOBE_DUAL;
-    settings->light.composition = TL_COMPOSE_RATIO;
-    settings->light.regions = 48;
-    settings->light.pem_size = 64;
-    settings->light.rounds = 1;
-    settings->light.repair = settings->light.repair_rest = 0;
-    settings->light.sun = true;
-    settings->light.reflect_scene = true;
-    settings->image.supersample = 1;
-    settings->image.ground = true;
-    settings->detail.minify = TL_DETAIL_MINIFY_LEAN;
-    scene->frame.still = true;
-    drawn->plain = *scene;
-}
-
-static void close_scene(struct drawn_scene *drawn)
-{
-    test_scene_close(&drawn->scene);
-    tl_weave_release(&drawn->weave);
-    tl_weave_release(&drawn->streaked);
-    for (int i = 0; i < MAP_COUNT; i++)
-        tl_image_release(&drawn->maps[i]);
-}
-
-/* Changes the plain scene. */
-typedef void editor(struct drawn_scene *drawn);
-
-static void edit(struct drawn_scene *drawn, editor *change)
-{
-    struct test_scene *scene = &drawn->scene;
-    scene->settings = drawn->plain.settings;
-    scene->frame = drawn->plain.frame;
-    for (size_t i = 0; i < scene->shape_count; i++) {
-        scene->shapes[i].material = tl_material_default("test");
-        scene->shapes[i].material.double_sided = true;
-    }
-    change(drawn);
-    test_scene_refresh(scene);
-}
-
-static tl_material *cloth_of(struct drawn_scene *drawn)
-{
-    return &drawn->scene.shapes[1].material;
-}
-
-static void be_matt(struct drawn_scene *drawn)
-{
-    cloth_of(drawn)->diffuse = (vec3s){{0.6f, 0.3f, 0.2f}};
-}
-
-static void be_glossy(struct drawn_scene *drawn)
-{
-    for (int i = 0; i < 2; i++) {
-        drawn->scene.shapes[i].material.specular = (vec3s){{0.3f, 0.2f, 0.1f}};
-        drawn->scene.shapes[i].material.glossiness = 0.9f;
-    }
-}
-
-static void be_satin(struct drawn_scene *drawn)
-{
-    tl_material *cloth = cloth_of(drawn);
-    cloth->diffuse = (vec3s){{0.3f, 0.022f, 0.045f}};
-    cloth->specular = (vec3s){{0.12f, 0.1f, 0.1f}};
-    cloth->glossiness = 0.94f;
-    cloth->gloss.model = TL_REFLECT_WARD;
-    cloth->gloss.width_weft = 0.3f;
-    cloth->gloss.width_warp = 0.1f;
-    cloth->gloss.rotation = 0.3f;
-}
-
-static void be_fuzzy(struct drawn_scene *drawn)
-{
-    be_glossy(drawn);
-    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{1, 0.7f, 0.4f}}, 0.5f, 0};
-}
-
 static void be_torrance_sparrow(struct drawn_scene *drawn)
 {
     be_glossy(drawn);
-    cloth_of(drawn)->gloss.model = TL_REFLECT_TORRANCE_SPARROW;
-    cloth_of(drawn)->gloss.facets = TL_FACETS_BECKMANN;
-}
-
-static void be_woven(struct drawn_scene *drawn)
-{
-    struct tl_weave_params params = *(const struct tl_weave_params *)tl_weave_options.defaults;
-    params.pattern = TL_WEAVE_TWILL;
-    params.warp_pitch_mm = params.weft_pitch_mm = 5;
-    params.crimp_mm = 1.2f;
-    params.weft_tint[0] = params.weft_tint[1] = 0.3f;
-    if (!drawn->weave.tint.texels)
-        assert_true(tl_weave_create(&params, &drawn->weave));
-    be_satin(drawn);
-    cloth_of(drawn)->weave = &drawn->weave;
-}
-
-/* Yarns that differ along all of the cloth, broader than pixels and finer. */
-static void be_streaked(struct drawn_scene *drawn)
-{
-    struct tl_weave_params params = *(const struct tl_weave_params *)tl_weave_options.defaults;
-    params.warp_pitch_mm = 20;
-    params.weft_pitch_mm = 3;
-    params.streaks = 0.5f;
-    if (!drawn->streaked.yarns)
-        assert_true(tl_weave_create(&params, &drawn->streaked));
-    be_satin(drawn);
-    cloth_of(drawn)->weave = &drawn->streaked;
-}
-
-static void be_mapped(struct drawn_scene *drawn)
-{
-    tl_material *cloth = cloth_of(drawn);
-    be_glossy(drawn);
-    cloth->diffuse = (vec3s){{1, 1, 1}};
-    cloth->diffuse_map = map_of(&drawn->maps[MAP_COLOUR]);
-    cloth->normal_map = map_of(&drawn->maps[MAP_NORMAL]);
-    cloth->gloss_map = map_of(&drawn->maps[MAP_GLOSS]);
+    drawn_scene_cloth(drawn)->gloss.model = TL_REFLECT_TORRANCE_SPARROW;
+    drawn_scene_cloth(drawn)->gloss.facets = TL_FACETS_BECKMANN;
 }
 
 static void be_holed(struct drawn_scene *drawn)
 {
-    cloth_of(drawn)->diffuse_map = map_of(&drawn->maps[MAP_HOLES]);
-    cloth_of(drawn)->alpha_cutoff = 0.5f;
-}
-
-/* A sheet of voile above the ball. */
-static void be_voile(struct drawn_scene *drawn)
-{
-    cloth_of(drawn)->diffuse = (vec3s){{0.46f, 0.46f, 0.45f}};
-    cloth_of(drawn)->openness = 0.41f;
-    cloth_of(drawn)->transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
+    drawn_scene_cloth(drawn)->diffuse_map = drawn_scene_map(&drawn->maps[MAP_HOLES]);
+    drawn_scene_cloth(drawn)->alpha_cutoff = 0.5f;
 }
 
 static void be_fuzzy_voile(struct drawn_scene *drawn)
 {
     be_voile(drawn);
-    cloth_of(drawn)->fuzz = (struct tl_fuzz){{{0.7f, 0.7f, 0.7f}}, 0.6f, 0};
+    drawn_scene_cloth(drawn)->fuzz = (struct tl_fuzz){{{0.7f, 0.7f, 0.7f}}, 0.6f, 0};
 }
 
 static void be_open_all(struct drawn_scene *drawn)
@@ -248,12 +59,6 @@ static void be_satin_and_turned(struct drawn_scene *drawn)
 {
     be_satin(drawn);
     drawn->scene.frame.environment_yaw = 1;
-}
-
-static void look_up(struct drawn_scene *drawn)
-{
-    drawn->scene.frame.camera.eye = (vec3s){{0.9f, 0.25f, 0.9f}};
-    drawn->scene.frame.camera.target = (vec3s){{0, 0.95f, 0}};
 }
 
 static void be_mapped_from_below(struct drawn_scene *drawn)
@@ -288,29 +93,6 @@ static tl_image draw(const struct test_device *device, struct drawn_scene *drawn
     return test_scene_draw(&drawn->scene, device->renderer);
 }
 
-/* 1 where a shape, not the ground, is seen. */
-static tl_image mask_of(const struct test_device *device, const struct drawn_scene *drawn)
-{
-    struct test_scene scene = drawn->scene;
-    scene.settings.image.ground = false;
-    scene.settings.light.method = TL_METHOD_UNSHADOWED;
-    tl_image image = test_draw(device->renderer, &drawn->scene.frame, &scene.settings);
-    tl_image mask = tl_image_create(image.width, image.height, 1, TL_IMAGE_F32);
-    for (size_t i = 0; i < (size_t)image.width * (size_t)image.height; i++)
-        tl_image_floats(&mask)[i] = tl_image_floats(&image)[4 * i + 3];
-    tl_image_release(&image);
-    return mask;
-}
-
-/* Largest difference of cover. GL computes the ground's fading in a shader of its own. */
-static double cover_difference(const tl_image *a, const tl_image *b)
-{
-    double largest = 0;
-    for (size_t i = 0; i < (size_t)a->width * (size_t)a->height; i++)
-        largest =
-            fmax(largest, fabs((double)(tl_image_floats(a)[4 * i + 3] - tl_image_floats(b)[4 * i + 3])));
-    return largest;
-}
 #define COVER_TOLERANCE 2e-3
 
 struct picture_case {
@@ -352,14 +134,14 @@ static void check_picture(const struct test_device *device, struct drawn_scene *
     struct tl_comparison all;
     struct tl_object_error cloth;
     tl_error error = {0};
-    edit(drawn, item->edit);
+    drawn_scene_edit(drawn, item->edit);
     tl_image interpolated = draw(device, drawn, TL_RATIO_AT_VERTICES);
     drawn->scene.settings.image.scale = 1; /* fewer samples are compared with one a pixel */
     tl_image sampled = draw(device, drawn, TL_RATIO_AT_SAMPLES);
-    tl_image mask = mask_of(device, drawn);
+    tl_image mask = drawn_scene_mask(device, drawn);
     assert_ok(tl_image_compare(&interpolated, &sampled, 0, 0, &all, &error), error);
     assert_ok(tl_image_compare_object(&interpolated, &sampled, &mask, 0, &cloth, &error), error);
-    double cover = cover_difference(&interpolated, &sampled);
+    double cover = drawn_scene_cover_difference(&interpolated, &sampled);
     printf("%-20s FLIP all %.4f, shapes %.4f, worst %.4f; rel. RMSE %.4f; cover %.1e\n", item->name,
            all.flip_mean, cloth.flip_mean, cloth.flip_worst, all.rel_rmse, cover);
     assert_true(memcmp(interpolated.texels, sampled.texels, 16 * (size_t)WIDTH * HEIGHT) != 0);
@@ -376,17 +158,17 @@ static void check_picture(const struct test_device *device, struct drawn_scene *
 static void test_pictures(void **state)
 {
     struct drawn_scene drawn;
-    open_scene(&drawn, WIDTH, HEIGHT);
+    drawn_scene_open(&drawn, WIDTH, HEIGHT);
     for (size_t i = 0; i < TL_COUNT(pictures); i++)
         check_picture(*state, &drawn, &pictures[i]);
-    close_scene(&drawn);
+    drawn_scene_close(&drawn);
 }
 
 static void test_threads(void **state)
 {
     struct drawn_scene drawn;
-    open_scene(&drawn, WIDTH, HEIGHT);
-    edit(&drawn, be_woven);
+    drawn_scene_open(&drawn, WIDTH, HEIGHT);
+    drawn_scene_edit(&drawn, be_woven);
     const int threads = omp_get_max_threads();
     omp_set_num_threads(1);
     tl_image alone = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
@@ -396,7 +178,7 @@ static void test_threads(void **state)
     assert_memory_equal(together.texels, alone.texels, 16 * (size_t)WIDTH * HEIGHT);
     tl_image_release(&alone);
     tl_image_release(&together);
-    close_scene(&drawn);
+    drawn_scene_close(&drawn);
 }
 
 /* ---- Scenes that need samples ---- */
@@ -414,24 +196,24 @@ static void have_a_lamp(struct drawn_scene *drawn)
 
 static void have_a_coat(struct drawn_scene *drawn)
 {
-    cloth_of(drawn)->coat = 0.5f;
-    cloth_of(drawn)->coat_glossiness = 0.9f;
+    drawn_scene_cloth(drawn)->coat = 0.5f;
+    drawn_scene_cloth(drawn)->coat_glossiness = 0.9f;
 }
 
 static void have_openness(struct drawn_scene *drawn)
 {
-    cloth_of(drawn)->openness = 0.3f;
+    drawn_scene_cloth(drawn)->openness = 0.3f;
 }
 
 static void have_transmission(struct drawn_scene *drawn)
 {
-    cloth_of(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
+    drawn_scene_cloth(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
 }
 
 static void have_a_mirror(struct drawn_scene *drawn)
 {
     be_glossy(drawn);
-    cloth_of(drawn)->glossiness = 0.999f;
+    drawn_scene_cloth(drawn)->glossiness = 0.999f;
 }
 
 static void have_relief(struct drawn_scene *drawn)
@@ -454,8 +236,8 @@ static void have_horizons(struct drawn_scene *drawn)
 
 static void have_a_height_map(struct drawn_scene *drawn)
 {
-    cloth_of(drawn)->height_map = map_of(&drawn->maps[MAP_GLOSS]);
-    cloth_of(drawn)->height_m = 0.002f;
+    drawn_scene_cloth(drawn)->height_map = drawn_scene_map(&drawn->maps[MAP_GLOSS]);
+    drawn_scene_cloth(drawn)->height_m = 0.002f;
 }
 
 static void have_aovs(struct drawn_scene *drawn)
@@ -515,10 +297,10 @@ static const struct {
 static void test_scenes_that_need_samples(void **state)
 {
     struct drawn_scene drawn;
-    open_scene(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
+    drawn_scene_open(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
     drawn.plain.settings.light.rounds = 1;
     for (size_t i = 0; i < TL_COUNT(needs); i++) {
-        edit(&drawn, needs[i].edit);
+        drawn_scene_edit(&drawn, needs[i].edit);
         tl_image sampled = draw(*state, &drawn, TL_RATIO_AT_SAMPLES);
         tl_image wanted = draw(*state, &drawn, TL_RATIO_AT_VERTICES);
         bool same = memcmp(sampled.texels, wanted.texels, 16 * (size_t)SMALL_WIDTH * SMALL_HEIGHT) == 0;
@@ -528,7 +310,7 @@ static void test_scenes_that_need_samples(void **state)
         tl_image_release(&sampled);
         tl_image_release(&wanted);
     }
-    close_scene(&drawn);
+    drawn_scene_close(&drawn);
 }
 
 /* ---- Between motion and rest ---- */
@@ -560,10 +342,10 @@ static void test_samples_after_ratios(void **state)
 {
     const struct test_device *device = *state;
     struct drawn_scene drawn;
-    open_scene(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
+    drawn_scene_open(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
     drawn.plain.settings.light.rounds = 1;
-    edit(&drawn, be_woven);
-    cloth_of(&drawn)->openness = 0.4f;
+    drawn_scene_edit(&drawn, be_woven);
+    drawn_scene_cloth(&drawn)->openness = 0.4f;
     test_scene_refresh(&drawn.scene);
     struct tl_render_settings *settings = &drawn.scene.settings;
     settings->detail.shadow = TL_DETAIL_SHADOW_NONE;
@@ -580,11 +362,11 @@ static void test_samples_after_ratios(void **state)
     tl_image third = test_scene_draw(&drawn.scene, device->renderer);
     assert_int_equal(action_of(device, "detail"), TL_JOB_REUSE);
     assert_int_equal(action_of(device, "points"), TL_JOB_RUN); /* the last ones were for triangles */
-    assert_near(cover_difference(&first, &third), 0, 0);
+    assert_near(drawn_scene_cover_difference(&first, &third), 0, 0);
     tl_image_release(&first);
     tl_image_release(&second);
     tl_image_release(&third);
-    close_scene(&drawn);
+    drawn_scene_close(&drawn);
 }
 
 /* ---- Fewer samples ---- */
@@ -623,7 +405,7 @@ static void check_scale(const struct test_device *device, struct drawn_scene *dr
 {
     drawn->scene.settings.image.scale = scale;
     tl_image image = draw(device, drawn, TL_RATIO_AT_VERTICES);
-    double cover = cover_difference(&image, full);
+    double cover = drawn_scene_cover_difference(&image, full);
     struct tl_object_error guided = error_of(image, full, mask);
     struct tl_object_error plain = error_of(blurred(device, drawn), full, mask);
     printf("  scale %.3f: FLIP shapes %.4f, worst %.4f; without outlines %.4f, %.4f; cover %.1e\n",
@@ -637,16 +419,16 @@ static void test_fewer_samples(void **state)
 {
     static editor *const editors[] = {be_matt, be_satin, be_satin_from_below};
     struct drawn_scene drawn;
-    open_scene(&drawn, WIDTH, HEIGHT);
+    drawn_scene_open(&drawn, WIDTH, HEIGHT);
     for (size_t i = 0; i < TL_COUNT(editors); i++) {
-        edit(&drawn, editors[i]);
-        tl_image full = draw(*state, &drawn, TL_RATIO_AT_VERTICES), mask = mask_of(*state, &drawn);
+        drawn_scene_edit(&drawn, editors[i]);
+        tl_image full = draw(*state, &drawn, TL_RATIO_AT_VERTICES), mask = drawn_scene_mask(*state, &drawn);
         check_scale(*state, &drawn, &full, &mask, 0.841f);
         check_scale(*state, &drawn, &full, &mask, 0.5f);
         tl_image_release(&mask);
         tl_image_release(&full);
     }
-    close_scene(&drawn);
+    drawn_scene_close(&drawn);
 }
 
 int main(void)
