@@ -139,7 +139,7 @@ static bool send_shapes(tl_graphics_card *card, const struct tl_card_surfaces *r
         tl_buffer_reserve(&card->buffers[CARD_RATIOS], card->gpu, 48 * card->points.probe_count, error) &&
         /* ratios read it even when nothing bounces */
         tl_buffer_reserve(&card->buffers[CARD_BOUNCED], card->gpu, 16, error) &&
-        tl_buffer_reserve(&card->buffers[CARD_WORK], card->gpu, 4 * CARD_WORDS, error);
+        tl_buffer_reserve(&card->buffers[CARD_WORK], card->gpu, (size_t)4 * CARD_WORDS, error);
     release_layout(&layout);
     return fine;
 }

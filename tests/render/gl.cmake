@@ -1,5 +1,5 @@
 # Tests of the renderer on a headless GL context.
-add_library(toile_test_scenes STATIC bindings.c scenes.c paths.c tree_rays.c)
+add_library(toile_test_scenes STATIC bindings.c scenes.c drawn_scene.c paths.c tree_rays.c)
 target_link_libraries(toile_test_scenes PUBLIC toile_render PkgConfig::CMOCKA PRIVATE PkgConfig::EPOXY)
 target_compile_definitions(toile_test_scenes PRIVATE
   TOILE_SCRATCH_DIR="${CMAKE_CURRENT_BINARY_DIR}")
@@ -38,6 +38,7 @@ toile_test(frame/prepared gpu toile_test_scenes)
 toile_test(inspect/inspect gpu toile_test_scenes)
 toile_test(visibility/points truth toile_test_scenes)
 toile_test(visibility/card_points gpu toile_test_scenes PkgConfig::EPOXY)
+toile_test(card/card gpu toile_test_scenes)
 toile_test(frame/sequence gpu toile_test_scenes)
 toile_test(light/layered truth toile_test_scenes)
 toile_test(light/mirrors truth toile_test_scenes)
@@ -72,4 +73,4 @@ toile_test(shade/ratios truth toile_test_scenes)
 toile_test(shade/outlines truth toile_test_scenes)
 
 # cmocka's exit status leaves out a teardown that fails: messages of GL, memory that is left.
-set_tests_properties(card_points compute primary tree tree_figure PROPERTIES FAIL_REGULAR_EXPRESSION "GROUP TEARDOWN")
+set_tests_properties(card card_points compute primary tree tree_figure PROPERTIES FAIL_REGULAR_EXPRESSION "GROUP TEARDOWN")
