@@ -3,8 +3,9 @@
 # Figures are not judged here (time never is; errors have their own tests), only that they are there and finite.
 set -eu
 . "$(dirname "$0")/cli.sh"
-# Few rays and regions: noise and error are nothing that is looked at.
-small="--size 48x48 $cheap_light --set cloth.edge_m=0.08 --set weave.texels_per_yarn=16 --set reference.replicates=2 --set reference.strata=16 --set reference.bounce_samples=1 --set reference.lobe_samples=8"
+# Few rays and regions: noise and error are nothing that is looked at. The presets of bench differ by their light.
+coarse="--size 48x48 --set light.pem_size=16 --set cloth.edge_m=0.08 --set weave.texels_per_yarn=16 --set reference.replicates=2 --set reference.strata=16 --set reference.bounce_samples=1 --set reference.lobe_samples=8"
+small="$coarse $cheap_light"
 
 refuse "trade without a folder" "add -o FOLDER" trade --quick
 refuse "trade along nothing known" "expected overall, light" trade --axis wind -o measured
@@ -45,7 +46,7 @@ for row in rows:
 PYTHON
         check_report $axis/report.html 1
     done
-    check "bench --json" sh -c "$TOILE bench light $small --quiet --quick --json | python3 -c '
+    check "bench --json" sh -c "$TOILE bench light $coarse --quiet --quick --json | python3 -c '
 import json, math, sys
 bench = json.load(sys.stdin)
 for key in (\"time_ratio\", \"error_ratio\", \"flip_ratio\"):
