@@ -389,6 +389,15 @@ static int bind_construction(const struct surface_item *item, const struct tl_me
     return TL_FLAG_SEWN;
 }
 
+/* A program may not draw without a buffer in each storage block, even where it does not read it. */
+static void bind_any_storage(const struct surface_item *item)
+{
+    static const GLuint blocks[] = {TL_STORAGE_FIRSTS, TL_STORAGE_NEAR, TL_STORAGE_BORDERS,
+                                    TL_STORAGE_PROFILES, TL_STORAGE_YARNS};
+    for (size_t i = 0; i < TL_COUNT(blocks); i++)
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, blocks[i], item->buffers[0]);
+}
+
 static int set_back(const struct tl_back *back)
 {
     if (!back->is_given)
@@ -404,6 +413,7 @@ static void set_material(const struct surface_item *item, const struct tl_mesh_p
 {
     const tl_material *material = &item->materials[part->material];
     glBindTextures(0, TL_MAP_USES + TL_WEAVE_USES, NULL);
+    bind_any_storage(item);
     int flags = bind_weave(item, material->weave, part->uv_metres) | bind_construction(item, part, number) |
                 set_back(&material->back) | bind_yarns(item, part);
     float rows[TL_MAP_USES][6];
