@@ -31,8 +31,9 @@ static void test_the_lobe_has_its_albedo(void **state)
 {
     (void)state;
     const vec3s up = {{0, 0, 1}};
-    for (float y = 0.4f; y <= 1; y += 0.2f)
+    for (int r = 2; r <= 5; r++)
         for (size_t i = 0; i < VIEWS; i++) {
+            const float y = 0.2f * (float)r;
             const struct tl_fuzz fuzz = {{{1, 1, 1}}, y, 0};
             double sum = 0;
             for (int row = 0; row < ROWS; row++)
