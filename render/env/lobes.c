@@ -214,7 +214,7 @@ static struct tl_cache_key key_of(const tl_cube *cube)
     size_t size = (size_t)cube->size;
     tl_cache_key_add(&key, TL_ENV_VERSION, sizeof TL_ENV_VERSION);
     tl_cache_key_add(&key, &size, sizeof size);
-    tl_cache_key_add(&key, cube->texels, 3 * 6 * size * size * sizeof *cube->texels);
+    tl_cache_key_add(&key, cube->texels, 18 * size * size * sizeof *cube->texels);
     return key;
 }
 

@@ -91,8 +91,8 @@ static void test_even(void **state)
     (void)state;
     double worst = 0, worst_share = 0;
     for (size_t e = 0; e < TL_COUNT(exponents); e++)
-        for (float degrees = 0; degrees <= 90; degrees += 7.5f) {
-            const struct lit lit = light_of(exponents[e], degrees, 0, -2, 2);
+        for (int step = 0; step <= 12; step++) {
+            const struct lit lit = light_of(exponents[e], 7.5f * (float)step, 0, -2, 2);
             const struct tl_bounced_lobe lobe = tl_bounced_lobe_of(lit.normal, lit.lobe, lit.exponent);
             const double share = (double)share_above(lit.lobe.z, lit.exponent);
             const double light = (double)tl_bounced_through(&lit.terms, &lobe).x;
@@ -111,9 +111,9 @@ static void test_from_below(void **state)
     for (size_t e = 0; e < TL_COUNT(exponents); e++) {
         double squares = 0, shares = 0;
         int count = 0;
-        for (float degrees = 15; degrees <= 90; degrees += 15)
-            for (float upwards = -75; upwards <= 75; upwards += 15, count++) {
-                const struct lit lit = light_of(exponents[e], degrees, upwards, -2, 0);
+        for (int degrees = 15; degrees <= 90; degrees += 15)
+            for (int upwards = -75; upwards <= 75; upwards += 15, count++) {
+                const struct lit lit = light_of(exponents[e], (float)degrees, (float)upwards, -2, 0);
                 const struct tl_bounced_lobe lobe = tl_bounced_lobe_of(lit.normal, lit.lobe, lit.exponent);
                 const double through = (double)tl_bounced_through(&lit.terms, &lobe).x;
                 const double open = (double)tl_bounced_open_share(&lit.terms, &lobe),

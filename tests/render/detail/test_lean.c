@@ -98,7 +98,8 @@ static double lobe_error(const tl_material *cloth, float handedness, bool has_co
     for (int diagonal = 0; diagonal < 2; diagonal++)
         for (int i = 0; i < DIRECTIONS; i++) {
             vec3s l = lit_from(diagonal, LIGHT_DEG);
-            vec3s v = lit_from(diagonal, -LIGHT_DEG + 12 * (float)(i - DIRECTIONS / 2));
+            const int off = i - DIRECTIONS / 2;
+            vec3s v = lit_from(diagonal, -LIGHT_DEG + 12 * (float)off);
             double exact = (double)mean_gloss(cloth, l, v);
             difference += fabs((double)lean_gloss(cloth, l, v, handedness, has_covariance) - exact);
             all += exact;
@@ -112,7 +113,8 @@ static void test_a_lobe_is_the_mean_of_its_normals(void **state)
     (void)state;
     static const float cloths[][3] = {{WIDTH, WIDTH, 0}, {0.3f, 0.12f, 0}, {0.3f, 0.12f, 0.6f}};
     for (size_t i = 0; i < TL_COUNT(cloths); i++)
-        for (float handedness = -1; handedness <= 1; handedness += 2) {
+        for (int hand = -1; hand <= 1; hand += 2) {
+            const float handedness = (float)hand;
             const tl_material cloth = cloth_of(cloths[i][0], cloths[i][1], cloths[i][2]);
             double with = lobe_error(&cloth, handedness, true),
                    without = lobe_error(&cloth, handedness, false);
@@ -138,7 +140,8 @@ static void test_samples_follow_the_axes(void **state)
     double along = 0, across = 0;
     enum { SIDE = 64 };
     for (int i = 0; i < SIDE * SIDE; i++) {
-        float pdf, u = ((float)(i % SIDE) + 0.5f) / SIDE, w = ((float)(i / SIDE) + 0.5f) / SIDE;
+        const int row = i / SIDE;
+        float pdf, u = ((float)(i % SIDE) + 0.5f) / SIDE, w = ((float)row + 0.5f) / SIDE;
         vec3s l = tl_brdf_sample(&brdf, &frame, v, u, w, &pdf);
         vec3s h = glms_vec3_normalize(glms_vec3_add(l, v));
         along += pow((double)((h.x + h.y) / h.z), 2) / 2 / (SIDE * SIDE);
@@ -189,7 +192,8 @@ static void be_grooved(struct test_scene *scene, const struct pose *pose)
     assert_true(tl_weave_create(&params, &scene->weave));
     tl_image *normals = &scene->weave.normal;
     for (int i = 0; i < normals->width * normals->height; i++) {
-        float t = ((float)(i % normals->width) + (float)(i / normals->width)) / (float)normals->width;
+        const int column = i % normals->width, row = i / normals->width;
+        float t = (float)(column + row) / (float)normals->width;
         float slope = groove(t) * (float)M_SQRT1_2;
         vec3s n = glms_vec3_normalize((vec3s){{-slope, slope, 1}}); /* v runs down */
         for (int c = 0; c < 3; c++)
@@ -217,7 +221,8 @@ static double highlight_error(tl_renderer *renderer, enum test_path path, const 
         be_grooved(&scene, pose);
         test_path_set(&scene, path, posed(lit_from(lit_diagonal, LIGHT_DEG)));
         for (int i = 0; i < DIRECTIONS; i += 2) {
-            vec3s viewer = posed(lit_from(lit_diagonal, -LIGHT_DEG + 12 * (float)(i - DIRECTIONS / 2)));
+            const int off = i - DIRECTIONS / 2;
+            vec3s viewer = posed(lit_from(lit_diagonal, -LIGHT_DEG + 12 * (float)off));
             double near = test_path_see(&scene, renderer, path, viewer, NEAR_M, 0.001f, NEAR_SIZE);
             double far = test_path_see(&scene, renderer, path, viewer, FAR_M, 1e-2f * FAR_M, FAR_SIZE);
             difference += fabs(far - near);
