@@ -211,7 +211,7 @@ static void test_refusals(void **state)
     write_text(FOLDER "/bad.yaml", "scene:\n  garment: dres\n");
     refuse(FOLDER "/bad.yaml", NULL,
            FOLDER "/bad.yaml:2: scene.garment: dres is no name known here: expected dress, skirt, layers, "
-                  "trousers, shirt, sheet, disc, sphere, torus, none or a file name "
+                  "trousers, shirt, sheet, disc, sphere, torus, plate, none or a file name "
                   "with its extension: did you mean dress?");
     /* A preset is about quality, a fabric about cloth: neither may reach into the scene. */
     write_text(FOLDER "/preset.yaml", "scene:\n  fabric: wool\n");
