@@ -225,13 +225,15 @@ static void assign_slots(const struct builder *builder, int from, const int *chi
         child_of_slot[s] = -1;
     for (int round = 0; round < count; round++) {
         float farthest = -FLT_MAX;
-        int best = -1, slot = -1;
+        int best = 0, slot = 0;
+        bool is_found = false;
         for (int k = 0; k < count; k++) {
             const vec3s towards = glms_vec3_sub(middle(builder->nodes[children[k]].box), centre);
             for (int s = 0; s < TL_TREE_WIDTH && !(placed >> k & 1); s++) {
                 const float far = (s & 1 ? towards.x : -towards.x) + (s & 2 ? towards.y : -towards.y) +
                                   (s & 4 ? towards.z : -towards.z);
-                if (child_of_slot[s] < 0 && (best < 0 || far > farthest)) {
+                if (child_of_slot[s] < 0 && (!is_found || far > farthest)) {
+                    is_found = true;
                     farthest = far;
                     best = k;
                     slot = s;
