@@ -568,8 +568,7 @@ void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *fr
     else if (used.light.ratio_at != TL_RATIO_AT_VERTICES)
         snprintf(out, size, "the CPU: ratios are at samples (light.ratio_at)");
     else
-        snprintf(out, size, "the CPU: the graphics card does not draw %s",
-                 refusal ? refusal : "frames whose samples are lit");
+        snprintf(out, size, "the CPU: the graphics card does not draw %s", refusal ? refusal : "this frame");
 }
 
 /* Inputs that can change without the user: their change counts as motion. Options change only by hand. */

@@ -23,12 +23,12 @@
 #define CARD_TILES 20           // [classes][tiles]: x, y << 16
 #define CARD_WORK 21            // indirect dispatches: class k of materials over its tiles at 4 k; then:
 #define CARD_REGIONS 22         // [regions][2]: direction, sine; power, spread
-#define CARD_RATIOS 23          // [probes][3]: of diffuse light; of gloss, 1: covered; of fibres
+#define CARD_RATIOS 23          // [probes][4]: of diffuse light; of gloss, 1: covered; of fibres; of the coat
 #define CARD_FOUND 24           // [probes][17]: what bounces to it: E / pi, 1: known; terms of card_bounced.glsl
 #define CARD_BOUNCED 25         // ... and the mean with its neighbours
 #define CARD_SENT 26            // [probes]: radiance, 1: known; of the frame before
 #define CARD_SENT_NOW 27        // ... of this one
-#define CARD_ALBEDOS 28         // [parts][4]: of even light, the same with what lobes send; front, back
+#define CARD_ALBEDOS 28         // [parts][4]: of even light, the same with what lobes send; front, back; w: emission, by channel
 #define CARD_SKY 29             // [6 x 32 x 32]: colour; sum of luminance up to and with it
 #define CARD_BORDER_FIRSTS 30   // of the class at work, as render/construction has them
 #define CARD_BORDER_NEAR 31

@@ -239,9 +239,10 @@ void sum_up(uint probe, uint vertex, bool back, uint first, float mean, vec3 n)
         sunlight += sun_of[k];
     arrives *= mean;
     vec3 lit = exact_diffuse(into_environment(n)) * share_of(open, all);
-    uint albedo = 4u * vertex_parts[vertex] + (back ? 2u : 0u);
+    uint part = 4u * vertex_parts[vertex], albedo = part + (back ? 2u : 0u);
+    vec3 emission = vec3(albedos[part].w, albedos[part + 1u].w, albedos[part + 2u].w);
     found[17u * probe] = vec4(arrives, 1.0);
-    sent_now[probe] = vec4(albedos[albedo].rgb * (lit + arrives) + albedos[albedo + 1u].rgb * sunlight, 1.0);
+    sent_now[probe] = vec4(albedos[albedo].rgb * (lit + arrives) + albedos[albedo + 1u].rgb * sunlight + emission, 1.0);
 }
 
 void main()

@@ -4,7 +4,7 @@
 #include "lobes_terms.glsl"
 #include "terms.glsl"
 #include "ground.glsl"
-layout(std140, binding = 0) uniform Frame
+layout(std140, binding = 0) uniform FrameValues
 {
     mat4 view_projection;
     vec4 eye;            // w: where rays start above a surface, m

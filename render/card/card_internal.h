@@ -27,9 +27,9 @@
     (TL_EXPONENT_COUNT + 2)              /* those of the exponents, and the gain of diffuse light            \
                                           */
 #define TL_CARD_PLACES 16                /* of a sun */
-#define TL_CARD_MAPS   (TL_MAP_USES + 4) /* of a class: see list_maps */
+#define TL_CARD_MAPS   (TL_MAP_USES + 5) /* of a class: see list_maps */
 
-/* `Frame` of card_frame.glsl. */
+/* `FrameValues` of card_frame.glsl. */
 struct tl_card_frame {
     float view_projection[16], eye[4], ray_first[4], ray_across[4], ray_up[4], disc[4], turn[4];
     int32_t size[4], counts[4];

@@ -8,10 +8,11 @@ layout(std430, binding = CARD_YARNS) restrict readonly buffer Yarns
     float yarn_sums[];
 };
 layout(binding = 10) uniform sampler2D maps[6]; // by enum tl_map_use; then the mixed moments of the normal map
-const int MAP_DIFFUSE = 0, MAP_NORMAL = 1, MAP_GLOSS = 2, MAP_SPECULAR = 3, MAP_OCCLUSION = 4, MAP_MIXED = 5;
+const int MAP_DIFFUSE = 0, MAP_NORMAL = 1, MAP_GLOSS = 2, MAP_SPECULAR = 3, MAP_OCCLUSION = 4, MAP_MIXED = 5, MAP_EMISSION = 5;
 layout(binding = 1) uniform sampler2D weave_tint;
 layout(binding = 2) uniform sampler2D weave_bumps;
 layout(binding = 3) uniform sampler2D weave_mixed;
+layout(binding = 5) uniform sampler2D emission_map; // in place of the gain's, which a pixel does not read
 
 float yarn_sum(float entry)
 {
@@ -43,13 +44,13 @@ Uv uv_of(Place p, float uv_metres)
 }
 
 // Map `use`, as the part's rows place it; `from` is read there.
-vec4 read_map(Part part, int use, int from, Uv uv)
+vec4 read_map(Part part, int use, sampler2D from, Uv uv)
 {
     vec4 u = part.map_rows[2 * use], v = part.map_rows[2 * use + 1];
-    vec2 side = vec2(textureSize(maps[from], 0));
+    vec2 side = vec2(textureSize(from, 0));
     vec2 at = vec2(dot(u.xy, uv.at) + u.z, dot(v.xy, uv.at) + v.z);
     vec2 across = side * vec2(dot(u.xy, uv.across), dot(v.xy, uv.across)), up = side * vec2(dot(u.xy, uv.up), dot(v.xy, uv.up));
-    return textureLod(maps[from], at, texel_level(dot(across, across), dot(up, up)));
+    return textureLod(from, at, texel_level(dot(across, across), dot(up, up)));
 }
 
 Texels texels_of(Part part, Uv uv, ConstructionLook sewn)
@@ -58,17 +59,17 @@ Texels texels_of(Part part, Uv uv, ConstructionLook sewn)
     vec4 own = vec4(0.0), woven = vec4(0.0);
     float own_mixed = 0.0, woven_mixed = 0.0;
     if ((part.flags.z & 1u << MAP_DIFFUSE) != 0u)
-        t.cloth.diffuse *= read_map(part, MAP_DIFFUSE, MAP_DIFFUSE, uv).rgb;
+        t.cloth.diffuse *= read_map(part, MAP_DIFFUSE, maps[MAP_DIFFUSE], uv).rgb;
     if ((part.flags.z & 1u << MAP_SPECULAR) != 0u)
-        t.cloth.f0 *= read_map(part, MAP_SPECULAR, MAP_SPECULAR, uv).rgb;
+        t.cloth.f0 *= read_map(part, MAP_SPECULAR, maps[MAP_SPECULAR], uv).rgb;
     if ((part.flags.z & 1u << MAP_GLOSS) != 0u)
-        t.cloth.glossiness *= read_map(part, MAP_GLOSS, MAP_GLOSS, uv).r;
+        t.cloth.glossiness *= read_map(part, MAP_GLOSS, maps[MAP_GLOSS], uv).r;
     if ((part.flags.z & 1u << MAP_OCCLUSION) != 0u)
-        t.more.occlusion = mix(1.0, read_map(part, MAP_OCCLUSION, MAP_OCCLUSION, uv).r, part.back_diffuse.w);
+        t.more.occlusion = mix(1.0, read_map(part, MAP_OCCLUSION, maps[MAP_OCCLUSION], uv).r, part.back_diffuse.w);
     if ((part.flags.x & HAS_OWN_BUMPS) != 0u)
-        own = read_map(part, MAP_NORMAL, MAP_NORMAL, uv);
+        own = read_map(part, MAP_NORMAL, maps[MAP_NORMAL], uv);
     if ((part.flags.x & OWN_ARE_MOMENTS) != 0u)
-        own_mixed = read_map(part, MAP_NORMAL, MAP_MIXED, uv).r;
+        own_mixed = read_map(part, MAP_NORMAL, maps[MAP_MIXED], uv).r;
     if ((part.flags.x & IS_WOVEN) != 0u) {
         vec2 side = part.weave.z * vec2(textureSize(weave_tint, 0)) * part.weave.xy, at = uv.at * part.weave.xy;
         vec2 across = uv.across * side, up = uv.up * side;

@@ -1,7 +1,7 @@
 // The material at a point, from what maps hold there, and the lobes of its gloss (render/shade). C fills Part in
 // materials.c.
 #include "surface_terms.glsl"
-#include "facets_terms.glsl"
+#include "models.glsl"
 #include "fuzz_terms.glsl"
 
 struct Part {
@@ -24,8 +24,10 @@ struct Part {
     vec4 fuzz;             // colour, roughness
     vec4 fuzz_more;        // how far it follows the bumps
     vec4 table;            // of lobe sets: glossiness at both ends, lobes, steps of glossiness
-    uvec4 table_first;     // its first vector; enum tl_facets, tl_masking
-    vec4 map_rows[10];     // two of each map, from the mesh's UV
+    uvec4 table_first;     // its first vector; enum tl_facets, tl_masking; tl_reflectance, tl_fresnel << 4
+    vec4 optics;           // index, extinction; share under a coat, exponent of its lobe
+    vec4 emission;
+    vec4 map_rows[12];     // two of each map, from the mesh's UV
     uvec4 flags;           // bits; first triangle of the surface; maps, by bit; systems of threads
 };
 const uint IS_GLOSSY = 1u, IS_FACETED = 2u, HAS_OWN_BUMPS = 4u, OWN_ARE_MOMENTS = 8u, HAS_WEAVE_BUMPS = 16u,
@@ -129,16 +131,29 @@ vec3 widths_of(Part part, int gloss, vec3 widening, float handedness)
     return vec3(weft, warp, facet_product(weft, warp, more.product));
 }
 
+// Enum tl_fresnel. Threads have Schlick's term.
+int fresnel_kind(Part part, int gloss)
+{
+    return gloss > 0 ? SCHLICK : int(part.table_first.w >> 4);
+}
+
+// The coat's share of the light that fibres leave (render/brdf/material_lobes.c).
+float coat_share(Part part, vec3 smooth_normal, vec3 viewer)
+{
+    return part.optics.z > 0.0 ? part.optics.z * fresnel_dielectric(1.5, clamp(dot(smooth_normal, viewer), 0.0, 1.0)) : 0.0;
+}
+
 bool is_bounded(Part part, int gloss)
 {
     return gloss > 0 || (part.flags.x & IS_BOUNDED) != 0u;
 }
 
-// Reflectance of facets: `plain`, and `away` times Schlick's share. Of threads their colour times 1 - F.
+// Reflectance of facets: `plain`, and `away` times Schlick's share. Of threads their colour times 1 - F; by an index what
+// fresnel_by_index multiplies.
 void reflected_of(Part part, Surface surface, int gloss, out vec3 plain, out vec3 away)
 {
     plain = surface.f0;
-    away = schlick_colour(plain, 0.0) - plain;
+    away = fresnel_kind(part, gloss) == SCHLICK ? schlick_colour(plain, 0.0) - plain : vec3(0.0);
     if (gloss > 0) {
         vec3 colour = clamp(surface.diffuse * part.threads[gloss - 1].rgb, 0.0, 1.0);
         plain = colour * (1.0 - plain);
@@ -151,39 +166,44 @@ struct WardSet {
     FacetAxes axes;
     vec3 viewer; // in these
     bool bounded;
+    int fresnel;
+    vec2 optics;
     LobeSet set;
     float albedo_plain, albedo_away;
 };
 
-float ward_away(WardSlope slope)
+// A slope's contribution; and times Schlick's share.
+vec2 ward_values(WardSet w, WardSlope slope)
 {
-    return slope.value * schlick_share(slope.cosine);
+    return slope.value * fresnel_by_index(w.fresnel, w.optics, min(slope.cosine, 1.0)) * vec2(1.0, schlick_share(slope.cosine));
 }
 
-WardSet ward_set(vec3 widths, vec3 viewer, bool bounded, float most)
+WardSet ward_set(Part part, int gloss, vec3 widths, vec3 viewer)
 {
     WardSet w;
-    w.bounded = bounded;
+    w.bounded = is_bounded(part, gloss);
+    w.fresnel = fresnel_kind(part, gloss);
+    w.optics = part.optics.xy;
     w.axes = facet_axes(widths.x, widths.y, widths.z);
     w.viewer = vec3(w.axes.cosine * viewer.x + w.axes.sine * viewer.y, w.axes.cosine * viewer.y - w.axes.sine * viewer.x,
                     max(viewer.z, 1e-6));
     vec3 v = w.viewer;
     float weft = 0.707106781 * sqrt(w.axes.square_x), warp = 0.707106781 * sqrt(w.axes.square_y);
-    w.set = lobe_set(weft, warp, v.x, v.y, v.z, 1.0, most);
+    w.set = lobe_set(weft, warp, v.x, v.y, v.z, 1.0, part.turn.w);
     SlopeQuadrature nodes = slope_quadrature(weft, warp, v.x, v.y, v.z);
     float shares = 0.0;
-    w.albedo_plain = w.albedo_away = 0.0;
+    vec2 albedo = vec2(0.0);
     for (int i = 0; i < SLOPE_POINTS; i++) {
         float at = nodes.middle + nodes.half_width * slope_points[i], share = slope_weight(i, at);
         float x = at * nodes.along_x, y = at * nodes.along_y;
-        WardSlope one = ward_slope(bounded, v.x, v.y, v.z, x + nodes.across_x, y + nodes.across_y);
-        WardSlope two = ward_slope(bounded, v.x, v.y, v.z, x - nodes.across_x, y - nodes.across_y);
+        WardSlope one = ward_slope(w.bounded, v.x, v.y, v.z, x + nodes.across_x, y + nodes.across_y);
+        WardSlope two = ward_slope(w.bounded, v.x, v.y, v.z, x - nodes.across_x, y - nodes.across_y);
         shares += share;
-        w.albedo_plain += 0.5 * share * (one.value + two.value);
-        w.albedo_away += 0.5 * share * (ward_away(one) + ward_away(two));
+        albedo += 0.5 * share * (ward_values(w, one) + ward_values(w, two));
     }
-    w.albedo_plain *= nodes.share / shares;
-    w.albedo_away *= nodes.share / shares;
+    albedo *= nodes.share / shares;
+    w.albedo_plain = albedo.x;
+    w.albedo_away = albedo.y;
     return w;
 }
 
@@ -199,8 +219,9 @@ WardLobe ward_lobe_of(WardSet w, float k)
     WardSlope slope = ward_slope(w.bounded, v.x, v.y, v.z, at.slope_x, at.slope_y);
     WardLobe lobe;
     lobe.exponent = slope_exponent(at.variance);
-    lobe.plain = at.share * slope.value;
-    lobe.away = at.share * ward_away(slope);
+    vec2 values = at.share * ward_values(w, slope);
+    lobe.plain = values.x;
+    lobe.away = values.y;
     float x = 2.0 * slope.towards * at.slope_x - v.x, y = 2.0 * slope.towards * at.slope_y - v.y;
     float axis = 2.0 * slope.towards - v.z;
     lobe.local = vec3(w.axes.cosine * x - w.axes.sine * y, w.axes.cosine * y + w.axes.sine * x, axis);

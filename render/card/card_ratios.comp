@@ -46,9 +46,10 @@ layout(std430, binding = CARD_RATIOS) restrict writeonly buffer Ratios
 };
 
 const uint SLICES = 8u, GLOSSES = 3u, SET_LOBES = 5u; // of the surface and two systems of threads; TL_CARD_LOBES each
-shared vec4 lobe_at[GLOSSES * SET_LOBES][32];         // direction in the environment; exponent
-shared vec4 lobe_weight[GLOSSES * SET_LOBES][32];     // its weight; later times the regions' gain
-shared uint lobe_counts[GLOSSES][32];
+const uint COAT = GLOSSES * SET_LOBES, LOBES = COAT + 1u;
+shared vec4 lobe_at[LOBES][32];     // direction in the environment; exponent
+shared vec4 lobe_weight[LOBES][32]; // its weight; later times the regions' gain
+shared uint lobe_counts[GLOSSES + 1u][32];
 shared vec3 sums_diffuse[SLICES][32], sums_gloss[SLICES][32], sums_all[SLICES][32];
 
 // A probe as the CPU's vertex of a triangle that is seen.
@@ -73,10 +74,15 @@ Vertex vertex_of(uint probe)
     return v;
 }
 
-// Lists the lobes of the vertex's gloss number `gloss`. Returns how many.
+// Lists the lobes of the vertex's gloss number `gloss`, GLOSSES: of its coat. Returns how many.
 uint list_lobes(Vertex v, uint gloss, uint lane)
 {
     float cosine = dot(v.normal, v.viewer);
+    if (gloss == GLOSSES) {
+        lobe_at[COAT][lane] = vec4(into_environment(mirror_direction(v.normal, v.viewer)), v.part.optics.w);
+        lobe_weight[COAT][lane] = vec4(1.0);
+        return v.part.optics.z > 0.0 ? 1u : 0u;
+    }
     if ((v.part.flags.x & IS_FACETED) == 0u) {
         if (gloss > 0u || (v.part.flags.x & IS_GLOSSY) == 0u)
             return 0u;
@@ -99,8 +105,7 @@ uint list_lobes(Vertex v, uint gloss, uint lane)
         }
         return uint(v.part.table.z);
     }
-    WardSet w = ward_set(widths_of(v.part, int(gloss), v.surface.widening, v.tangent.w * v.side), f.viewer, is_bounded(v.part, int(gloss)),
-                         v.part.turn.w);
+    WardSet w = ward_set(v.part, int(gloss), widths_of(v.part, int(gloss), v.surface.widening, v.tangent.w * v.side), f.viewer);
     vec3 plain, away;
     float sum_plain = 0.0, sum_away = 0.0;
     reflected_of(v.part, v.surface, int(gloss), plain, away);
@@ -125,20 +130,24 @@ void main()
     at = is_there ? at : 0u;
     uint probe = list[at];
     Vertex v = vertex_of(probe);
-    if (slice < GLOSSES)
+    if (slice <= GLOSSES)
         lobe_counts[slice][lane] = list_lobes(v, slice, lane);
     barrier();
 
     // The exact light of each lobe, what bounces to it, and the regions' gain.
-    vec3 all = vec3(0.0), gloss = vec3(0.0), normal = into_environment(v.normal);
-    for (uint i = slice; i < GLOSSES * SET_LOBES; i += SLICES)
+    vec3 all = vec3(0.0), gloss = vec3(0.0), all_coat = vec3(0.0), coat = vec3(0.0), normal = into_environment(v.normal);
+    for (uint i = slice; i < LOBES; i += SLICES)
         if (i % SET_LOBES < lobe_counts[i / SET_LOBES][lane]) {
             vec4 lobe = lobe_at[i][lane];
             float exponent = log2(lobe.w);
             vec3 weight = lobe_weight[i][lane].rgb;
-            all += weight * fetch_lobe(lobe_atlas, lobe.xyz, exponent);
+            vec3 light = weight * fetch_lobe(lobe_atlas, lobe.xyz, exponent), more = vec3(0.0);
             if (numbers.y != 0u)
-                gloss += weight * bounced_through(probe, v.normal, out_of_environment(lobe.xyz), lobe.w);
+                more = weight * bounced_through(probe, v.normal, out_of_environment(lobe.xyz), lobe.w);
+            all += i < COAT ? light : vec3(0.0);
+            gloss += i < COAT ? more : vec3(0.0);
+            all_coat += i < COAT ? vec3(0.0) : light;
+            coat += i < COAT ? vec3(0.0) : more;
             lobe_weight[i][lane].rgb = weight * fetch_lobe(gain_atlas, lobe.xyz, exponent);
         }
     barrier();
@@ -165,14 +174,18 @@ void main()
             if (open == 0.0)
                 continue;
             diffuse += more.rgb * (region_lobe_diffuse(cosine, r.w, inverse) * open);
-            vec3 through = vec3(0.0);
-            for (uint i = 0u; i < GLOSSES * SET_LOBES; i++)
+            vec3 through = vec3(0.0), through_coat = vec3(0.0);
+            for (uint i = 0u; i < LOBES; i++)
                 if (i % SET_LOBES < lobe_counts[i / SET_LOBES][lane]) {
                     vec4 lobe = lobe_at[i][lane];
                     float s = lobe_broadened_exponent(min(lobe.w, 1000.0), more.w); // TL_REGION_LOBE_MAX
-                    through += lobe_weight[i][lane].rgb * region_lobe(dot(r.xyz, lobe.xyz), r.w, inverse, s);
+                    vec3 part = lobe_weight[i][lane].rgb * region_lobe(dot(r.xyz, lobe.xyz), r.w, inverse, s);
+                    through += i < COAT ? part : vec3(0.0);
+                    through_coat += i < COAT ? vec3(0.0) : part;
                 }
-            gloss += more.rgb * through * (disc_share(cosine * inverse) * open);
+            vec3 arrives = more.rgb * (disc_share(cosine * inverse) * open);
+            gloss += arrives * through;
+            coat += arrives * through_coat;
         }
     }
     sums_diffuse[slice][lane] = diffuse;
@@ -181,6 +194,8 @@ void main()
     barrier();
     lobe_at[slice][lane] = vec4(seen_fibres, 0.0); // its lobes are summed
     lobe_weight[slice][lane] = vec4(all_fibres, 0.0);
+    lobe_at[SLICES + slice][lane] = vec4(coat, 0.0);
+    lobe_weight[SLICES + slice][lane] = vec4(all_coat, 0.0);
     barrier();
     if (slice != 0u || !is_there)
         return;
@@ -190,13 +205,16 @@ void main()
         all += sums_all[i][lane];
         seen_fibres += lobe_at[i][lane].rgb;
         all_fibres += lobe_weight[i][lane].rgb;
+        coat += lobe_at[SLICES + i][lane].rgb;
+        all_coat += lobe_weight[SLICES + i][lane].rgb;
     }
     vec3 arrives = numbers.y != 0u ? bounced[17u * probe].rgb : vec3(0.0);
     diffuse = diffuse * fetch_map(gain_atlas, DIFFUSE_GAIN, octahedral_place(normal)) + arrives;
     vec3 ratio = share_of(diffuse, exact_diffuse(normal));
     bool has_gloss = (v.part.flags.x & (IS_FACETED | IS_GLOSSY)) != 0u;
     float albedo = fibres.weights[0] + fibres.weights[1] + fibres.weights[2] + fibres.weights[3];
-    ratios[3u * probe] = vec4(ratio, 0.0);
-    ratios[3u * probe + 1u] = vec4(has_gloss ? share_of(gloss, all) : ratio, origins[2u * at].w);
-    ratios[3u * probe + 2u] = vec4(has_fuzz ? share_of(seen_fibres + arrives * albedo, all_fibres) : ratio, 0.0);
+    ratios[4u * probe] = vec4(ratio, 0.0);
+    ratios[4u * probe + 1u] = vec4(has_gloss ? share_of(gloss, all) : ratio, origins[2u * at].w);
+    ratios[4u * probe + 2u] = vec4(has_fuzz ? share_of(seen_fibres + arrives * albedo, all_fibres) : ratio, 0.0);
+    ratios[4u * probe + 3u] = vec4(share_of(coat, all_coat), 0.0);
 }

@@ -17,7 +17,7 @@ struct Seen {
     Surface surface;
     Facets facets;
     vec4 tangent;
-    vec3 viewer, mirror, reflectance;
+    vec3 viewer, mirror, reflectance, emitted;
     float side, cover, exponent;
     bool is_faceted;
 };
@@ -43,6 +43,9 @@ Seen see(uint id, uint part_number, ivec2 pixel)
         sewn = construction_near(border_firsts[t], border_firsts[t + 1u], uv.at, uv.across, uv.up);
     }
     s.surface = surface_of(s.part, smooth_of(s.p), s.tangent, s.viewer, s.side, texels_of(s.part, uv, sewn));
+    s.emitted = s.part.emission.rgb;
+    if ((s.part.flags.z & 1u << MAP_EMISSION) != 0u)
+        s.emitted *= read_map(s.part, MAP_EMISSION, emission_map, uv).rgb;
 #else
     s.surface = surface_of(s.part, smooth_of(s.p), s.tangent, s.viewer, s.side, mean_texels(s.part));
 #endif
@@ -76,7 +79,7 @@ vec3 light_of_table(Seen s)
 // ... and through those that stand for Ward's facets.
 vec3 light_of_set(Seen s, int gloss)
 {
-    WardSet w = ward_set(widths_of(s.part, gloss, s.surface.widening, s.tangent.w), s.facets.viewer, is_bounded(s.part, gloss), s.part.turn.w);
+    WardSet w = ward_set(s.part, gloss, widths_of(s.part, gloss, s.surface.widening, s.tangent.w), s.facets.viewer);
     vec3 plain, away, light_plain = vec3(0.0), light_away = vec3(0.0);
     float sum_plain = 0.0, sum_away = 0.0;
     reflected_of(s.part, s.surface, gloss, plain, away);
@@ -91,19 +94,19 @@ vec3 light_of_set(Seen s, int gloss)
     return ward_scale(w, plain, away, sum_plain, sum_away) * (plain * light_plain + away * light_away);
 }
 
-// f_r cos of Torrance and Sparrow's facets, for light from a disc (render/brdf/brdf.c).
-vec3 microfacets_under(Seen s, vec3 d, float radius)
+// f_r cos of other models than Ward's, for light from a disc (tl_brdf_gloss_under_disc).
+vec3 model_under(Seen s, vec3 d, float radius)
 {
-    vec3 sum = d + s.viewer, h = sum * s.facets.frame;
-    float cos_a = dot(s.facets.frame[2], d), cos_b = s.facets.viewer.z, cos_t = 0.5 * length(sum);
-    if (!(cos_a > 0.0 && cos_b > 0.0))
+    mat3 f = s.facets.frame;
+    Cosines c = cosines_of(Frame(f[2], f[0], f[1]), d, s.viewer, direction_or(d + s.viewer, d));
+    if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
         return vec3(0.0);
+    int model = int(s.part.table_first.w & 15u);
     float wider = detail_facet_square(1.0 - s.surface.glossiness) - detail_facet_square(1.0 - s.part.diffuse.a);
     float width = sqrt(facet_square(s.part.ward[0].x, wider) + radius * radius / 8.0);
-    int facets = int(s.part.table_first.y), masking = int(s.part.table_first.z);
-    float value = facet_density(facets, width, (h.x * h.x + h.y * h.y) / (h.z * h.z)) *
-                  facet_masking(facets, masking, width, cos_a, cos_b, cos_t, h.z / length(h)) / (PI * cos_b);
-    return value * schlick_colour(s.surface.f0, cos_t);
+    float exponent = lobe_broadened_exponent(lobe_exponent(s.surface.glossiness), radius * 0.707106781);
+    return fresnel_of(model, fresnel_kind(s.part, 0), s.part.optics.xy, s.surface.f0, c) *
+           lobe_of(model, int(s.part.table_first.y), int(s.part.table_first.z), c, exponent, width);
 }
 
 // ... of Ward's.
@@ -114,7 +117,8 @@ vec3 facets_under(Seen s, int gloss, vec3 d, float radius)
     float value = ward_lobe(is_bounded(s.part, gloss), h.x / h.z, h.y / h.z, h.z * h.z * h.z * h.z / (4.0 * square),
                             dot(s.facets.frame[2], d), s.facets.viewer.z, widths.x + wider, widths.y + wider, widths.z);
     reflected_of(s.part, s.surface, gloss, plain, away);
-    return value * (plain + away * schlick_share(0.5 * sqrt(square)));
+    float cosine = min(0.5 * sqrt(square), 1.0);
+    return value * fresnel_by_index(fresnel_kind(s.part, gloss), s.part.optics.xy, cosine) * (plain + away * schlick_share(cosine));
 }
 #endif
 
@@ -141,7 +145,7 @@ vec3 gloss_under(Seen s, vec3 d, float radius)
 #ifdef RICH
     if (s.is_faceted) {
         for (int k = 0; k <= int(s.part.flags.w); k++)
-            gloss += k == 0 && (s.part.flags.x & HAS_TABLE) != 0u ? microfacets_under(s, d, radius) : facets_under(s, k, d, radius);
+            gloss += k == 0 && (s.part.flags.x & HAS_TABLE) != 0u ? model_under(s, d, radius) : facets_under(s, k, d, radius);
         return gloss;
     }
 #endif

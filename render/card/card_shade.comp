@@ -29,7 +29,7 @@ layout(binding = 6) uniform sampler2D sun_seen[4];
 vec3 light_of(Seen s, ivec2 pixel)
 {
     uint corner = 3u * (2u * s.p.triangle + (s.p.back ? 1u : 0u));
-    uvec3 at = 3u * uvec3(triangle_probes[corner], triangle_probes[corner + 1u], triangle_probes[corner + 2u]);
+    uvec3 at = 4u * uvec3(triangle_probes[corner], triangle_probes[corner + 1u], triangle_probes[corner + 2u]);
     vec4 gloss[3] = vec4[3](ratios[at.x + 1u], ratios[at.y + 1u], ratios[at.z + 1u]);
     vec3 w = s.p.weights, covered = vec3(gloss[0].w, gloss[1].w, gloss[2].w);
     float all = covered.x + covered.y + covered.z;
@@ -42,10 +42,16 @@ vec3 light_of(Seen s, ivec2 pixel)
                  exact_gloss(s) * (w.x * gloss[0].rgb + w.y * gloss[1].rgb + w.z * gloss[2].rgb);
 #ifdef RICH
     bool has_fuzz = (s.part.flags.x & HAS_FUZZ) != 0u;
-    vec3 sheen = vec3(0.0);
-    Fibres fibres = fibres_of(s.part, s.side * s.surface.smooth_normal, s.surface.shown, s.viewer);
+    vec3 smooth_normal = s.side * s.surface.smooth_normal, sheen = vec3(0.0);
+    Fibres fibres = fibres_of(s.part, smooth_normal, s.surface.shown, s.viewer);
     if (has_fuzz)
         sheen = exact_fibres(fibres) * (w.x * ratios[at.x + 2u].rgb + w.y * ratios[at.y + 2u].rgb + w.z * ratios[at.z + 2u].rgb);
+    // A coat levels threads and bumps out.
+    vec3 axis = mirror_direction(smooth_normal, s.viewer), coat = vec3(0.0);
+    float share = coat_share(s.part, smooth_normal, s.viewer);
+    if (share > 0.0)
+        coat = fetch_lobe(lobe_atlas, into_environment(axis), log2(s.part.optics.w)) *
+               (w.x * ratios[at.x + 3u].rgb + w.y * ratios[at.y + 3u].rgb + w.z * ratios[at.z + 3u].rgb);
 #endif
     for (int i = 0; i < counts.y; i++) {
         vec3 sun = suns[i].xyz;
@@ -58,9 +64,13 @@ vec3 light_of(Seen s, ivec2 pixel)
 #ifdef RICH
         if (has_fuzz)
             sheen += seen * sun_powers[i].rgb * fuzz_value(s.part.fuzz.a, fibres.axis, sun, s.viewer);
+        if (share > 0.0)
+            coat += seen * sun_powers[i].rgb *
+                    lobe_cosine(lobe_broadened_exponent(s.part.optics.w, suns[i].w * 0.707106781), dot(sun, axis));
 #endif
     }
 #ifdef RICH
+    light = (light + s.emitted) * (1.0 - share) + share * coat;
     if (has_fuzz)
         light = light * fibres.under + s.part.fuzz.rgb * sheen;
 #endif

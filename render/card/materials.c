@@ -3,7 +3,9 @@
 #include "config/base/memory.h"
 #include "render/bounce/bounce_scene.h"
 #include "render/brdf/brdf.h"
+#include "render/env/exponent.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,7 +19,8 @@ struct card_part {
     float fuzz[4], fuzz_more[4];
     float table[4];
     uint32_t table_first[4];
-    float map_rows[TL_MAP_USES][2][4];
+    float optics[4], emission[4];
+    float map_rows[TL_MAP_USES + 1][2][4];
     uint32_t flags[4];
 };
 enum {
@@ -47,20 +50,10 @@ enum {
 
 static const char *refusal_of(const tl_material *material)
 {
-    const struct tl_gloss *gloss = &material->gloss;
-    const bool is_phong = gloss->model == TL_REFLECT_PHONG;
-    if (!is_phong && gloss->model != TL_REFLECT_WARD && gloss->model != TL_REFLECT_TORRANCE_SPARROW)
-        return "reflectance other than Phong's, Ward's and that of microfacets";
-    if (!is_phong && gloss->fresnel != TL_FRESNEL_SCHLICK)
-        return "a Fresnel term from an index";
-    if (material->coat > 0)
-        return "a coat";
     if (material->openness > 0 || material->alpha_cutoff > 0)
         return "cloth with holes";
     if (tl_material_transmits(material))
         return "light that shines through cloth";
-    if (tl_material_emits(material))
-        return "surfaces that emit light";
     return NULL;
 }
 
@@ -95,7 +88,7 @@ struct class_map {
 };
 
 /* The maps of a part in the order of `maps` in card_maps.glsl; then its weave's tint, bumps and mixed
- * moments. */
+ * moments, and what it emits. */
 static void list_maps(const struct tl_shade_part *part, struct class_map out[TL_CARD_MAPS])
 {
     for (int use = 0; use < TL_MAP_USES; use++)
@@ -109,6 +102,8 @@ static void list_maps(const struct tl_shade_part *part, struct class_map out[TL_
     out[TL_MAP_USES + 2] =
         (struct class_map){part->weave_moments ? part->weave_moments : part->weave_normal, false, false};
     out[TL_MAP_USES + 3] = (struct class_map){part->weave_cross, false, false};
+    out[TL_MAP_USES + 4] =
+        (struct class_map){part->emission.texels, part->emission.clamp_u, part->emission.clamp_v};
 }
 
 static bool same_maps(const struct tl_shade_part *a, const struct tl_shade_part *b)
@@ -180,7 +175,8 @@ static bool add_class(tl_graphics_card *card, const struct tl_shade_part *part, 
 /* The class of a part, which is made when it is the first; -1: error. */
 static int class_of(tl_graphics_card *card, const struct tl_shade_part *part, tl_error *error)
 {
-    if (!part->has_maps && !part->has_bumps && !part->is_faceted && !part->has_fuzz)
+    if (!part->has_maps && !part->has_bumps && !part->is_faceted && !part->has_fuzz &&
+        !(part->material->coat > 0) && !tl_material_emits(part->material))
         return 1;
     for (int i = 2; i < card->class_count; i++)
         if (same_maps(card->classes[i].part, part))
@@ -254,9 +250,10 @@ static void fill_means(const struct tl_shade_part *part, struct card_part *to)
 static void fill_maps(const struct tl_shade_materials *materials, const struct tl_shade_part *part,
                       struct card_part *to)
 {
-    for (int use = 0; use < TL_MAP_USES; use++) {
-        const float *rows = part->maps[use].rows;
-        to->flags[2] |= part->maps[use].texels ? 1u << use : 0;
+    for (int use = 0; use <= TL_MAP_USES; use++) {
+        const struct tl_shade_map *map = use < TL_MAP_USES ? &part->maps[use] : &part->emission;
+        const float *rows = map->rows;
+        to->flags[2] |= map->texels ? 1u << use : 0;
         for (int k = 0; k < 2; k++)
             memcpy(to->map_rows[use][k], rows + 3 * k, 3 * sizeof *rows);
     }
@@ -309,8 +306,6 @@ static void fill_table(const struct tl_shade_part *part, uint32_t first, struct 
 {
     const struct tl_lobe_set_table *table = part->lobe_set;
     to->table_first[0] = first;
-    to->table_first[1] = (uint32_t)part->material->gloss.facets;
-    to->table_first[2] = (uint32_t)part->material->gloss.masking;
     const struct tl_brdf own =
         tl_brdf_of(part->material, part->material->specular, part->material->glossiness);
     to->ward[0][0] = own.gloss.width_weft * own.gloss.width_weft;
@@ -371,6 +366,15 @@ static void fill_part(const struct tl_shade_materials *materials, const struct t
     to->turn[1] = part->turn_sine;
     to->turn[2] = part->uv_metres;
     to->turn[3] = (float)part->lobe_set_count;
+    const struct tl_gloss *gloss = &material->gloss;
+    to->table_first[1] = (uint32_t)gloss->facets;
+    to->table_first[2] = (uint32_t)gloss->masking;
+    to->table_first[3] = (uint32_t)gloss->model | (uint32_t)gloss->fresnel << 4;
+    to->optics[0] = gloss->index > 0 ? gloss->index : 1; /* as tl_brdf_bumped */
+    to->optics[1] = fmaxf(gloss->extinction, 0);
+    to->optics[2] = material->coat;
+    to->optics[3] = tl_lobe_exponent(material->coat_glossiness);
+    tl_card_put(to->emission, material->emission, 0);
     fill_means(part, to);
     fill_maps(materials, part, to);
     if (part->construction) {
@@ -392,6 +396,8 @@ static void fill_albedos(const struct tl_bounce_material *material, float to[4][
         tl_card_put(to[2 * side], material->albedo[side], 0);
         tl_card_put(to[2 * side + 1], material->whole[side], 0);
     }
+    for (int c = 0; c < 3; c++)
+        to[c][3] = material->emission.raw[c];
 }
 
 static bool send_triangle_parts(tl_graphics_card *card, const struct tl_card_surfaces *request,

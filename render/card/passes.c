@@ -209,7 +209,7 @@ bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error)
 /* Binds one texel of nothing where a class has no map. */
 static void bind_class(const tl_graphics_card *card, const struct tl_card_class *class)
 {
-    static const unsigned units[TL_CARD_MAPS] = {10, 11, 12, 13, 14, 15, 1, 2, 3}; /* as card_maps.glsl */
+    static const unsigned units[TL_CARD_MAPS] = {10, 11, 12, 13, 14, 15, 1, 2, 3, 5}; /* as card_maps.glsl */
     for (int i = 0; i < TL_CARD_MAPS; i++)
         glBindTextureUnit(units[i], class->maps[i].id != 0 ? class->maps[i].id : card->no_map.id);
     tl_buffer_bind(&class->firsts, CARD_BORDER_FIRSTS);
@@ -226,7 +226,6 @@ bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, 
         return false;
     glBindTextureUnit(0, card->ids.id);
     glBindTextureUnit(4, card->lobe_atlas.id);
-    glBindTextureUnit(5, card->gain_atlas.id);
     tl_card_fit_texture(card, &card->no_map, GL_RGBA16F, 1, 1);
     for (unsigned i = 0; i < TL_SUNS_MAX; i++)
         glBindTextureUnit(6 + i, card->sun_seen[i].id != 0 ? card->sun_seen[i].id : card->no_map.id);

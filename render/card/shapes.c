@@ -136,7 +136,7 @@ static bool send_shapes(tl_graphics_card *card, const struct tl_card_surfaces *r
     bool fine =
         send_origins(card, &layout, error) && send_rings(card, &layout, error) &&
         send_uvs(card, request->ranges, error) && tl_card_send_materials(card, request, error) &&
-        tl_buffer_reserve(&card->buffers[CARD_RATIOS], card->gpu, 48 * card->points.probe_count, error) &&
+        tl_buffer_reserve(&card->buffers[CARD_RATIOS], card->gpu, 64 * card->points.probe_count, error) &&
         /* ratios read it even when nothing bounces */
         tl_buffer_reserve(&card->buffers[CARD_BOUNCED], card->gpu, 16, error) &&
         tl_buffer_reserve(&card->buffers[CARD_WORK], card->gpu, (size_t)4 * CARD_WORDS, error);

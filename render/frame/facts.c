@@ -202,17 +202,36 @@ static bool is_dark(const tl_frame *frame)
     return frame->environment && tl_environment_is_black(frame->environment);
 }
 
-/* True when ratios at vertices can light the pixels: nothing in the scene needs samples. */
-static bool fits_vertices(const tl_frame *frame, const struct tl_render_settings *settings)
+static bool has_coat(const tl_material *material)
+{
+    return material->coat > 0;
+}
+
+/* Returns why ratios at vertices cannot light the pixels on either engine; NULL: they can. */
+static const char *vertices_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const struct tl_light_params *light = &settings->light;
+    if (light->method != TL_METHOD_PEM || light->visibility != TL_VISIBILITY_RAYS ||
+        light->lobe != TL_LOBE_DUAL)
+        return "this method (light.method, light.visibility, light.lobe)";
+    if (frame->aovs)
+        return "layers of data";
+    if (is_dark(frame))
+        return "scenes whose environment is black";
+    if (has_mirrors(frame, light))
+        return "near mirrors (light.reflect_scene)";
+    return tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail)
+               ? NULL
+               : "such detail (detail.mode, detail.shadow, height maps)";
+}
+
+/* True when ratios at vertices can light the pixels on the CPU: nothing in the scene needs samples. */
+static bool fits_vertices(const tl_frame *frame, const struct tl_render_settings *settings)
+{
     struct tl_lamp lamps[TL_LAMPS_MAX];
-    return light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
-           light->lobe == TL_LOBE_DUAL && !frame->aovs && !is_dark(frame) &&
-           tl_lamps_lit(frame, lamps) == 0 &&
+    return !vertices_refusal(frame, settings) && tl_lamps_lit(frame, lamps) == 0 &&
            !tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits) &&
-           tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail) &&
-           !has_mirrors(frame, light);
+           !tl_materials_have(frame->surfaces, frame->surface_count, has_coat);
 }
 
 static bool is_black(vec3s colour)
@@ -250,10 +269,18 @@ static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_setting
 
 const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    const char *refusal = vertices_refusal(frame, settings);
+    if (settings->image.view != TL_VIEW_LIGHT)
+        return "views other than light (image.view)";
+    if (refusal)
+        return refusal;
     if (settings->light.bounce == TL_BOUNCE_ONE)
         return "light that bounces once (light.bounce)";
     if (settings->light.lobes > TL_CARD_LOBES)
         return "so many lobes of a gloss (light.lobes)";
+    if (tl_lamps_lit(frame, lamps) > 0)
+        return "lamps";
     return tl_card_refusal(frame->surfaces, frame->surface_count);
 }
 
@@ -303,14 +330,13 @@ static tl_bits sample_facts(const tl_frame *frame, const struct tl_render_settin
 
 static tl_bits light_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
+    const bool at_vertices = settings->light.ratio_at == TL_RATIO_AT_VERTICES;
+    const tl_bits fits = TL_BIT(TL_SCENE_FITS_VERTICES);
+    if (at_vertices && settings->light.device == TL_DEVICE_CARD && !tl_frame_card_refusal(frame, settings))
+        return fits | card_facts(frame, settings);
     if (!fits_vertices(frame, settings))
         return sample_facts(frame, settings);
-    const tl_bits fits = TL_BIT(TL_SCENE_FITS_VERTICES);
-    if (settings->light.ratio_at != TL_RATIO_AT_VERTICES)
-        return fits | sample_facts(frame, settings);
-    if (settings->light.device == TL_DEVICE_CARD && !tl_frame_card_refusal(frame, settings))
-        return fits | card_facts(frame, settings);
-    return fits | ratio_facts(frame, settings);
+    return fits | (at_vertices ? ratio_facts(frame, settings) : sample_facts(frame, settings));
 }
 
 /* Facts of a frame whose view is not light, except those that follow from its materials. */

@@ -5,8 +5,8 @@
 #include "render/frame/resource.h"
 #include "render/frame/settings.h"
 
-/* Returns why the graphics card cannot draw the frame, whose light vertices can hold; NULL: it can. A
- * constant text. */
+/* Returns why the graphics card cannot draw the frame with ratios at vertices; NULL: it can. A constant text.
+ */
 const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_settings *settings);
 /* Bits of enum tl_scene_fact. `settings` as tl_render_settings_resolve returns them. It visits every material
  * and reads the weaves' gloss maps, so a frame computes its facts once and passes them on. */

@@ -1,5 +1,5 @@
-// The current lamp, and the cosines with which a reflectance model is evaluated.
-#include "facets_terms.glsl"
+// The current lamp, and the cosines at a point that it lights.
+#include "models.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
 layout(location = 65) uniform vec3 eye;
@@ -22,22 +22,6 @@ vec3 irradiance_at(vec3 point)
     return lamp_irradiance / (lamp.w > 0.0 ? max(dot(away, away), NEAREST_M * NEAREST_M) : 1.0);
 }
 
-// Cosines of the vectors of shading. The squared sines keep their digits near a peak, where cosines do not.
-struct Cosines {
-    float a, b;                    // n.l, n.v
-    float t;                       // h.l
-    float half_normal, half_sine2; // n.h
-    float mirror, mirror_sine2;    // r.l
-    vec2 half_plane;               // h along tangent and bitangent
-    vec2 thread;                   // t.l, t.v
-    vec2 across;                   // b.l, b.v
-    float hand;                    // -1 where b is opposite to the bitangent of the surface (plane_side)
-};
-
-struct Frame {
-    vec3 n, t, b;
-};
-
 // The frame of tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the
 // front; `side` is -1 on back faces. The sign of the bitangent matters to correlated slopes alone (plane_side in
 // local.frag).
@@ -45,27 +29,6 @@ Frame frame_of(vec3 n, vec3 tangent, float side)
 {
     vec3 t = thread_direction(n, tangent, gloss_widths.z, side * gloss_widths.w);
     return Frame(n, t, cross(n, t));
-}
-
-// The cosines of unit vectors.
-Cosines cosines_of(Frame frame, vec3 l, vec3 v, vec3 h)
-{
-    Cosines c;
-    c.a = dot(frame.n, l);
-    c.b = dot(frame.n, v);
-    c.t = dot(h, l);
-    c.half_normal = dot(frame.n, h);
-    vec3 across = cross(frame.n, h);
-    c.half_sine2 = dot(across, across);
-    vec3 r = 2.0 * c.b * frame.n - v;
-    c.mirror = dot(r, l);
-    across = cross(r, l);
-    c.mirror_sine2 = dot(across, across);
-    c.half_plane = vec2(dot(frame.t, h), dot(frame.b, h));
-    c.thread = vec2(dot(frame.t, l), dot(frame.t, v));
-    c.across = vec2(dot(frame.b, l), dot(frame.b, v));
-    c.hand = 1.0;
-    return c;
 }
 
 // The cosines of vectors that are nearly unit: everything is derived from dot products.

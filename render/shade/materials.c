@@ -28,7 +28,7 @@ struct tl_shade_lobe_set {
 
 static bool fits(const tl_material *material, const struct tl_detail_params *detail)
 {
-    return !(material->coat > 0) && !(tl_detail_has_own_normals(material) && material->height_map.image) &&
+    return !(tl_detail_has_own_normals(material) && material->height_map.image) &&
            (detail->mode == TL_DETAIL_NORMAL || !tl_detail_wants_maps(detail, material)) &&
            (detail->shadow == TL_DETAIL_SHADOW_NONE || !tl_detail_wants_maps(detail, material));
 }
@@ -217,6 +217,8 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
         }
         part.has_maps |= part.maps[use].texels != NULL;
     }
+    part.emission = map_of(materials, &material->emission_map, TL_MAP_DIFFUSE);
+    part.has_maps |= part.emission.texels != NULL;
     add_weave(materials, uv_metres, moments, &part);
     add_construction(materials, borders, &part);
     bool woven = part.weave_tint != NULL;

@@ -24,7 +24,7 @@ struct tl_shade_map {
 /* One part of a surface. */
 struct tl_shade_part {
     const tl_material *material;
-    struct tl_shade_map maps[TL_MAP_USES];
+    struct tl_shade_map maps[TL_MAP_USES], emission;
     const struct tl_texels *own_moments;             /* of the normal map: with its UV */
     const struct tl_texels *own_cross, *weave_cross; /* the mixed moments; NULL: 0 */
     const struct tl_texels *weave_tint; /* factor on kd; what is added to glossiness in the fourth channel */
@@ -64,7 +64,8 @@ struct tl_shade_materials {
     struct tl_construction_tables **constructions; /* [construction_count] by part, of those that are sewn */
 };
 
-/* Returns true when every material of the surfaces can be evaluated here with these options. */
+/* Returns true when every material of the surfaces can be evaluated here with these options, but for coats.
+ */
 bool tl_shade_materials_fit(const tl_surface *surfaces, size_t count, const struct tl_detail_params *detail);
 
 /* Makes the materials and replaces the previous ones. Maps and tables of the same `shapes_revision` are kept.
