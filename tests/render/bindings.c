@@ -13,7 +13,7 @@ static PFNGLDRAWARRAYSPROC draw_arrays;
 static PFNGLDRAWELEMENTSPROC draw_elements;
 static PFNGLDISPATCHCOMPUTEPROC dispatch;
 static PFNGLDISPATCHCOMPUTEINDIRECTPROC dispatch_indirect;
-static PFNGLSHADERSOURCEPROC shader_source;
+static PFNGLCOMPILESHADERPROC compile_shader;
 static size_t faults;
 
 /* The binding that a sampler's type reads, 0: no sampler of this program's shaders. */
@@ -164,10 +164,13 @@ static void watched_dispatch_indirect(GLintptr offset)
 }
 
 /* Writes the text of a shader to FOLDER/HASH.vert, .frag or .comp, as glslangValidator tells them. */
-static void keep_shader(const char *folder, GLuint shader, const char *text)
+static void keep_shader(const char *folder, GLuint shader)
 {
-    GLint type;
+    GLint type, size;
     glGetShaderiv(shader, GL_SHADER_TYPE, &type);
+    glGetShaderiv(shader, GL_SHADER_SOURCE_LENGTH, &size);
+    char *text = tl_alloc((size_t)size + 1, 1);
+    glGetShaderSource(shader, size, NULL, text);
     char *path =
         tl_format("%s/%016llx.%s", folder, (unsigned long long)tl_hash(TL_HASH_START, text, strlen(text)),
                   type == GL_VERTEX_SHADER    ? "vert"
@@ -179,14 +182,18 @@ static void keep_shader(const char *folder, GLuint shader, const char *text)
         fclose(file);
     }
     free(path);
+    free(text);
 }
 
-static void watched_source(GLuint shader, GLsizei count, const GLchar *const *texts, const GLint *lengths)
+/* Keeps shaders that this driver compiles: others may refuse them. Tests of refusals compile wrong ones. */
+static void watched_compile(GLuint shader)
 {
     const char *folder = getenv("TOILE_SHADERS_TO");
-    if (folder && count == 1 && !lengths)
-        keep_shader(folder, shader, texts[0]);
-    shader_source(shader, count, texts, lengths);
+    GLint compiled = GL_FALSE;
+    compile_shader(shader);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (folder && compiled)
+        keep_shader(folder, shader);
 }
 
 void test_bindings_watch(void)
@@ -198,8 +205,8 @@ void test_bindings_watch(void)
     draw_elements = (PFNGLDRAWELEMENTSPROC)eglGetProcAddress("glDrawElements");
     dispatch = (PFNGLDISPATCHCOMPUTEPROC)eglGetProcAddress("glDispatchCompute");
     dispatch_indirect = (PFNGLDISPATCHCOMPUTEINDIRECTPROC)eglGetProcAddress("glDispatchComputeIndirect");
-    shader_source = (PFNGLSHADERSOURCEPROC)eglGetProcAddress("glShaderSource");
-    epoxy_glShaderSource = watched_source;
+    compile_shader = (PFNGLCOMPILESHADERPROC)eglGetProcAddress("glCompileShader");
+    epoxy_glCompileShader = watched_compile;
     epoxy_glDispatchCompute = watched_dispatch;
     epoxy_glDispatchComputeIndirect = watched_dispatch_indirect;
     epoxy_glDrawArrays = watched_arrays;
