@@ -21,10 +21,19 @@
 /* A surface has up to three geometries, so that opaque parts need no filter function. */
 enum kind { OPAQUE, MASKED, OPEN, KINDS };
 
+/* The open triangles that a ray has passed, the last few of them: in packets Embree 3.13 shows the filter
+ * some triangles twice. */
+#define PASSED_MAX 8
+struct passed {
+    uint64_t triangles[PASSED_MAX]; /* geometry and primitive */
+    unsigned count;                 /* of all */
+};
+
 /* Context of a query for the filter function. */
 struct query {
     struct RTCIntersectContext context; /* must be first: Embree passes its address */
     float *transmittance;               /* by ray: transmittance of open sheets; NULL: they block rays, too */
+    struct passed *passed;              /* by ray, where there is a transmittance */
 };
 
 struct piece {
@@ -145,6 +154,17 @@ static bool in_hole(const tl_surface *surface, uint32_t triangle, float u, float
     return tl_cutout_at(material_of(surface, triangle), uv);
 }
 
+/* Notes that a ray passes a triangle. Returns false if it has passed it already. */
+static bool pass(struct passed *passed, unsigned geometry, unsigned primitive)
+{
+    const uint64_t triangle = (uint64_t)geometry << 32 | primitive;
+    for (unsigned i = 0; i < PASSED_MAX && i < passed->count; i++)
+        if (passed->triangles[i] == triangle)
+            return false;
+    passed->triangles[passed->count++ % PASSED_MAX] = triangle;
+    return true;
+}
+
 /* The filter function: skips holes and accumulates the transmittance of open sheets. Rays and hits of N lanes
  * are arrays of N numbers: the eleventh of a ray is its id; those of a hit are three of the normal, u, v,
  * primitive, geometry (the accessors of rtcore_ray.h are C++ only). */
@@ -156,14 +176,16 @@ static void skip_holes(const struct RTCFilterFunctionNArguments *arguments)
     const uint32_t *geometries = (const uint32_t *)arguments->hit + 6 * (size_t)count;
     const uint32_t *ids = (const uint32_t *)arguments->ray + 10 * (size_t)count;
     const struct slot *slot = arguments->geometryUserPtr;
-    float *transmittance = ((const struct query *)arguments->context)->transmittance;
+    const struct query *query = (const struct query *)arguments->context;
+    float *transmittance = query->transmittance;
     for (unsigned i = 0; i < count; i++) {
         if (!arguments->valid[i])
             continue;
         enum kind kind = (enum kind)(geometries[i] % KINDS);
         uint32_t triangle = slot->pieces[kind].triangles[primitives[i]];
         bool hole = in_hole(&slot->surface, triangle, numbers[3 * count + i], numbers[4 * count + i]);
-        if (!hole && kind == OPEN && transmittance)
+        if (!hole && kind == OPEN && transmittance &&
+            pass(&query->passed[ids[i]], geometries[i], primitives[i]))
             transmittance[ids[i]] *= material_of(&slot->surface, triangle)->openness;
         if (hole || (kind == OPEN && transmittance))
             arguments->valid[i] = 0;
@@ -337,7 +359,10 @@ bool tl_trace_occluded(const tl_trace *trace, vec3s origin, vec3s direction, flo
 /* Traces a packet. Returns the bit mask of the blocked rays. */
 static uint32_t trace_packet(const tl_trace *trace, const struct tl_ray_packet *packet, float *transmittance)
 {
-    struct query query = {.transmittance = transmittance};
+    struct passed passed[16];
+    for (int i = 0; i < 16; i++)
+        passed[i].count = 0;
+    struct query query = {.transmittance = transmittance, .passed = passed};
     rtcInitIntersectContext(&query.context);
     query.context.flags =
         packet->coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_NONE;
