@@ -9,7 +9,9 @@
 // and the light that comes of them on `composition` (light.h).
 #include "exact.glsl"
 #include "sample.glsl"
+#ifdef SLICES
 #include "slices.glsl"
+#endif
 #include "visibility.glsl"
 
 const int LOBE_SINGLE = 0;
