@@ -26,10 +26,8 @@ void tl_card_destroy(tl_graphics_card **card)
     tl_texture_destroy(&c->depth);
     tl_texture_destroy(&c->light);
     tl_texture_destroy(&c->no_map);
-    for (int i = 0; i < TL_SUNS_MAX; i++) {
-        tl_texture_destroy(&c->coarse[i]);
-        tl_texture_destroy(&c->sun_seen[i]);
-    }
+    tl_texture_destroy(&c->coarse);
+    tl_texture_destroy(&c->sun_seen);
     tl_buffer_destroy(&c->frame_buffer);
     tl_buffer_destroy(&c->blends);
     glDeleteVertexArrays(1, &c->vertex_array);
@@ -53,8 +51,7 @@ size_t tl_card_bytes(const tl_graphics_card *card)
                    card->frame_buffer.bytes + card->blends.bytes + tl_card_points_bytes(&card->points);
     for (int i = 0; i < CARD_BUFFERS; i++)
         bytes += card->buffers[i].bytes;
-    for (int i = 0; i < TL_SUNS_MAX; i++)
-        bytes += tl_texture_bytes(&card->coarse[i]) + tl_texture_bytes(&card->sun_seen[i]);
+    bytes += tl_texture_bytes(&card->coarse) + tl_texture_bytes(&card->sun_seen);
     for (int i = 0; i < card->class_count; i++) {
         const struct tl_card_class *class = &card->classes[i];
         for (int k = 0; k < TL_CARD_MAPS; k++)

@@ -4,7 +4,8 @@
  *
  *     every vertex has light of its own; bounced light is kept where the surfaces' light mesh has it
  *     all regions are traced in every frame, in directions that stay the same, by several rays each
- *     a sun's shadow has four places a pixel, nine in a penumbra, and cells of four pixels everywhere
+ *     a sun's shadow has four places a pixel, nine in a penumbra, a lamp's one, and both have cells of four
+ *     pixels everywhere
  *
  * Rays go through a tree of boxes that is built on the CPU when surfaces change, and again when they have
  * moved far, and refitted in every frame. A step must follow the ones before it: surfaces, view, light,
@@ -19,6 +20,7 @@
 #include "render/bounce/bounce.h"
 #include "render/env/sun.h"
 #include "render/light/region_lights.h"
+#include "render/scene/lamp.h"
 #include "render/scene/view.h"
 #include "render/shade/materials.h"
 
@@ -61,6 +63,8 @@ struct tl_card_light {
     float environment_yaw;          /* rad */
     int rays;                       /* a region and vertex, up to TL_CARD_RAYS_MAX */
     const struct tl_ground *ground; /* NULL: none */
+    const struct tl_lamp *lamps;    /* [lamp_count], lit */
+    size_t lamp_count;
 };
 #define TL_CARD_RAYS_MAX 8
 #define TL_CARD_LOBES    5 /* of a gloss (light.lobes), at most */
@@ -77,7 +81,7 @@ bool tl_card_trace_bounce(tl_graphics_card *card, const struct tl_card_bounce *r
 
 /* Computes the ratios of seen to exact light at the listed vertices. */
 bool tl_card_make_ratios(tl_graphics_card *card, bool bounces, tl_error *error);
-/* Traces what every pixel sees of the suns. */
+/* Traces what every pixel sees of the suns and lamps. */
 bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error);
 /* Lights every sample of the view, and makes the picture of them: RGBA32F, premultiplied by coverage, rows
  * upwards, whose sides are a whole number of times smaller. The texture becomes the mean of what is made and

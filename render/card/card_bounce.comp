@@ -1,6 +1,6 @@
 #version 450 core
 // Traces the light that bounces to a probe (render/bounce/bounce_rays.c): sixteen rays over its hemisphere, eight towards bright
-// parts of the sky, one to each sun; two probes a group, thirty-two threads each. Every N-th probe with light of its
+// parts of the sky, one to each sun and lamp; two probes a group, thirty-two threads each. Every N-th probe with light of its
 // own in a frame.
 #include "card_frame.glsl"
 #include "card_geometry.glsl"
@@ -200,11 +200,11 @@ void trace(uint at, uint vertex, uint ray, vec3 n, vec3 o)
             }
         }
     } else if (ray < RAYS + SKY_RAYS + uint(counts.y)) {
-        int sun = int(ray - RAYS - SKY_RAYS);
-        d = suns[sun].xyz;
-        float cosine = dot(n, d), share = cosine > 0.0 ? ground_passes(disc, o, d) : 0.0;
-        if (share > 0.0 && !tree_occluded(o, d, 0.0, 1e30))
-            sun_of[thread] = sun_powers[sun].rgb * (share * cosine / PI);
+        Sun sun = sun_at(int(ray - RAYS - SKY_RAYS), o, n);
+        d = sun.towards;
+        float cosine = dot(n, d), share = cosine > 0.0 ? ground_passes_from(o, d, sun.way) : 0.0;
+        if (share > 0.0 && !tree_occluded(o, d, 0.0, sun.way))
+            sun_of[thread] = sun.power * (share * cosine / PI);
     }
     way_of[thread] = d;
 }

@@ -24,8 +24,9 @@
     PROGRAM(shade_rich, "card_shade.comp", "#define RICH\n")
 
 #define TL_CARD_LOBE_MAPS                                                                                    \
-    (TL_EXPONENT_COUNT + 2)              /* those of the exponents, and the gain of diffuse light            \
-                                          */
+    (TL_EXPONENT_COUNT + 2) /* those of the exponents, and the gain of diffuse light                         \
+                             */
+#define TL_CARD_SUNS   (TL_SUNS_MAX + TL_LAMPS_MAX)
 #define TL_CARD_PLACES 16                /* of a sun */
 #define TL_CARD_MAPS   (TL_MAP_USES + 5) /* of a class: see list_maps */
 
@@ -34,7 +35,7 @@ struct tl_card_frame {
     float view_projection[16], eye[4], ray_first[4], ray_across[4], ray_up[4], disc[4], turn[4];
     int32_t size[4], counts[4];
     uint32_t numbers[4];
-    float suns[TL_SUNS_MAX][4], sun_powers[TL_SUNS_MAX][4], sun_places[TL_SUNS_MAX][TL_CARD_PLACES][4];
+    float suns[TL_CARD_SUNS][4], sun_powers[TL_CARD_SUNS][4], sun_places[TL_SUNS_MAX][TL_CARD_PLACES][4];
     float lobe_maps[TL_CARD_LOBE_MAPS][4];
 };
 
@@ -75,7 +76,7 @@ struct tl_graphics_card {
     uint64_t light_revision;
     bool have_light;
     tl_texture lobe_atlas, gain_atlas;
-    tl_texture coarse[TL_SUNS_MAX], sun_seen[TL_SUNS_MAX];
+    tl_texture coarse, sun_seen; /* sun_seen: a layer for each sun and lamp */
     struct tl_bounce_sky sky;
     uint32_t bounce_frames; /* since the shapes were new */
 };

@@ -22,7 +22,7 @@ layout(std430, binding = CARD_RATIOS) restrict readonly buffer Ratios
 {
     vec4 ratios[];
 };
-layout(binding = 6) uniform sampler2D sun_seen[4];
+layout(binding = 6) uniform sampler2DArray sun_seen;
 #include "card_fuzz.glsl"
 
 // The light that the pixel sends to the viewer.
@@ -53,20 +53,22 @@ vec3 light_of(Seen s, ivec2 pixel)
         coat = fetch_lobe(lobe_atlas, into_environment(axis), log2(s.part.optics.w)) *
                (w.x * ratios[at.x + 3u].rgb + w.y * ratios[at.y + 3u].rgb + w.z * ratios[at.z + 3u].rgb);
 #endif
+    vec3 point = point_of(s.p);
     for (int i = 0; i < counts.y; i++) {
-        vec3 sun = suns[i].xyz;
-        float above = disc_share(s.side * dot(sun, s.surface.smooth_normal) / max(suns[i].w, 1e-3));
-        float seen = above * texelFetch(sun_seen[i], pixel, 0).r;
+        Sun sun = sun_at(i, point, s.surface.shown);
+        float facing = s.side * dot(sun.towards, s.surface.smooth_normal);
+        float above = sun.is_lamp ? self_shadow_ramp(facing) : disc_share(facing / max(sun.radius, 1e-3));
+        float seen = above * texelFetch(sun_seen, ivec3(pixel, i), 0).r;
         if (!(seen > 0.0))
             continue;
-        float cosine = max(dot(sun, s.surface.shown), 0.0);
-        light += seen * sun_powers[i].rgb * (s.surface.diffuse * (cosine / PI) + gloss_under(s, sun, suns[i].w));
+        float cosine = max(dot(sun.towards, s.surface.shown), 0.0);
+        light += seen * sun.power * (s.surface.diffuse * (cosine / PI) + gloss_under(s, sun.towards, sun.radius));
 #ifdef RICH
         if (has_fuzz)
-            sheen += seen * sun_powers[i].rgb * fuzz_value(s.part.fuzz.a, fibres.axis, sun, s.viewer);
+            sheen += seen * sun.power * fuzz_value(s.part.fuzz.a, fibres.axis, sun.towards, s.viewer);
         if (share > 0.0)
-            coat += seen * sun_powers[i].rgb *
-                    lobe_cosine(lobe_broadened_exponent(s.part.optics.w, suns[i].w * 0.707106781), dot(sun, axis));
+            coat += seen * sun.power *
+                    lobe_cosine(lobe_broadened_exponent(s.part.optics.w, sun.radius * 0.707106781), dot(sun.towards, axis));
 #endif
     }
 #ifdef RICH

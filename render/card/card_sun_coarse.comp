@@ -30,7 +30,7 @@ void main()
         if (id != 0u) {
             Place p = place_of(id, pixel);
             vec3 start;
-            bool faces = sun_start(p, suns[sun].xyz, start);
+            bool faces = sun_start(p, sun, start);
             surface = triangle_parts[p.triangle] >> 12 & 15u;
             states[lane] = faces ? 0u : 7u;
             starts[lane] = vec4(start, faces ? 1.0 : 0.0);
@@ -38,9 +38,9 @@ void main()
     }
     barrier();
     vec4 start = starts[lane];
-    vec3 d = sun_places[16 * sun + int(k)].xyz;
-    if (start.w > 0.0 && ground_passes(disc, start.xyz, d) > 0.5 && !tree_occluded(start.xyz, d, 0.0, 1e30))
-        atomicAdd(states[lane], 1u);
+    bool is_lamp = suns[sun].w < 0.0; // it has one place
+    if (start.w > 0.0 && !(is_lamp && k > 0u) && sees_sun(sun, k, start.xyz))
+        atomicAdd(states[lane], is_lamp ? 4u : 1u);
     barrier();
     if (k == 0u && is_inside)
         imageStore(coarse, cell, uvec4(states[lane] | surface << 4));

@@ -1,5 +1,5 @@
 #version 450 core
-// Traces what every pixel sees of a sun. Where the corners of its cell agree and are of its surface, that; else by rays of its
+// Traces what every pixel sees of a sun or lamp. Where the corners of its cell agree and are of its surface, that; else by rays of its
 // own: four places first, and where these disagree the others, by all threads of the group alike.
 #include "card_frame.glsl"
 #include "card_pixel.glsl"
@@ -12,9 +12,9 @@ layout(std430, binding = CARD_TRIANGLE_PARTS) restrict readonly buffer TriangleP
     uint triangle_parts[];
 };
 layout(binding = 1) uniform usampler2D coarse;
-layout(r8, binding = 0) restrict writeonly uniform image2D visible;
+layout(r8, binding = 0) restrict writeonly uniform image2D visible; // the sun's layer
 layout(location = 0) uniform int sun;
-layout(location = 1) uniform int places; // of a pixel in a penumbra
+layout(location = 1) uniform uvec2 places; // of a pixel: at first, and in a penumbra
 
 shared vec3 starts[64];
 shared uint seen[64], again[64], count, again_count;
@@ -46,7 +46,7 @@ void main()
     if (result < 0.0) {
         vec3 start;
         result = 0.0;
-        if (sun_start(place_of(id, pixel), suns[sun].xyz, start)) {
+        if (sun_start(place_of(id, pixel), sun, start)) {
             slot = atomicAdd(count, 1u);
             starts[slot] = start;
             seen[slot] = 0u;
@@ -54,29 +54,25 @@ void main()
     }
     barrier();
     uint traced = count;
-    for (uint k = mine; k < 4u * traced; k += 256u) {
-        uint at = k % traced;
-        vec3 d = sun_places[16 * sun + int(k / traced)].xyz;
-        if (ground_passes(disc, starts[at], d) > 0.5 && !tree_occluded(starts[at], d, 0.0, 1e30))
-            atomicAdd(seen[at], 1u);
-    }
+    for (uint k = mine; k < places.x * traced; k += 256u)
+        if (sees_sun(sun, k / traced, starts[k % traced]))
+            atomicAdd(seen[k % traced], 1u);
     barrier();
-    bool is_partial = slot < 64u && seen[slot] != 0u && seen[slot] != 4u;
+    bool is_partial = slot < 64u && seen[slot] != 0u && seen[slot] != places.x;
     if (slot < 64u && !is_partial)
-        result = seen[slot] == 4u ? 1.0 : 0.0;
+        result = seen[slot] == places.x ? 1.0 : 0.0;
     if (is_partial)
         again[atomicAdd(again_count, 1u)] = slot;
     barrier();
     uint partial = again_count;
-    for (uint k = mine; k < uint(places - 4) * partial; k += 256u) {
+    for (uint k = mine; k < (places.y - places.x) * partial; k += 256u) {
         uint at = again[k % partial];
-        vec3 d = sun_places[16 * sun + 4 + int(k / partial)].xyz;
-        if (ground_passes(disc, starts[at], d) > 0.5 && !tree_occluded(starts[at], d, 0.0, 1e30))
+        if (sees_sun(sun, places.x + k / partial, starts[at]))
             atomicAdd(seen[at], 1u);
     }
     barrier();
     if (is_partial)
-        result = float(seen[slot]) / float(places);
+        result = float(seen[slot]) / float(places.y);
     if (is_inside)
         imageStore(visible, pixel, vec4(result));
 }

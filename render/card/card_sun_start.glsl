@@ -1,5 +1,5 @@
 // Places the start of the rays of a pixel to a sun (render/shade/sun_bundle.c). False: the surface faces away.
-bool sun_start(Place p, vec3 towards, out vec3 start)
+bool sun_start(Place p, int sun, out vec3 start)
 {
     float side = p.back ? -1.0 : 1.0;
     vec3 n[3] = vec3[3](side * normal_of(p.corners.x), side * normal_of(p.corners.y), side * normal_of(p.corners.z));
@@ -8,5 +8,13 @@ bool sun_start(Place p, vec3 towards, out vec3 start)
     for (int i = 0; i < 3; i++) // tl_smooth_point
         moved -= n[i] * (p.weights[i] * min(dot(point - p.points[i], n[i]), 0.0));
     start = moved + normal * eye.w;
-    return dot(normal, towards) > 0.0;
+    return dot(normal, sun_at(sun, start, normal).towards) > 0.0;
+}
+
+// Whether a place of a sun, or a lamp, is seen.
+bool sees_sun(int sun, uint place, vec3 start)
+{
+    Sun at = sun_at(sun, start, vec3(0.0, 1.0, 0.0));
+    vec3 d = at.is_lamp ? at.towards : sun_places[16 * min(sun, 3) + int(place)].xyz;
+    return ground_passes_from(start, d, at.way) > 0.5 && !tree_occluded(start, d, 0.0, at.way);
 }

@@ -126,6 +126,19 @@ static void place_suns(tl_graphics_card *card, const struct tl_suns *suns, float
     }
 }
 
+/* After the suns. */
+static void place_lamps(tl_graphics_card *card, const struct tl_card_light *request)
+{
+    struct tl_card_frame *frame = &card->frame;
+    for (size_t i = 0; i < request->lamp_count; i++) {
+        const struct tl_lamp *lamp = &request->lamps[i];
+        const bool is_point = lamp->kind == TL_LAMP_POINT;
+        const int place = frame->counts[1]++;
+        tl_card_put(frame->suns[place], is_point ? lamp->position : lamp->direction, -1);
+        tl_card_put(frame->sun_powers[place], lamp->irradiance, is_point);
+    }
+}
+
 bool tl_card_send_light(tl_graphics_card *card, const struct tl_card_light *request, tl_error *error)
 {
     struct tl_card_frame *frame = &card->frame;
@@ -143,6 +156,7 @@ bool tl_card_send_light(tl_graphics_card *card, const struct tl_card_light *requ
     frame->counts[0] = count;
     frame->counts[1] = request->suns->count;
     place_suns(card, request->suns, request->environment_yaw);
+    place_lamps(card, request);
     return true;
 }
 

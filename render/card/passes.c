@@ -177,7 +177,19 @@ bool tl_card_make_ratios(tl_graphics_card *card, bool bounces, tl_error *error)
 
 /* ---- Pixels ---- */
 
-#define PLACES 9 /* of a sun, that a pixel in a penumbra traces */
+/* The places of a sun that a pixel traces: at first, and in a penumbra. */
+#define PLACES_FIRST 4
+#define PLACES       9
+
+static void fit_layers(tl_graphics_card *card, tl_texture *texture, int layers)
+{
+    const int32_t *size = card->frame.size;
+    if (texture->width == size[0] && texture->height == size[1] && texture->layers == layers)
+        return;
+    tl_texture_destroy(texture);
+    if (layers > 0)
+        *texture = tl_texture_create(card->gpu, GL_TEXTURE_2D_ARRAY, GL_R8, size[0], size[1], layers, 1);
+}
 
 bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error)
 {
@@ -187,19 +199,20 @@ bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error)
     if (!tl_card_send_frame(card, error))
         return false;
     glBindTextureUnit(0, card->ids.id);
+    tl_card_fit_texture(card, &card->coarse, GL_R8UI, columns, rows);
+    fit_layers(card, &card->sun_seen, card->frame.counts[1]);
     for (int sun = 0; sun < card->frame.counts[1]; sun++) {
-        tl_card_fit_texture(card, &card->coarse[sun], GL_R8UI, columns, rows);
-        tl_card_fit_texture(card, &card->sun_seen[sun], GL_R8, size[0], size[1]);
+        const bool is_lamp = card->frame.suns[sun][3] < 0;
         glUseProgram(card->sun_coarse.id);
         glUniform1i(0, sun);
-        glBindImageTexture(0, card->coarse[sun].id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
+        glBindImageTexture(0, card->coarse.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
         tl_gpu_dispatch(tl_gpu_groups((size_t)columns, 8), tl_gpu_groups((size_t)rows, 8), 1);
         tl_gpu_barrier();
         glUseProgram(card->sun_fine.id);
         glUniform1i(0, sun);
-        glUniform1i(1, PLACES);
-        glBindTextureUnit(1, card->coarse[sun].id);
-        glBindImageTexture(0, card->sun_seen[sun].id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8);
+        glUniform2ui(1, is_lamp ? 1 : PLACES_FIRST, is_lamp ? 1 : PLACES);
+        glBindTextureUnit(1, card->coarse.id);
+        glBindImageTexture(0, card->sun_seen.id, 0, GL_FALSE, sun, GL_WRITE_ONLY, GL_R8);
         tl_gpu_dispatch((unsigned)size[2], (unsigned)size[3], 1);
         tl_gpu_barrier();
     }
@@ -227,8 +240,7 @@ bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, 
     glBindTextureUnit(0, card->ids.id);
     glBindTextureUnit(4, card->lobe_atlas.id);
     tl_card_fit_texture(card, &card->no_map, GL_RGBA16F, 1, 1);
-    for (unsigned i = 0; i < TL_SUNS_MAX; i++)
-        glBindTextureUnit(6 + i, card->sun_seen[i].id != 0 ? card->sun_seen[i].id : card->no_map.id);
+    glBindTextureUnit(6, card->sun_seen.id);
     tl_card_fit_texture(card, &card->light, GL_RGBA16F, card->frame.size[0], card->frame.size[1]);
     glBindImageTexture(0, card->light.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
     for (int i = 0; i < card->class_count; i++) {

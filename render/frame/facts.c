@@ -15,6 +15,7 @@
 #include "render/shade/materials.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The smallest and the largest of some numbers. In many lanes, because a budget asks for the facts of a frame
  * at other settings, too. */
@@ -202,6 +203,11 @@ static bool is_dark(const tl_frame *frame)
     return frame->environment && tl_environment_is_black(frame->environment);
 }
 
+static bool is_measured(const tl_material *material)
+{
+    return material->measured;
+}
+
 static bool has_coat(const tl_material *material)
 {
     return material->coat > 0;
@@ -279,8 +285,11 @@ const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_
         return "light that bounces once (light.bounce)";
     if (settings->light.lobes > TL_CARD_LOBES)
         return "so many lobes of a gloss (light.lobes)";
-    if (tl_lamps_lit(frame, lamps) > 0)
-        return "lamps";
+    const bool is_lit = tl_lamps_lit(frame, lamps) > 0;
+    if (is_lit && memcmp(&settings->shading, tl_shading_options.defaults, sizeof settings->shading) != 0)
+        return "lamps whose shading is not exact (table shading)";
+    if (is_lit && tl_materials_have(frame->surfaces, frame->surface_count, is_measured))
+        return "measured reflectance under lamps";
     return tl_card_refusal(frame->surfaces, frame->surface_count);
 }
 

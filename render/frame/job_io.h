@@ -75,7 +75,7 @@
     JOB(card_points, TL_FACT(CARD), "rays: what vertices see of the regions")                                \
     JOB(card_bounce, TL_FACT(CARD_BOUNCE), "rays: light that surfaces send on to each other")                \
     JOB(card_ratios, TL_FACT(CARD), "ratio of seen to exact light, at vertices")                             \
-    JOB(card_suns, TL_FACT(CARD), "rays: what every pixel sees of the suns")                                 \
+    JOB(card_suns, TL_FACT(CARD), "rays: what every pixel sees of suns and lamps")                           \
     JOB(card_shade, TL_FACT(CARD), "exact light times the interpolated ratio, pixel by pixel")               \
     JOB(light, TL_FACT(PASSES), "visibility times PEM, summed over the regions")                             \
     JOB(compose, TL_FACT(COMPOSED), "exact light times the share of it that is seen")                        \
@@ -213,7 +213,7 @@
 #define TL_JOB_card_points(IO)                                                                               \
     IO(EXTENDS, card, TL_MADE_CARD_POINTS) IO(AFTER, TL_MADE_CARD_IDS) IO(READS, regions)                    \
     IO(READS, regions_revision) IO(READS, suns) IO(READS, exact) IO(READS, lights)                           \
-    IO(READS, yaw) IO(READS, rays) IO(READS, light_options) IO(READS, ground)                                \
+    IO(READS, yaw) IO(READS, rays) IO(READS, light_options) IO(READS, ground) IO(READS, lamps)               \
     IO(READS, ground_input) IO(SEES, environment) IO(SEES, shapes)
 
 #define TL_JOB_card_bounce(IO)                                                                               \
@@ -334,7 +334,7 @@
 #define TL_IO_USES(EMIT, member)           EMIT(MUTABLE, member, 0, 0)
 
 /* A field of the struct. NOLINTBEGIN(bugprone-macro-parentheses): a name in parentheses declares nothing */
-#define TL_FIELD_MUTABLE(member) __typeof__(*tl_resource_##member(NULL)) * member;
+#define TL_FIELD_MUTABLE(member) __typeof__(*tl_resource_##member(NULL)) *member;
 #define TL_FIELD_CONST(member)   const TL_FIELD_MUTABLE(member)
 #define TL_FIELD_NONE(bit)
 /* NOLINTEND(bugprone-macro-parentheses) */

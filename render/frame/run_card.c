@@ -37,7 +37,9 @@ bool tl_run_card_points(const struct tl_card_points_job *job, tl_error *error)
                                               tl_hash(hash, job->light_options, sizeof *job->light_options),
                                           .environment_yaw = *job->yaw,
                                           .rays = job->rays->options.card_rays,
-                                          .ground = job->ground_input->is_drawn ? job->ground : NULL};
+                                          .ground = job->ground_input->is_drawn ? job->ground : NULL,
+                                          .lamps = job->lamps->items,
+                                          .lamp_count = job->lamps->count};
     return tl_card_trace_points(job->card, &request, error);
 }
 

@@ -1,4 +1,5 @@
 // The current lamp, and the cosines at a point that it lights.
+#include "lamp_at.glsl"
 #include "models.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
@@ -8,19 +9,6 @@ layout(location = 67) uniform vec3 lamp_irradiance;
 layout(location = 68) uniform vec3 constant_lamp; // COORDINATES_MATRIX: l and v, constant over the image
 layout(location = 69) uniform vec3 constant_eye;
 layout(location = 70) uniform vec4 gloss_widths; // widths along weft and warp without maps; cosine and sine of the rotation
-
-const float NEAREST_M = 1e-3; // TL_LAMP_NEAREST_M
-
-vec3 towards_lamp(vec3 point, vec3 fallback)
-{
-    return direction_or(lamp.w > 0.0 ? lamp.xyz - point : lamp.xyz, fallback);
-}
-
-vec3 irradiance_at(vec3 point)
-{
-    vec3 away = lamp.xyz - point;
-    return lamp_irradiance / (lamp.w > 0.0 ? max(dot(away, away), NEAREST_M * NEAREST_M) : 1.0);
-}
 
 // The frame of tl_brdf_frame_make: t at right angles to the unit normal, turned counter-clockwise as seen from the
 // front; `side` is -1 on back faces. The sign of the bitangent matters to correlated slopes alone (plane_side in

@@ -212,7 +212,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
     return cosines_near(frame_of(n, tangent.xyz, side), l, v, h);
 #else
     vec3 n = side * direction_or(bumped_normal(smooth_normal), smooth_normal);
-    vec3 l = towards_lamp(point, n), v = direction_or(eye - point, n);
+    vec3 l = towards_lamp(lamp, point, n), v = direction_or(eye - point, n);
     n = facing_normal(n, v);
     facing = side * dot(smooth_normal, l);
     return cosines_of(frame_of(n, tangent.xyz, side), l, v, direction_or(l + v, l));
@@ -367,7 +367,7 @@ void main()
     sent *= texture(emission_map, vec2(dot(emission_rows[0], at), dot(emission_rows[1], at))).rgb;
 #endif
 #endif
-    vec3 l = towards_lamp(point, side * smooth_normal);
+    vec3 l = towards_lamp(lamp, point, side * smooth_normal);
     float own_shadow = detail_shadow(place, l * frame, side, across, down); // before discard, because it needs derivatives
     ivec2 texel = ivec2(gl_FragCoord.xy);
     uint triangle = (first_triangle + uint(gl_PrimitiveID) + 1u) | (gl_FrontFacing ? 0u : TRIANGLE_BACK);
@@ -393,7 +393,7 @@ void main()
     float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l) * own_shadow;
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
     light = under_fuzz(light, l, side, smooth_normal);
-    out_light = vec4(shown * irradiance_at(point) * light, 0.0);
+    out_light = vec4(shown * lamp_irradiance * lamp_falloff(lamp, point) * light, 0.0);
 #endif
 #endif
 }

@@ -44,7 +44,7 @@ void vectors_at(vec3 place, out vec3 l, out vec3 v, out vec3 h)
     l = constant_lamp;
     v = constant_eye;
 #else
-    l = towards_lamp(place, UP);
+    l = towards_lamp(lamp, place, UP);
     v = direction_or(eye - place, UP);
 #endif
     h = direction_or(l + v, l);

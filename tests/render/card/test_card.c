@@ -167,6 +167,35 @@ static void emit(struct drawn_scene *drawn)
     drawn_scene_cloth(drawn)->emission_map = drawn_scene_map(&drawn->maps[MAP_COLOUR]);
 }
 
+static void have_a_lamp(struct drawn_scene *drawn)
+{
+    have_threads(drawn);
+    drawn->scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, 1, 0.3f}}, 2);
+    drawn->scene.frame.lamp_count = 1;
+}
+
+/* Points on both sides of the sheet, and one that shines from afar. */
+static void have_lamps(struct drawn_scene *drawn)
+{
+    lean(drawn);
+    drawn->scene.lamps[0] = test_lamp_at((vec3s){{0.5f, 1.3f, 0.6f}}, 0.6f);
+    drawn->scene.lamps[1] = test_lamp_at((vec3s){{-0.3f, 0.82f, 0.4f}}, 0.15f);
+    drawn->scene.lamps[2] = test_lamp_towards((vec3s){{0.9f, 0.3f, 0.3f}}, 1);
+    drawn->scene.frame.lamp_count = 3;
+}
+
+static void have_a_lamp_below(struct drawn_scene *drawn)
+{
+    have_lamps(drawn);
+    look_up(drawn);
+}
+
+static void look_up_at_maps(struct drawn_scene *drawn)
+{
+    lean(drawn);
+    look_up(drawn);
+}
+
 static void supersample(struct drawn_scene *drawn)
 {
     be_satin(drawn);
@@ -321,6 +350,9 @@ static const struct picture_case pictures[] = {
     {"coat", have_a_coat, 0.035, 0.015, lean},
     {"coat alone", be_lacquered, 0.25, 0.18, be_black},
     {"emission", emit, 0.035, 0.004, lean},
+    {"lamp", have_a_lamp, 0.035, 0.0015, have_threads},
+    {"three lamps", have_lamps, 0.035, 0.005, lean},
+    {"lamps, from below", have_a_lamp_below, 0.035, 0.005, look_up_at_maps},
     {"four samples a pixel", supersample, 0.035, 0.0015, NULL},
     {"two classes", be_different, 0.035, 0.0015, NULL},
 };
@@ -478,7 +510,8 @@ static void test_bounces(void **state)
     drawn.plain.settings.light.bounce = TL_BOUNCE_ALL;
     drawn.plain.settings.light.bounce_shares = 1;
     check_bounces(device->renderer, &drawn, be_satin, 0.05, 0.006);
-    check_bounces(device->renderer, &drawn, glow, 0.03, 0.06); /* the CPU's is lit at samples */
+    check_bounces(device->renderer, &drawn, glow, 0.03, 0.05); /* the CPU's is lit at samples */
+    check_bounces(device->renderer, &drawn, have_lamps, 0.05, 0.08);
     drawn_scene_close(&drawn);
 }
 
@@ -526,6 +559,8 @@ static void test_changes(void **state)
                   {have_threads, SMALL_WIDTH, SMALL_HEIGHT, 3, true},
                   {be_matt, 20, 48, 2, false},
                   {be_different, 48, 20, 2, true},
+                  {have_lamps, SMALL_WIDTH, SMALL_HEIGHT, 3, true},
+                  {have_a_lamp, SMALL_WIDTH, SMALL_HEIGHT, 3, true},
                   {lean, SMALL_WIDTH, SMALL_HEIGHT, 3, false}};
     const struct test_device *device = *state;
     struct drawn_scene drawn;
@@ -582,10 +617,10 @@ static void have_samples(struct drawn_scene *drawn)
     drawn->scene.settings.light.ratio_at = TL_RATIO_AT_SAMPLES;
 }
 
-static void have_a_lamp(struct drawn_scene *drawn)
+static void have_steps(struct drawn_scene *drawn)
 {
-    drawn->scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, 1, 0.3f}}, 2);
-    drawn->scene.frame.lamp_count = 1;
+    have_a_lamp(drawn);
+    drawn->scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
 }
 
 static void test_refusals(void **state)
@@ -598,7 +633,7 @@ static void test_refusals(void **state)
                    {transmit, "light that shines through cloth"},
                    {bounce_once, "light that bounces once"},
                    {have_samples, "light.ratio_at"},
-                   {have_a_lamp, "lamps"}};
+                   {have_steps, "lamps whose shading is not exact"}};
     const struct test_device *device = *state;
     struct drawn_scene drawn;
     open_small(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
