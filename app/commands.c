@@ -86,12 +86,15 @@ static const struct tl_command commands[] = {
     {"fabric",
      "fabric NAME|FILE|FOLDER [-o FOLDER|FILE.yaml] [--json] [--set TABLE.KEY=VALUE]\n"
      "       toile fabric NAME|FILE|FOLDER --card FILE.png|FILE.pdf|FILE.json\n"
-     "       toile fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]",
+     "       toile fabric IN.png|IN.exr -o FOLDER [--repeat-mm MM] [--height-mm MM] [--clamp]\n"
+     "       toile fabric PICTURE PICTURE PICTURE PICTURE... --lights FILE.yaml -o FOLDER [--json]",
      "Lists what a fabric's file holds and what each field is used for, writes the fabric in toile's own "
      "form, or makes its card (swatch to scale, close-up, drape, colour, physical figures): a "
      "name, .yaml, U3M (.u3m, .u3ma), measurements (.json), a folder or .zip of texture maps. Of a height "
      "map it "
-     "bakes normal, offset, horizon and gloss maps, and prints their size and scale.",
+     "bakes normal, offset, horizon and gloss maps, and prints their size and scale. Of photographs of a "
+     "flat "
+     "swatch under known lamps it makes a fabric: normals, colours and gloss.",
      TL_FLAGS_OUTPUT | TL_FLAGS_FABRIC | TL_FLAGS_JSON, tl_command_fabric},
     {"cache", "cache [--clear] [--json]",
      "Lists the results that are kept for reuse (drapes, thumbnails, filtered environments), or removes "

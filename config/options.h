@@ -231,6 +231,19 @@ bool tl_options_read_yaml_file_with(const struct tl_binding *bindings, size_t co
                                     const struct tl_record_section *section, const char *path,
                                     tl_error *error);
 
+/* One of the tables as a list: TABLE: [{option: value}, ...]. For every item the reader sets its binding to
+ * the defaults, reads the item and calls `take`, whose messages name `path` and `line`. */
+struct tl_option_list {
+    const struct tl_option_table *table; /* of one of the bindings */
+    bool (*take)(void *context, const char *path, size_t line, tl_error *error);
+    void *context;
+};
+
+/* The same as tl_options_read_yaml_file, of a document with such a list. Errors: the same, and those of
+ * `take`. Lifetime: keeps nothing. Threads: the same. */
+bool tl_options_read_yaml_list(const struct tl_binding *bindings, size_t count,
+                               const struct tl_option_list *list, const char *path, tl_error *error);
+
 /* The text of a TL_STRING or TL_PATH field; "" where the field is NULL. Errors: none. Lifetime: of the text.
  * Threads: pure. */
 static inline const char *tl_option_text(const void *field)

@@ -15,6 +15,7 @@ struct yaml_reader {
     size_t count;
     const struct tl_record_section *section; /* or NULL */
     size_t section_line;                     /* where it was given, 0: not yet */
+    const struct tl_option_list *list;       /* or NULL */
     /* [binding][row, or the table itself as the last]: line where it was given, 0: not yet */
     size_t **given;
 };
@@ -74,7 +75,12 @@ static const struct tl_binding *read_table_name(struct yaml_reader *reader)
     const struct tl_binding *binding =
         tl_options_find_table(reader->bindings, reader->count, name, strlen(name));
     bool good = tl_yaml_next(&reader->yaml);
-    if (good && !tl_yaml_is_empty(&reader->yaml) && reader->yaml.event.type != YAML_MAPPING_START_EVENT)
+    bool listed = binding && reader->list && binding->table == reader->list->table;
+    if (good && listed && reader->yaml.event.type != YAML_SEQUENCE_START_EVENT)
+        good = tl_fail(reader->yaml.error, TL_USAGE, "%s: %s: expected a list, as in `- {%s: ...}`", where,
+                       name, binding->table->rows->name);
+    else if (good && !listed && !tl_yaml_is_empty(&reader->yaml) &&
+             reader->yaml.event.type != YAML_MAPPING_START_EVENT)
         good = fail_no_table(reader, name, line);
     if (good && !binding)
         tl_options_fail_table(reader->bindings, reader->count, name, where, reader->yaml.error);
@@ -154,6 +160,36 @@ static bool read_section(struct yaml_reader *reader)
            read_records(reader, &place, 0);
 }
 
+/* The current event begins a mapping of options. */
+static bool read_options(struct yaml_reader *reader, const struct tl_binding *binding)
+{
+    while (tl_yaml_next(&reader->yaml)) {
+        if (reader->yaml.event.type == YAML_MAPPING_END_EVENT)
+            return true;
+        if (!read_option(reader, binding))
+            return false;
+    }
+    return false;
+}
+
+/* The current event begins a list of mappings. */
+static bool read_list(struct yaml_reader *reader, const struct tl_binding *binding)
+{
+    while (tl_yaml_next(&reader->yaml)) {
+        if (reader->yaml.event.type == YAML_SEQUENCE_END_EVENT)
+            return true;
+        size_t line = tl_yaml_line(&reader->yaml);
+        if (reader->yaml.event.type != YAML_MAPPING_START_EVENT)
+            return tl_yaml_fail(&reader->yaml, line, "expected `- {option: value}`");
+        tl_options_reset(binding, 1);
+        memset(reader->given[binding - reader->bindings], 0, binding->table->row_count * sizeof(size_t));
+        if (!read_options(reader, binding) ||
+            !reader->list->take(reader->list->context, reader->yaml.name, line, reader->yaml.error))
+            return false;
+    }
+    return false;
+}
+
 /* The current event is a table's name; its mapping follows. */
 static bool read_table(struct yaml_reader *reader)
 {
@@ -165,13 +201,8 @@ static bool read_table(struct yaml_reader *reader)
     const struct tl_binding *binding = read_table_name(reader);
     if (!binding || tl_yaml_is_empty(&reader->yaml))
         return binding != NULL;
-    while (tl_yaml_next(&reader->yaml)) {
-        if (reader->yaml.event.type == YAML_MAPPING_END_EVENT)
-            return true;
-        if (!read_option(reader, binding))
-            return false;
-    }
-    return false;
+    return reader->yaml.event.type == YAML_SEQUENCE_START_EVENT ? read_list(reader, binding)
+                                                                : read_options(reader, binding);
 }
 
 static bool read_root(void *context)
@@ -198,23 +229,42 @@ bool tl_options_read_yaml(const struct tl_binding *bindings, size_t count, const
     return tl_options_read_yaml_with(bindings, count, NULL, name, data, size, error);
 }
 
+static bool read_document(struct yaml_reader *reader, const char *name, const char *data, size_t size,
+                          tl_error *error)
+{
+    if (size > TL_LIMIT_YAML_BYTES)
+        return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
+    if (!tl_yaml_begin(&reader->yaml, name, data, size, error))
+        return false;
+    reader->given = TL_NEW_ARRAY(size_t *, reader->count);
+    for (size_t i = 0; i < reader->count; i++)
+        reader->given[i] = TL_NEW_ARRAY(size_t, reader->bindings[i].table->row_count + 1);
+    bool read = tl_yaml_read(&reader->yaml, read_root, reader);
+    for (size_t i = 0; i < reader->count; i++)
+        free(reader->given[i]);
+    free(reader->given);
+    tl_yaml_end(&reader->yaml);
+    return read;
+}
+
 bool tl_options_read_yaml_with(const struct tl_binding *bindings, size_t count,
                                const struct tl_record_section *section, const char *name, const char *data,
                                size_t size, tl_error *error)
 {
-    if (size > TL_LIMIT_YAML_BYTES)
-        return tl_fail(error, TL_USAGE, "%s: is larger than 1 MiB: that is no list of options", name);
     struct yaml_reader reader = {.bindings = bindings, .count = count, .section = section};
-    if (!tl_yaml_begin(&reader.yaml, name, data, size, error))
+    return read_document(&reader, name, data, size, error);
+}
+
+bool tl_options_read_yaml_list(const struct tl_binding *bindings, size_t count,
+                               const struct tl_option_list *list, const char *path, tl_error *error)
+{
+    struct yaml_reader reader = {.bindings = bindings, .count = count, .list = list};
+    char *data = NULL;
+    size_t size = 0;
+    if (!tl_file_read_small(path, TL_LIMIT_YAML_BYTES, &data, &size, error))
         return false;
-    reader.given = TL_NEW_ARRAY(size_t *, count);
-    for (size_t i = 0; i < count; i++)
-        reader.given[i] = TL_NEW_ARRAY(size_t, bindings[i].table->row_count + 1);
-    bool read = tl_yaml_read(&reader.yaml, read_root, &reader);
-    for (size_t i = 0; i < count; i++)
-        free(reader.given[i]);
-    free(reader.given);
-    tl_yaml_end(&reader.yaml);
+    bool read = read_document(&reader, path, data, size, error);
+    free(data);
     return read;
 }
 

@@ -114,6 +114,8 @@ static const struct flag flags_known[] = {
      "height that a value of 1 (white) stands for; else 0.5"},
     {"--card", TL_FLAGS_FABRIC, FLAG_TEXT, AT(card), NULL, "FILE",
      "write a fabric card: .png, .pdf (to scale on A4) or .json"},
+    {"--lights", TL_FLAGS_FABRIC, FLAG_TEXT, AT(lights), NULL, "FILE.yaml",
+     "the lamps of photographs of a flat swatch, one a picture, in their order"},
     {"--clamp", TL_FLAGS_FABRIC, FLAG_SWITCH, AT(clamp), NULL, NULL, "the map does not repeat"},
     {"--garments", TL_FLAGS_SHEET, FLAG_TEXT, AT(sheet.garments), NULL, "A,B",
      "names or files, as --garment takes them"},

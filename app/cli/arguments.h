@@ -24,7 +24,7 @@ enum tl_flag_set {
     TL_FLAGS_QUICK = 1 << 8,    /* --quick */
     TL_FLAGS_FULL = 1 << 9,     /* --full */
     TL_FLAGS_LAYOUT = 1 << 10,  /* --layout NAME --from NAME --size N */
-    TL_FLAGS_FABRIC = 1 << 11,  /* --card FILE --set --repeat-mm MM --height-mm MM --clamp */
+    TL_FLAGS_FABRIC = 1 << 11,  /* --card FILE --lights FILE --set --repeat-mm MM --height-mm MM --clamp */
     TL_FLAGS_CHECK = 1 << 12,   /* --frames N --every --furnace --still --keep */
     TL_FLAGS_AOV = 1 << 13,     /* --aov */
     TL_FLAGS_SHEET = 1 << 14,   /* lists of what a contact sheet shows, --same-drape */
@@ -51,7 +51,7 @@ struct tl_arguments {
     const char *layout, *from;
     const char *path, *video, *against, *replay;
     const char *mask;
-    const char *card;
+    const char *card, *lights;
     struct { /* names with commas between them */
         const char *garments, *fabrics, *colourways, *environments, *views;
     } sheet;

@@ -5,6 +5,7 @@
 #include "app/fabric/commands.h"
 #include "app/fabric/fabric.h"
 #include "app/fabric/fields.h"
+#include "app/fabric/swatch.h"
 #include "config/base/file.h"
 #include "config/base/memory.h"
 
@@ -85,6 +86,8 @@ static bool list_or_write(const char *source, const struct tl_arguments *argumen
 
 bool tl_command_fabric(const struct tl_arguments *arguments, tl_error *error)
 {
+    if (arguments->lights)
+        return tl_fabric_swatch(arguments, error);
     if (arguments->positional_count != 1)
         return tl_fail(error, TL_USAGE,
                        "fabric: expected one fabric or height map: a name, a file or a folder, as in "

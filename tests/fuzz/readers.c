@@ -11,6 +11,7 @@
 #include "assets/motion/point_cache.h"
 #include "assets/pattern/pattern_cut.h"
 #include "assets/sewing/stitches.h"
+#include "assets/swatch/swatch.h"
 #include "config/base/file.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
@@ -217,17 +218,25 @@ static bool read_path(const char *path)
     return true;
 }
 
+static bool read_lights(const char *path)
+{
+    tl_error error = {0};
+    struct tl_swatch_rig rig;
+    if (!tl_swatch_rig_load(path, &rig, &error))
+        return refused(&error);
+    require(rig.count >= TL_SWATCH_LAMPS_MIN && rig.count <= TL_SWATCH_LAMPS_MAX, "there are lamps enough");
+    require(rig.width_mm > 0, "the swatch has a width");
+    return true;
+}
+
 const struct fuzz_reader fuzz_readers[] = {
-    {"gltf", "gltf", read_model},      {"glb", "glb", read_model},
-    {"obj", "obj", read_model},        {"ply", "ply", read_model},
-    {"stl", "stl", read_model},        {"off", "off", read_model},
-    {"pattern", "json", read_pattern}, {"pc2", "pc2", read_motion},
-    {"mdd", "mdd", read_motion},       {"exr", "exr", read_environment},
-    {"hdr", "hdr", read_environment},  {"picture", "png", read_picture},
-    {"samples", "csv", read_samples},  {"scene", "yaml", read_scene},
-    {"fabric", "yaml", read_fabric},   {"path", "yaml", read_path},
-    {"u3m", "u3m", read_fabric},       {"u3ma", "u3ma", read_fabric},
-    {"fab", "json", read_fabric},      {NULL, NULL, NULL},
+    {"gltf", "gltf", read_model},      {"glb", "glb", read_model},       {"obj", "obj", read_model},
+    {"ply", "ply", read_model},        {"stl", "stl", read_model},       {"off", "off", read_model},
+    {"pattern", "json", read_pattern}, {"pc2", "pc2", read_motion},      {"mdd", "mdd", read_motion},
+    {"exr", "exr", read_environment},  {"hdr", "hdr", read_environment}, {"picture", "png", read_picture},
+    {"samples", "csv", read_samples},  {"scene", "yaml", read_scene},    {"fabric", "yaml", read_fabric},
+    {"path", "yaml", read_path},       {"u3m", "u3m", read_fabric},      {"u3ma", "u3ma", read_fabric},
+    {"fab", "json", read_fabric},      {"lights", "yaml", read_lights},  {NULL, NULL, NULL},
 };
 
 const struct fuzz_reader *fuzz_reader_named(const char *name)

@@ -242,6 +242,8 @@ put("fabric", "weave.yaml", "fabric:\n  areal_density: 0.1\n  stretch_weft: 543\
 put("fabric", "picture.yaml", "weave:\n  pattern: none\n  picture: dot.png\n")
 put("path", "turn.yaml", "keys:\n  - {time_s: 0, yaw_deg: 0, pitch_deg: 5, distance_m: 2.5, target: [0, 1, 0], fov_deg: 30}\n"
     "  - {time_s: 4, yaw_deg: 360, environment_yaw_deg: 90}\n")
+put("lights", "near.yaml", "swatch: {width_mm: 40, camera_mm: 600, even: false}\nlamps:\n" + "".join(
+    f"  - {{azimuth_deg: {90 * k}, elevation_deg: 45, intensity: 0.9}}\n" for k in range(4)) + "  - {position_mm: [0, 90, 120]}\n")
 picture = {"path": "dot.png", "width": 20, "height": 10, "dpi": 300, "repeat": {"mode": "mirror_x", "rotation": 0}}
 
 

@@ -53,6 +53,39 @@ message=$("$TOILE" render -o lost.exr --fabric maps/height.yaml --size 8x8 --qui
     fail "heights in metres are not read back"
 "$TOILE" info maps/normal.png >/dev/null 2>&1 || "$TOILE" fabric maps/normal.png -o again --clamp --quiet || fail "normal.png is not read"
 
+# ---- Photographs under known lamps ----
+
+# A weave is drawn under six lamps, from above, two repeats wide. The fabric that follows looks the same under a seventh.
+over="--garment disc --avatar none --set cloth.settle_s=0 --set scene.environment=none --set light.method=unshadowed
+    --set image.ground=false --set camera.pitch_deg=90 --set camera.yaw_deg=0 --set camera.distance_m=1.8333 --set camera.fov_deg=1
+    --size 64x64 --set construction.show=never --quiet"
+woven="--fabric none --set weave.pattern=plain --set weave.warp_pitch_mm=8 --set weave.weft_pitch_mm=8 --set weave.crimp_mm=1
+    --set weave.warp_tint=[1,0.8,0.6] --set material.use_file=false --set material.diffuse=[0.5,0.3,0.2] --set material.glossiness=0.9
+    --set material.specular=[0.06,0.06,0.06]"
+under() { # azimuth and elevation in the picture
+    echo "--set lamp.kind=directional --set lamp.yaw_deg=$(($1 + 90)) --set lamp.pitch_deg=$2 --set lamp.irradiance=[3.1416,3.1416,3.1416]"
+}
+printf 'swatch: {width_mm: 32}\nlamps:\n' >lights.yaml
+for k in 0 1 2 3 4 5; do
+    azimuth=$((60 * k + 10)) elevation=$((k % 2 ? 60 : 40))
+    "$TOILE" render $over $woven $(under $azimuth $elevation) -o lit$k.exr || fail "no picture under lamp $k"
+    echo "  - {azimuth_deg: $azimuth, elevation_deg: $elevation}" >>lights.yaml
+done
+printed=$("$TOILE" fabric lit?.exr --lights lights.yaml -o swatch --json --quiet) || fail "no fabric of photographs"
+printf '%s' "$printed" | tr -d '\n\t' | grep -qE '"has_gloss":true,"glossiness":0\.(89|90|91)' || fail "its gloss: $printed"
+[ -s swatch/normal.png ] && [ -s swatch/colour.png ] || fail "a picture of the swatch is missing"
+grep -q 'picture_mm: 32$' swatch/fabric.yaml || fail "its scale: $(cat swatch/fabric.yaml)"
+"$TOILE" render $over $woven $(under 200 35) -o seventh.exr || fail "no picture under a seventh lamp"
+"$TOILE" render $over --fabric swatch/ --set weave.picture_mirror=none $(under 200 35) -o worn_swatch.exr || fail "it is not worn"
+off=$("$TOILE" compare worn_swatch.exr seventh.exr | sed -n 's/^relative RMSE *//p')
+awk -v off="$off" 'BEGIN { exit !(off < 0.08) }' || fail "the photographed weave looks different: $off"
+refuse "pictures without lamps enough" '6 lamps for 4 pictures' fabric lit[0-3].exr --lights lights.yaml -o swatch
+refuse "photographs without an output" 'add -o' fabric lit?.exr --lights lights.yaml
+refuse "lamps that are missing" 'nowhere\.yaml.*no such file' fabric lit?.exr --lights nowhere.yaml -o swatch
+refuse "pictures of two sizes" 'worn\.exr: 32 x 32 texels, but lit0\.exr has 64 x 64' fabric lit[0-4].exr worn.exr --lights lights.yaml -o swatch
+head -5 lights.yaml >few.yaml
+refuse "three lamps" 'few\.yaml: lamps: 3 given: at least 4' fabric lit[0-2].exr --lights few.yaml -o swatch
+
 # ---- Fabrics of other programs ----
 
 # A folder of texture maps: two texels, red and blue; the drape and the look are of one argument.
