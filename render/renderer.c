@@ -554,7 +554,8 @@ void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *fr
 {
     const struct tl_render_settings used = resolve(renderer, settings);
     const tl_gpu *gpu = renderer->resources.gpu;
-    const char *refusal = tl_frame_card_refusal(frame, &used);
+    const bool rests = used.light.ratio_at != TL_RATIO_AT_VERTICES;
+    const char *refusal = rests ? tl_frame_rest_refusal(frame, &used) : tl_frame_card_refusal(frame, &used);
     if (tl_renderer_is_on_card(renderer, frame, settings))
         snprintf(out, size, "the graphics card, by %s", tl_gpu_name(gpu));
     else if (settings->light.device == TL_DEVICE_CPU)
@@ -565,10 +566,9 @@ void tl_renderer_describe_device(const tl_renderer *renderer, const tl_frame *fr
         snprintf(out, size, "the CPU: a frame of the graphics card failed");
     else if (tl_card_gl_refusal(gpu))
         snprintf(out, size, "the CPU: %s", tl_card_gl_refusal(gpu));
-    else if (used.light.ratio_at != TL_RATIO_AT_VERTICES)
-        snprintf(out, size, "the CPU: ratios are at samples (light.ratio_at)");
     else
-        snprintf(out, size, "the CPU: the graphics card does not draw %s", refusal ? refusal : "this frame");
+        snprintf(out, size, "the CPU: the graphics card does not draw %s%s", refusal ? refusal : "this frame",
+                 rests ? " at rest" : "");
 }
 
 /* Inputs that can change without the user: their change counts as motion. Options change only by hand. */

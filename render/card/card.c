@@ -28,6 +28,9 @@ void tl_card_destroy(tl_graphics_card **card)
     tl_texture_destroy(&c->no_map);
     tl_texture_destroy(&c->coarse);
     tl_texture_destroy(&c->sun_seen);
+    tl_texture_destroy(&c->sky_texels);
+    tl_texture_destroy(&c->sky_curve);
+    tl_texture_destroy(&c->round);
     tl_buffer_destroy(&c->frame_buffer);
     tl_buffer_destroy(&c->blends);
     glDeleteVertexArrays(1, &c->vertex_array);
@@ -47,8 +50,10 @@ size_t tl_card_bytes(const tl_graphics_card *card)
         return 0;
     size_t bytes = tl_texture_bytes(&card->ids) + tl_texture_bytes(&card->depth) +
                    tl_texture_bytes(&card->light) + tl_texture_bytes(&card->no_map) +
-                   tl_texture_bytes(&card->lobe_atlas) + tl_texture_bytes(&card->gain_atlas) +
-                   card->frame_buffer.bytes + card->blends.bytes + tl_card_points_bytes(&card->points);
+                   tl_texture_bytes(&card->sky_texels) + tl_texture_bytes(&card->sky_curve) +
+                   tl_texture_bytes(&card->round) + tl_texture_bytes(&card->lobe_atlas) +
+                   tl_texture_bytes(&card->gain_atlas) + card->frame_buffer.bytes + card->blends.bytes +
+                   tl_card_points_bytes(&card->points);
     for (int i = 0; i < CARD_BUFFERS; i++)
         bytes += card->buffers[i].bytes;
     bytes += tl_texture_bytes(&card->coarse) + tl_texture_bytes(&card->sun_seen);

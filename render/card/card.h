@@ -1,6 +1,7 @@
-/* A frame in motion on the graphics card: what the CPU's jobs trace, ids, points, bounce, ratios, sun_pixels
- * and shade make, by compute shaders, from the surfaces' vertices to the linear image. Nothing is read back.
- * The kernels repeat the CPU's arithmetic from the same texts (*_terms.glsl); where they differ on purpose:
+/* Frames on the graphics card. One in motion: what the CPU's jobs trace, ids, points, bounce, ratios,
+ * sun_pixels and shade make, by compute shaders, from the surfaces' vertices to the linear image. Nothing is
+ * read back. The kernels repeat the CPU's arithmetic from the same texts (*_terms.glsl); where they differ on
+ * purpose:
  *
  *     every vertex has light of its own; bounced light is kept where the surfaces' light mesh has it
  *     all regions are traced in every frame, in directions that stay the same, by several rays each
@@ -17,6 +18,7 @@
 #ifndef TOILE_RENDER_CARD_CARD_H
 #define TOILE_RENDER_CARD_CARD_H
 
+#include "assets/base/environment.h"
 #include "render/bounce/bounce.h"
 #include "render/env/sun.h"
 #include "render/light/region_lights.h"
@@ -87,5 +89,19 @@ bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error);
  * upwards, whose sides are a whole number of times smaller. The texture becomes the mean of what is made and
  * so many images `before` it; 0: what is made. */
 bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, tl_error *error);
+
+struct tl_card_rest {
+    const tl_environment *environment; /* lat-long or cube */
+    uint64_t environment_revision;
+    float environment_yaw; /* rad */
+    int bounces;           /* as those of the reference (render/reference/request.h) */
+    int footprint;         /* samples of a pixel along each side, whose maps are as fine */
+    int round;
+};
+/* Draws a round of an image at rest of the view, which follows tl_card_see alone: paths from every pixel by
+ * the real reflectance and the environment's own texels. The mean of rounds goes to the reference's image.
+ * The same round gives the same bytes. The texture becomes the mean of it and `round` images before. */
+bool tl_card_draw_round(tl_graphics_card *card, const struct tl_card_rest *request, const tl_texture *image,
+                        tl_error *error);
 
 #endif

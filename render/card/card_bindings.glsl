@@ -36,7 +36,8 @@
 #define CARD_PROFILES 33
 #define CARD_YARNS 34
 #define CARD_LOBE_SETS 35       // tables of lobe sets (card_table.glsl)
-#define CARD_BUFFERS 36
+#define CARD_PATHS 36           // [samples]: Path of card_rest.comp
+#define CARD_BUFFERS 37
 
 #define CARD_CLASSES_MAX 12
 #define CARD_WORK_OF_32 60 // over the listed probes, so many a group

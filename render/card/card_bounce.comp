@@ -9,6 +9,7 @@
 #include "card_lobes.glsl"
 #include "bounced_terms.glsl"
 #include "spread_terms.glsl"
+#include "card_cube.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = CARD_TANGENTS) restrict readonly buffer Tangents
 {
@@ -80,24 +81,6 @@ vec3 spread_direction(vec3 n, vec3 t, vec2 at)
 
 // ---- The sky (render/bounce/bounce_sky.c) ----
 
-vec3 cube_direction(int face, float s, float t)
-{
-    float a = 2.0 * s - 1.0, b = 2.0 * t - 1.0;
-    return face == 0 ? vec3(1.0, -b, -a) : face == 1 ? vec3(-1.0, -b, a) : face == 2 ? vec3(a, 1.0, b)
-         : face == 3 ? vec3(a, -1.0, -b) : face == 4 ? vec3(a, -b, 1.0) : vec3(-a, -b, -1.0);
-}
-
-int cube_texel(vec3 d)
-{
-    vec3 m = abs(d);
-    int face = m.x >= m.y && m.x >= m.z ? (d.x < 0.0 ? 1 : 0) : m.y >= m.z ? (d.y < 0.0 ? 3 : 2) : (d.z < 0.0 ? 5 : 4);
-    vec2 st = face < 2   ? vec2(face == 1 ? d.z : -d.z, -d.y) / m.x
-              : face < 4 ? vec2(d.x, face == 3 ? -d.z : d.z) / m.y
-                         : vec2(face == 5 ? -d.x : d.x, -d.y) / m.z;
-    ivec2 at = clamp(ivec2((0.5 * st + 0.5) * float(SKY_SIZE)), 0, SKY_SIZE - 1);
-    return (face * SKY_SIZE + at.y) * SKY_SIZE + at.x;
-}
-
 float sky_sum(int i)
 {
     return i > 0 ? sky[i - 1].w : 0.0;
@@ -106,7 +89,7 @@ float sky_sum(int i)
 // The light of the sky from a direction in its frame by the weight of both ways in which rays are chosen.
 vec3 weighted_sky(vec3 d, float cosine)
 {
-    vec3 colour = sky[cube_texel(d)].rgb;
+    vec3 colour = sky[cube_texel(d, SKY_SIZE)].rgb;
     float pdf = dot(colour, vec3(0.2126, 0.7152, 0.0722)) / max(sky_sum(SKY_COUNT), 1e-20);
     return colour * (cosine / (float(RAYS) * spread_pdf(cosine) + float(SKY_RAYS) * pdf));
 }

@@ -21,7 +21,9 @@
     PROGRAM(resolve, "card_resolve.comp", NULL)                                                              \
     PROGRAM(shade_nothing, "card_shade.comp", "#define NOTHING\n")                                           \
     PROGRAM(shade_plain, "card_shade.comp", NULL)                                                            \
-    PROGRAM(shade_rich, "card_shade.comp", "#define RICH\n")
+    PROGRAM(shade_rich, "card_shade.comp", "#define RICH\n")                                                 \
+    PROGRAM(rest_plain, "card_rest.comp", NULL)                                                              \
+    PROGRAM(rest_rich, "card_rest.comp", "#define RICH\n")
 
 #define TL_CARD_LOBE_MAPS                                                                                    \
     (TL_EXPONENT_COUNT + 2) /* those of the exponents, and the gain of diffuse light                         \
@@ -79,6 +81,11 @@ struct tl_graphics_card {
     tl_texture coarse, sun_seen; /* sun_seen: a layer for each sun and lamp */
     struct tl_bounce_sky sky;
     uint32_t bounce_frames; /* since the shapes were new */
+
+    /* State of the image at rest. */
+    tl_texture sky_texels, sky_curve; /* card_sky.glsl */
+    uint64_t sky_revision;
+    tl_texture round; /* light of the samples in one round */
 };
 
 static inline void tl_card_put(float to[4], vec3s v, float w)
@@ -103,5 +110,10 @@ void tl_card_release_materials(tl_graphics_card *card);
 bool tl_card_send_light(tl_graphics_card *card, const struct tl_card_light *request, tl_error *error);
 bool tl_card_send_sky(tl_graphics_card *card, const struct tl_card_bounce *request, tl_error *error);
 void tl_card_release_light(tl_graphics_card *card);
+
+/* Binds the maps and tables of a class of materials. */
+void tl_card_bind_class(tl_graphics_card *card, const struct tl_card_class *class);
+/* Makes the picture of samples as tl_card_shade does. */
+void tl_card_resolve(tl_graphics_card *card, const tl_texture *samples, const tl_texture *image, int before);
 
 #endif

@@ -45,3 +45,14 @@ vec3 point_of(Place p)
 {
     return p.weights.x * p.points[0] + p.weights.y * p.points[1] + p.weights.z * p.points[2];
 }
+
+// Places the start of rays on the smooth surface (tl_smooth_point), whose unit `normal` is on the side that is seen.
+vec3 ray_start(Place p, vec3 normal)
+{
+    vec3 point = point_of(p), moved = point;
+    for (int i = 0; i < 3; i++) {
+        vec3 n = normal_of(p.corners[i]) * (p.back ? -1.0 : 1.0);
+        moved -= n * (p.weights[i] * min(dot(point - p.points[i], n), 0.0));
+    }
+    return moved + normal * eye.w;
+}

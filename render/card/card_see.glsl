@@ -22,10 +22,10 @@ struct Seen {
     bool is_faceted;
 };
 
-Seen see(uint id, uint part_number, ivec2 pixel)
+Seen see_place(Place p, uint part_number)
 {
     Seen s;
-    s.p = place_of(id, pixel);
+    s.p = p;
     s.part = parts[part_number];
     s.side = s.p.back ? -1.0 : 1.0;
     s.viewer = -s.p.ray;
@@ -61,6 +61,11 @@ Seen see(uint id, uint part_number, ivec2 pixel)
         s.reflectance = schlick_colour(s.surface.f0, dot(s.surface.shown, s.viewer));
     }
     return s;
+}
+
+Seen see(uint id, uint part_number, ivec2 pixel)
+{
+    return see_place(place_of(id, pixel), part_number);
 }
 
 #ifdef RICH

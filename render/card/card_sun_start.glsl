@@ -1,13 +1,8 @@
 // Places the start of the rays of a pixel to a sun (render/shade/sun_bundle.c). False: the surface faces away.
 bool sun_start(Place p, int sun, out vec3 start)
 {
-    float side = p.back ? -1.0 : 1.0;
-    vec3 n[3] = vec3[3](side * normal_of(p.corners.x), side * normal_of(p.corners.y), side * normal_of(p.corners.z));
-    vec3 normal = direction_or(p.weights.x * n[0] + p.weights.y * n[1] + p.weights.z * n[2], vec3(0.0, 1.0, 0.0));
-    vec3 point = point_of(p), moved = point;
-    for (int i = 0; i < 3; i++) // tl_smooth_point
-        moved -= n[i] * (p.weights[i] * min(dot(point - p.points[i], n[i]), 0.0));
-    start = moved + normal * eye.w;
+    vec3 normal = direction_or(smooth_of(p), vec3(0.0, 1.0, 0.0)) * (p.back ? -1.0 : 1.0);
+    start = ray_start(p, normal);
     return dot(normal, sun_at(sun, start, normal).towards) > 0.0;
 }
 

@@ -220,9 +220,10 @@ bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error)
 }
 
 /* Binds one texel of nothing where a class has no map. */
-static void bind_class(const tl_graphics_card *card, const struct tl_card_class *class)
+void tl_card_bind_class(tl_graphics_card *card, const struct tl_card_class *class)
 {
     static const unsigned units[TL_CARD_MAPS] = {10, 11, 12, 13, 14, 15, 1, 2, 3, 5}; /* as card_maps.glsl */
+    tl_card_fit_texture(card, &card->no_map, GL_RGBA16F, 1, 1);
     for (int i = 0; i < TL_CARD_MAPS; i++)
         glBindTextureUnit(units[i], class->maps[i].id != 0 ? class->maps[i].id : card->no_map.id);
     tl_buffer_bind(&class->firsts, CARD_BORDER_FIRSTS);
@@ -230,6 +231,17 @@ static void bind_class(const tl_graphics_card *card, const struct tl_card_class 
     tl_buffer_bind(&class->borders, CARD_BORDERS);
     tl_buffer_bind(&class->profiles, CARD_PROFILES);
     tl_buffer_bind(&class->yarns, CARD_YARNS);
+}
+
+void tl_card_resolve(tl_graphics_card *card, const tl_texture *samples, const tl_texture *image, int before)
+{
+    glUseProgram(card->resolve.id);
+    glUniform1i(0, samples->width / image->width);
+    glUniform1i(1, before);
+    glBindTextureUnit(0, samples->id);
+    glBindImageTexture(0, image->id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    tl_gpu_dispatch(tl_gpu_groups((size_t)image->width, 8), tl_gpu_groups((size_t)image->height, 8), 1);
+    tl_gpu_barrier();
 }
 
 bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, tl_error *error)
@@ -246,17 +258,11 @@ bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, 
     for (int i = 0; i < card->class_count; i++) {
         glUseProgram(i == 0 ? card->shade_nothing.id : i == 1 ? card->shade_plain.id : card->shade_rich.id);
         if (i > 1)
-            bind_class(card, &card->classes[i]);
+            tl_card_bind_class(card, &card->classes[i]);
         glUniform2i(0, i, i * tiles);
         tl_gpu_dispatch_indirect(&card->buffers[CARD_WORK], sizeof(uint32_t) * 4 * (size_t)i);
     }
     tl_gpu_barrier();
-    glUseProgram(card->resolve.id);
-    glUniform1i(0, card->frame.size[0] / image->width);
-    glUniform1i(1, before);
-    glBindTextureUnit(0, card->light.id);
-    glBindImageTexture(0, image->id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
-    tl_gpu_dispatch(tl_gpu_groups((size_t)image->width, 8), tl_gpu_groups((size_t)image->height, 8), 1);
-    tl_gpu_barrier();
+    tl_card_resolve(card, &card->light, image, before);
     return true;
 }

@@ -293,11 +293,27 @@ const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_
     return tl_card_refusal(frame->surfaces, frame->surface_count);
 }
 
+/* Paths follow what ratios cannot hold: near mirrors, and light that bounces as often as it is to. */
+const char *tl_frame_rest_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    struct tl_render_settings followed = *settings;
+    if (settings->light.bounce == TL_BOUNCE_OFF && has_mirrors(frame, &settings->light))
+        return "near mirrors of a scene whose light does not bounce (light.bounce)";
+    if (tl_lamps_lit(frame, lamps) > 0)
+        return "lamps";
+    followed.light.bounce = TL_BOUNCE_ALL;
+    followed.light.lobes = 1;
+    followed.light.reflect_scene = false;
+    return tl_frame_card_refusal(frame, &followed);
+}
+
 static tl_bits card_facts(const tl_frame *frame, const struct tl_render_settings *settings)
 {
     const bool bounces = bounce_facts(frame, settings) != 0;
-    return TL_BIT(TL_SCENE_CARD) | TL_BIT(TL_SCENE_PIXELS) | TL_BIT(TL_SCENE_REGION_LIGHTS) |
-           TL_BIT(TL_SCENE_EXACT) | (bounces ? TL_BIT(TL_SCENE_CARD_BOUNCE) : 0);
+    return TL_BIT(TL_SCENE_CARD) | TL_BIT(TL_SCENE_CARD_RATIOS) | TL_BIT(TL_SCENE_PIXELS) |
+           TL_BIT(TL_SCENE_REGION_LIGHTS) | TL_BIT(TL_SCENE_EXACT) |
+           (bounces ? TL_BIT(TL_SCENE_CARD_BOUNCE) : 0);
 }
 
 /* Facts of a frame whose samples are lit. */
@@ -343,6 +359,9 @@ static tl_bits light_facts(const tl_frame *frame, const struct tl_render_setting
     const tl_bits fits = TL_BIT(TL_SCENE_FITS_VERTICES);
     if (at_vertices && settings->light.device == TL_DEVICE_CARD && !tl_frame_card_refusal(frame, settings))
         return fits | card_facts(frame, settings);
+    if (!at_vertices && settings->light.device == TL_DEVICE_CARD && !tl_frame_rest_refusal(frame, settings))
+        return (tl_frame_card_refusal(frame, settings) ? 0 : fits) | TL_BIT(TL_SCENE_CARD) |
+               TL_BIT(TL_SCENE_CARD_REST) | TL_BIT(TL_SCENE_PIXELS);
     if (!fits_vertices(frame, settings))
         return sample_facts(frame, settings);
     return fits | (at_vertices ? ratio_facts(frame, settings) : sample_facts(frame, settings));

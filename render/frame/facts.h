@@ -8,6 +8,8 @@
 /* Returns why the graphics card cannot draw the frame with ratios at vertices; NULL: it can. A constant text.
  */
 const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_settings *settings);
+/* ... at rest, by rounds of paths. */
+const char *tl_frame_rest_refusal(const tl_frame *frame, const struct tl_render_settings *settings);
 /* Bits of enum tl_scene_fact. `settings` as tl_render_settings_resolve returns them. It visits every material
  * and reads the weaves' gloss maps, so a frame computes its facts once and passes them on. */
 tl_bits tl_frame_facts(const tl_frame *frame, const struct tl_render_settings *settings);

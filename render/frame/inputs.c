@@ -161,6 +161,12 @@ static void count_capture(const tl_frame *frame, const struct tl_render_settings
     rest->is_captured = scene == rest->captured;
 }
 
+/* Rounds of the graphics card, each of them a shifted image. */
+static int card_rounds(const struct tl_light_params *light)
+{
+    return TL_FRAME_SHIFTS * light->rounds;
+}
+
 /* Ratios at vertices light one shifted image as another, so these begin at once. Samples have rounds of their
  * own, so the first image has all of them. In either case a whole set of shifted images follows when the
  * rounds are in. */
@@ -169,6 +175,8 @@ static void count_shifts(const tl_frame *frame, const struct tl_render_settings 
 {
     const tl_bits none = TL_BIT(TL_SCENE_PASSES) | TL_BIT(TL_SCENE_REFERENCE);
     int set = !frame->smooth || facts & none ? 0 : TL_FRAME_SHIFTS - 1;
+    if (facts & TL_BIT(TL_SCENE_CARD_REST))
+        set = frame->still ? 0 : card_rounds(&settings->light) - 1;
     if (!image_rests || set != rest->shift_set) {
         rest->shifts = 0;
         rest->shifts_left = rest->shift_set = set;
@@ -241,6 +249,8 @@ void tl_frame_hash_inputs(const tl_frame *frame, const struct tl_render_settings
     hashes[TL_INPUT_CAPTURE] = MIX(start, rest->captured);
     count_rest(frame, settings, facts, before, hashes, rest);
     hashes[TL_INPUT_SHIFT] = MIX(start, rest->shifts);
+    if (facts & TL_BIT(TL_SCENE_CARD_REST) && frame->still)
+        hashes[TL_INPUT_SHIFT] = MIX(hashes[TL_INPUT_SHIFT], light->rounds);
     hashes[TL_INPUT_ROUND] = MIX(start, rest->image);
     hashes[TL_INPUT_SCENE_ROUND] = MIX(start, rest->scene);
 }
@@ -248,18 +258,26 @@ void tl_frame_hash_inputs(const tl_frame *frame, const struct tl_render_settings
 /* Places in a pixel: the lattice of rank 1 of 16 points whose columns, rows and slanted lines are filled most
  * evenly: an edge's coverage is off by 0.16 at worst. In steps of 5, so that few are spread as well; the
  * first is the middle. */
-static struct tl_shift_input shift_of(const struct tl_rest *rest, const struct tl_view *view, int width,
-                                      int height)
+struct tl_view tl_frame_shifted_view(const struct tl_view *view, int number, int width, int height)
 {
     enum { STEP = 5, SLANT = 3 };
-    int number = STEP * (rest->shifts % TL_FRAME_SHIFTS), before = rest->shifts;
+    number = STEP * (number % TL_FRAME_SHIFTS);
     float right = (float)((number + TL_FRAME_SHIFTS / 2) % TL_FRAME_SHIFTS) / TL_FRAME_SHIFTS - 0.5f;
     float up = (float)((SLANT * number + TL_FRAME_SHIFTS / 2) % TL_FRAME_SHIFTS) / TL_FRAME_SHIFTS - 0.5f;
-    if (before == 0)
-        return (struct tl_shift_input){.view = *view};
+    return number == 0 ? *view : tl_view_shift(view, 2 * right / (float)width, 2 * up / (float)height);
+}
+
+static struct tl_shift_input shift_of(const struct tl_rest *rest, const tl_frame *frame,
+                                      const struct tl_render_settings *settings, tl_bits facts,
+                                      const struct tl_view *view)
+{
+    const struct tl_image_params *image = &settings->image;
+    const bool on_card = facts & TL_BIT(TL_SCENE_CARD_REST);
+    const int maximum = on_card ? rest->shifts : TL_FRAME_SHIFTS - 1;
     return (struct tl_shift_input){.view =
-                                       tl_view_shift(view, 2 * right / (float)width, 2 * up / (float)height),
-                                   .before = before < TL_FRAME_SHIFTS ? before : TL_FRAME_SHIFTS - 1};
+                                       tl_frame_shifted_view(view, rest->shifts, image->width, image->height),
+                                   .before = rest->shifts < maximum ? rest->shifts : maximum,
+                                   .rounds = on_card && frame->still ? card_rounds(&settings->light) : 1};
 }
 
 static vec3s ground_colour(const tl_frame *frame, const struct tl_image_params *image)
@@ -302,7 +320,7 @@ void tl_inputs_set(struct tl_resources *resources, const tl_frame *frame,
     resources->yaw = frame->environment_yaw;
     resources->camera =
         (struct tl_camera_input){frame->camera, tl_view_make(&frame->camera, image->width, image->height)};
-    resources->shift = shift_of(rest, &resources->camera.view, image->width, image->height);
+    resources->shift = shift_of(rest, frame, settings, facts, &resources->camera.view);
     tl_image_samples(image, &resources->size.columns, &resources->size.rows);
     resources->ground_input.is_drawn = image->ground;
     resources->ground_input.colour = ground_colour(frame, image);

@@ -53,6 +53,8 @@ struct tl_camera_input {
 struct tl_shift_input {
     struct tl_view view;
     int before;
+    /* Images that a job draws at once; 1 but for still ones of rounds on the graphics card. */
+    int rounds;
 };
 
 struct tl_size_input {
@@ -149,5 +151,8 @@ void tl_frame_hash_inputs(const tl_frame *frame, const struct tl_render_settings
 void tl_inputs_set(struct tl_resources *resources, const tl_frame *frame,
                    const struct tl_render_settings *settings, tl_bits facts, const struct tl_rest *rest,
                    const uint64_t hashes[TL_INPUT_COUNT]);
+
+/* The view of one of the images that are shifted by parts of a pixel, the first by none. */
+struct tl_view tl_frame_shifted_view(const struct tl_view *view, int number, int width, int height);
 
 #endif

@@ -71,12 +71,13 @@
     JOB(sun_pixels, TL_FACT(RATIOS), "rays: what every pixel sees of the suns")                              \
     JOB(shade, TL_FACT(RATIOS), "exact light times the interpolated ratio, pixel by pixel")                  \
     JOB(card_surfaces, TL_FACT(CARD), "vertices to the card, its tree of rays fitted to them")               \
-    JOB(card_ids, TL_FACT(CARD), "the nearest triangle at every pixel, and the vertices that are seen")      \
-    JOB(card_points, TL_FACT(CARD), "rays: what vertices see of the regions")                                \
+    JOB(card_ids, TL_FACT(CARD_RATIOS), "the nearest triangle at every pixel; vertices that are seen")    \
+    JOB(card_points, TL_FACT(CARD_RATIOS), "rays: what vertices see of the regions")                         \
     JOB(card_bounce, TL_FACT(CARD_BOUNCE), "rays: light that surfaces send on to each other")                \
-    JOB(card_ratios, TL_FACT(CARD), "ratio of seen to exact light, at vertices")                             \
-    JOB(card_suns, TL_FACT(CARD), "rays: what every pixel sees of suns and lamps")                           \
-    JOB(card_shade, TL_FACT(CARD), "exact light times the interpolated ratio, pixel by pixel")               \
+    JOB(card_ratios, TL_FACT(CARD_RATIOS), "ratio of seen to exact light, at vertices")                      \
+    JOB(card_suns, TL_FACT(CARD_RATIOS), "rays: what every pixel sees of suns and lamps")                     \
+    JOB(card_shade, TL_FACT(CARD_RATIOS), "exact light times the interpolated ratio, pixel by pixel")        \
+    JOB(card_rest, TL_FACT(CARD_REST), "paths of light from every pixel, a round a frame")                   \
     JOB(light, TL_FACT(PASSES), "visibility times PEM, summed over the regions")                             \
     JOB(compose, TL_FACT(COMPOSED), "exact light times the share of it that is seen")                        \
     JOB(inspect, TL_FACT(INSPECT), "what a view shows in place of light")                                    \
@@ -207,8 +208,10 @@
     IO(READS, shapes) IO(READS, motion) IO(READS, ground) IO(READS, ground_input)                            \
     IO(READS, shade_materials) IO(WRITES, card)
 
+/* Rounds at rest leave other IDs. */
 #define TL_JOB_card_ids(IO)                                                                                  \
-    IO(EXTENDS, card, TL_MADE_CARD_IDS) IO(READS, shift) IO(READS, camera) IO(READS, size)
+    IO(EXTENDS, card, TL_MADE_CARD_IDS) IO(READS, shift) IO(READS, camera) IO(READS, size)                   \
+    IO(AFTER, TL_INPUT_RATIO)
 
 #define TL_JOB_card_points(IO)                                                                               \
     IO(EXTENDS, card, TL_MADE_CARD_POINTS) IO(AFTER, TL_MADE_CARD_IDS) IO(READS, regions)                    \
@@ -231,6 +234,12 @@
     IO(READS, size) IO(READS, shift) IO(AFTER, TL_MADE_CARD_RATIOS) IO(AFTER, TL_MADE_CARD_SUNS)             \
     IO(AFTER, TL_INPUT_VIEW) IO(AFTER, TL_INPUT_DEVICE) IO(USES, card) IO(USES, gpu)                         \
     IO(WRITES, present)
+
+#define TL_JOB_card_rest(IO)                                                                                 \
+    IO(READS, environment) IO(READS, yaw) IO(READS, shift) IO(READS, camera)                                 \
+    IO(READS, size) IO(READS, light_options) IO(READS, reference_options) IO(AFTER, TL_MADE_CARD_SURFACES)   \
+    IO(AFTER, TL_INPUT_VIEW) IO(AFTER, TL_INPUT_RATIO) IO(AFTER, TL_INPUT_DEVICE) IO(USES, card)             \
+    IO(USES, gpu) IO(WRITES, present)
 
 #define TL_JOB_lobe_sums(IO)                                                                                 \
     IO(READS, samples) IO(READS, shapes) IO(READS, camera) IO(READS, light_options) IO(WRITES, lobe_sums)    \

@@ -115,6 +115,8 @@
     FACT(TL_SCENE_RATIOS, "ratios at vertices") /* ratios at vertices light the pixels, in one pass */       \
     FACT(TL_SCENE_CARD, "frame on the graphics card")                                                        \
     FACT(TL_SCENE_CARD_BOUNCE, "bounced light on the graphics card")                                         \
+    FACT(TL_SCENE_CARD_RATIOS, "ratios at vertices on the graphics card")                                    \
+    FACT(TL_SCENE_CARD_REST, "rounds at rest on the graphics card")                                          \
     FACT(TL_SCENE_REGION_LIGHTS, "regions as lights") /* rays or the card sum up their light */              \
     FACT(TL_SCENE_PIXELS, "materials of pixels") /* of ratios at vertices, on the CPU or the card */         \
     FACT(TL_SCENE_INSPECT, "view of something else than light") /* something else than light is shown */     \

@@ -1,6 +1,7 @@
-/* Jobs that draw a frame in motion on the graphics card. */
+/* Jobs of frames on the graphics card. */
 #include "config/base/hash.h"
 #include "render/frame/job_io.h"
+#include "render/frame/settings.h"
 
 bool tl_run_card_surfaces(const struct tl_card_surfaces_job *job, tl_error *error)
 {
@@ -66,4 +67,28 @@ bool tl_run_card_shade(const struct tl_card_shade_job *job, tl_error *error)
     struct tl_linear_image *image = &job->present->image;
     tl_linear_image_begin_gpu(image, job->gpu, job->size->options.width, job->size->options.height);
     return tl_card_shade(job->card, &image->target.colours[0], job->shift->before, error);
+}
+
+bool tl_run_card_rest(const struct tl_card_rest_job *job, tl_error *error)
+{
+    const struct tl_image_params *size = &job->size->options;
+    struct tl_linear_image *image = &job->present->image;
+    struct tl_card_rest request = {
+        .environment = job->environment->map,
+        .environment_revision = job->environment->revision,
+        .environment_yaw = *job->yaw,
+        .bounces = tl_frame_bounces(job->light_options, job->reference_options),
+        .footprint = samples_of(job->size),
+    };
+    tl_linear_image_begin_gpu(image, job->gpu, size->width, size->height);
+    bool fine = true;
+    for (int i = 0; fine && i < job->shift->rounds; i++) {
+        request.round = job->shift->before + i;
+        const struct tl_view view =
+            tl_frame_shifted_view(&job->camera->view, request.round, size->width, size->height);
+        const struct tl_card_view seen = {.view = &view, .width = size->width, .height = size->height};
+        fine = tl_card_see(job->card, &seen, error) &&
+               tl_card_draw_round(job->card, &request, &image->target.colours[0], error);
+    }
+    return fine;
 }

@@ -29,8 +29,7 @@ struct tl_render_settings tl_render_settings_resolve(const struct tl_render_sett
     return used;
 }
 
-/* The number of times that the reference follows light from surface to surface. */
-static int reference_bounces(const struct tl_light_params *light, const struct tl_reference_params *reference)
+int tl_frame_bounces(const struct tl_light_params *light, const struct tl_reference_params *reference)
 {
     return light->bounce == TL_BOUNCE_OFF ? 0 : light->bounce == TL_BOUNCE_ONE ? 1 : reference->bounces;
 }
@@ -45,7 +44,7 @@ struct tl_reference_request tl_frame_reference_request(const tl_frame *frame,
                                          .detail = &settings->detail,
                                          .lobe = settings->light.lobe,
                                          .reflect_scene = settings->light.reflect_scene,
-                                         .bounces = reference_bounces(&settings->light, &settings->reference),
+                                         .bounces = tl_frame_bounces(&settings->light, &settings->reference),
                                          .width = settings->image.width,
                                          .height = settings->image.height,
                                          .supersample = settings->image.supersample};

@@ -39,6 +39,9 @@ void tl_render_settings_bind(struct tl_render_settings *settings,
  */
 struct tl_render_settings tl_render_settings_resolve(const struct tl_render_settings *settings);
 
+/* The number of times that paths follow light from surface to surface. */
+int tl_frame_bounces(const struct tl_light_params *light, const struct tl_reference_params *reference);
+
 /* The reference's part of these settings. All three are borrowed. */
 struct tl_reference_request tl_frame_reference_request(const tl_frame *frame,
                                                        const struct tl_render_settings *settings,

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define FILES_MAX 32 /* of one shader, includes counted */
+#define FILES_MAX 40 /* of one shader, includes counted */
 
 /* Line l of file f is called f x LINES_MAX + l: GLSL numbers files as well as lines, but Mesa gives file 0
  * for many places in another one. */

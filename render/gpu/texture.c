@@ -15,7 +15,7 @@ static size_t texel_bytes(GLenum format)
         {GL_R8, 1},       {GL_RG8, 2},     {GL_RGBA8, 4}, {GL_SRGB8_ALPHA8, 4}, {GL_RGBA16F, 8},
         {GL_RGBA32F, 16}, {GL_RG32F, 8},   {GL_R32F, 4},  {GL_RG16F, 4},        {GL_DEPTH_COMPONENT32F, 4},
         {GL_R32UI, 4},    {GL_RGB9_E5, 4}, {GL_R16, 2},   {GL_RG16, 4},         {GL_RGBA16, 8},
-        {GL_R8UI, 1},
+        {GL_R8UI, 1},     {GL_RG32UI, 8},
     };
     for (size_t i = 0; i < TL_COUNT(sizes); i++)
         if (sizes[i].format == format)

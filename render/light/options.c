@@ -58,16 +58,19 @@ static const struct tl_option light_rows[] = {
     TL_OPTION_ENUM(light_params, ratio_at, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RATIO, ratio_at_names,
                    "rays: where the ratio of visible to exact light is computed: samples: at every sample; "
                    "vertices: at vertices, interpolated: several times faster, slightly softer"),
-    TL_OPTION_ENUM(
-        light_params, device, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RATIO, device_names,
-        "ratios at vertices: cpu: drawn by the CPU's cores; card: by compute shaders of OpenGL, where "
-        "they can (toile plan); auto: by these where OpenGL runs on a graphics card"),
+    TL_OPTION_ENUM(light_params, device, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RATIO, device_names,
+                   "rays: cpu: drawn by the CPU's cores; card: by compute shaders of OpenGL, where they can "
+                   "(toile plan): "
+                   "at vertices in motion, and at rest by rounds of paths; auto: by these where OpenGL runs "
+                   "on a graphics card"),
     TL_OPTION_INT(light_params, card_rays, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 1, 8, "",
                   "rays on a graphics card: directions traced per region; larger: more exact, slower"),
     TL_OPTION_BOOL(light_params, jitter, TL_AFFECTS_APPEARANCE | TL_AFFECTS_SHADOW_MAPS | TL_AFFECTS_RAYS,
                    "maps: directions vary within their regions from frame to frame (rays: always)"),
     TL_OPTION_INT(light_params, rounds, TL_AFFECTS_APPEARANCE, 1, 4096, "frames",
-                  "jittered frames averaged while nothing moves; larger: more exact still images"),
+                  "jittered frames averaged while nothing moves; on a graphics card sixteen times as many; "
+                  "larger: more "
+                  "exact still images"),
     TL_OPTION_INT(light_params, refresh, TL_AFFECTS_APPEARANCE | TL_AFFECTS_RAYS, 0, TL_REGIONS_MAX,
                   "regions",
                   "regions renewed per frame in motion; 0: all. rays: traced for each point, twice as many "

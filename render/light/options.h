@@ -24,8 +24,8 @@ enum tl_prefilter { TL_PREFILTER_CHAIN, TL_PREFILTER_SLICES };
 enum tl_ratio_at { TL_RATIO_AT_SAMPLES, TL_RATIO_AT_VERTICES };
 /* Light that surfaces send on to each other (render/bounce), of rays: none, once, or as often as it likes. */
 enum tl_light_bounce { TL_BOUNCE_OFF, TL_BOUNCE_ONE, TL_BOUNCE_ALL };
-/* The device that draws frames in motion: the graphics card where GL runs on one, or always one of the two;
- * what the card cannot draw is drawn by the CPU. */
+/* The device that draws frames: the graphics card where GL runs on one, or always one of the two; what the
+ * card cannot draw is drawn by the CPU. */
 enum tl_light_device { TL_DEVICE_AUTO, TL_DEVICE_CPU, TL_DEVICE_CARD };
 enum tl_composition { TL_COMPOSE_SUM, TL_COMPOSE_DIFFERENCE, TL_COMPOSE_RATIO };
 struct tl_light_params { /* table "light" */
@@ -42,7 +42,7 @@ struct tl_light_params { /* table "light" */
     int visibility;      /* enum tl_visibility: the back-end */
     int composition;     /* enum tl_composition; rays: ratio only */
     int ratio_at;        /* enum tl_ratio_at, of rays */
-    int device;          /* enum tl_light_device, of ratios at vertices */
+    int device;          /* enum tl_light_device, of rays */
     int card_rays;       /* ... there, directions a region */
     bool jitter;         /* maps: directions vary inside their regions from frame to frame; rays: always */
     int rounds;          /* at rest, so many jittered frames are averaged */

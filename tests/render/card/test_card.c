@@ -612,11 +612,6 @@ static void bounce_once(struct drawn_scene *drawn)
     drawn->scene.settings.light.bounce = TL_BOUNCE_ONE;
 }
 
-static void have_samples(struct drawn_scene *drawn)
-{
-    drawn->scene.settings.light.ratio_at = TL_RATIO_AT_SAMPLES;
-}
-
 static void have_steps(struct drawn_scene *drawn)
 {
     have_a_lamp(drawn);
@@ -632,7 +627,6 @@ static void test_refusals(void **state)
                    {have_cut_outs, "cloth with holes"},
                    {transmit, "light that shines through cloth"},
                    {bounce_once, "light that bounces once"},
-                   {have_samples, "light.ratio_at"},
                    {have_steps, "lamps whose shading is not exact"}};
     const struct test_device *device = *state;
     struct drawn_scene drawn;

@@ -1,0 +1,289 @@
+#version 450 core
+// At rest: a round of light of every pixel by the real reflectance, as the reference computes it (render/reference). Paths
+// [Kajiya 1986] whose places each take light from the environment in two ways, by its texels and by lobes, weighed by the
+// balance heuristic [Veach 1997]. A dispatch lights the places of one class of materials after so many bounces.
+#include "card_frame.glsl"
+#define TREE_BINDING CARD_NODES
+#include "trace.glsl"
+#include "spread_terms.glsl"
+#include "card_cube.glsl"
+#include "card_sky.glsl"
+#include "card_see.glsl"
+#include "card_fuzz.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(location = 0) uniform ivec4 kind; // class, bounces before, bounces at largest, round
+layout(location = 1) uniform vec2 more;  // side of what a pixel shows, in pixels; number of the ground's first triangle
+layout(rgba32f, binding = 0) restrict uniform image2D light_image;
+layout(std430, binding = CARD_TRIANGLE_PARTS) restrict readonly buffer TriangleParts
+{
+    uint triangle_parts[];
+};
+struct Path {
+    vec4 way;     // direction; weight of the second corner, on the ground x
+    vec4 through; // what it carries to the pixel; weight of the third corner, on the ground z
+    uint triangle;
+    uint due;     // class of what it meets, bounces << 8
+};
+layout(std430, binding = CARD_PATHS) restrict buffer Paths
+{
+    Path paths[]; // by sample
+};
+const uint BACK = 0x80000000u, NOWHERE = 0xffffffffu;
+const float FOLLOWED = 0.25; // paths that carry less are followed by chance [Arvo and Kirk 1990]
+
+uint mixed(uint a, uint b)
+{
+    uint x = a * 0x9e3779b1u ^ (b + 0x7f4a7c15u) * 0x85ebca77u;
+    x = (x ^ x >> 16) * 0x7feb352du;
+    x = (x ^ x >> 15) * 0x846ca68bu;
+    return x ^ x >> 16;
+}
+
+// ---- Places ----
+
+Place hit_place(Path path, uint triangle, bool back)
+{
+    Place p;
+    p.triangle = triangle;
+    p.back = back;
+    p.corners = corners_of(triangle);
+    p.weights = vec3(1.0 - path.way.w - path.through.w, path.way.w, path.through.w);
+    for (int i = 0; i < 3; i++)
+        p.points[i] = position_of(p.corners[i]);
+    if (triangle == uint(more.y)) { // the ground is a disc: any of its triangles stands for it
+        p.weights = vec3(1.0 / 3.0);
+        for (int i = 0; i < 3; i++)
+            p.points[i] = vec3(path.way.w, disc.y, path.through.w);
+    }
+    p.at_x = p.at_y = vec3(0.0);
+    p.ray = path.way.xyz;
+    return p;
+}
+
+// ---- Reflectance ----
+
+// A place, and what its coat and its fibres take from the rest.
+struct Lobes {
+    Seen s;
+    vec3 normal, coat_axis; // on the viewer's side
+    float coat;
+    Fibres fibres;
+    bool has_fuzz, has_facets;
+    int glosses; // lobes that directions are chosen by, beside the hemisphere
+};
+
+Lobes lobes_of_place(Seen s)
+{
+    Lobes l;
+    l.s = s;
+    l.normal = s.side * s.surface.smooth_normal;
+    l.coat_axis = l.normal;
+    l.coat = 0.0;
+    l.has_fuzz = false;
+    l.has_facets = s.is_faceted && s.facets.viewer.z > 0.0;
+    l.glosses = l.has_facets ? 1 + int(s.part.flags.w) : !s.is_faceted && (s.part.flags.x & IS_GLOSSY) != 0u ? 1 : 0;
+#ifdef RICH
+    l.has_fuzz = (s.part.flags.x & HAS_FUZZ) != 0u;
+    if (l.has_fuzz)
+        l.fibres = fibres_of(s.part, l.normal, s.surface.shown, s.viewer);
+    l.coat_axis = mirror_direction(l.normal, s.viewer);
+    l.coat = coat_share(s.part, l.normal, s.viewer);
+    l.glosses += l.coat > 0.0 ? 1 : 0;
+#endif
+    return l;
+}
+
+// f_r cos for light from a direction above the surface.
+vec3 reflected(Lobes l, vec3 d)
+{
+    vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI);
+    if (l.s.is_faceted ? l.has_facets && dot(d, l.s.facets.frame[2]) > 0.0 : l.glosses > 0)
+        f += gloss_under(l.s, d, 0.0);
+#ifdef RICH
+    f *= 1.0 - l.coat;
+    if (l.coat > 0.0)
+        f += l.coat * lobe_cosine(l.s.part.optics.w, dot(d, l.coat_axis));
+    if (l.has_fuzz)
+        f = f * l.fibres.under + l.s.part.fuzz.rgb * fuzz_value(l.s.part.fuzz.a, l.fibres.axis, d, l.s.viewer);
+#endif
+    return f;
+}
+
+vec3 emitted(Lobes l)
+{
+#ifdef RICH
+    return l.s.emitted * ((1.0 - l.coat) * (l.has_fuzz ? l.fibres.under : 1.0));
+#else
+    return vec3(0.0);
+#endif
+}
+
+// ---- Directions ----
+
+vec3 lobe_direction(vec3 axis, float exponent, vec2 at)
+{
+    vec3 along = normalize(cross(axis, abs(axis.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    float cosine = pow(1.0 - at.x, 1.0 / (exponent + 1.0)), radius = sqrt(max(1.0 - cosine * cosine, 0.0)), angle = 2.0 * PI * at.y;
+    return normalize(axis * cosine + along * (radius * cos(angle)) + cross(axis, along) * (radius * sin(angle)));
+}
+
+// Facets by normal slopes, whose squared widths along weft and warp, and product, these are. Lobes about the mirror
+// direction are as wide as slopes of half their angles.
+vec3 slopes_of(Seen s, int gloss)
+{
+#ifdef RICH
+    if (gloss > 0 || (s.part.flags.x & HAS_TABLE) == 0u)
+        return widths_of(s.part, gloss, s.surface.widening, s.tangent.w);
+    int model = int(s.part.table_first.w & 15u);
+    float wider = detail_facet_square(1.0 - s.surface.glossiness) - detail_facet_square(1.0 - s.part.diffuse.a);
+    float square = model == TORRANCE_SPARROW ? facet_square(s.part.ward[0].x, wider) : 0.5 / lobe_exponent(s.surface.glossiness);
+    return vec3(square, square, 0.0);
+#else
+    return vec3(1.0, 1.0, 0.0);
+#endif
+}
+
+vec3 facet_direction(Seen s, vec3 squares, vec2 at)
+{
+    float r = sqrt(-2.0 * log(1.0 - at.x)), angle = 2.0 * PI * at.y, a = sqrt(0.5 * squares.x), b = 0.5 * squares.z / a;
+    float c = sqrt(max(0.5 * squares.y - b * b, 1e-12)), x = r * cos(angle), y = r * sin(angle);
+    vec3 h = normalize(vec3(a * x, b * x + c * y, 1.0)), v = s.facets.viewer;
+    return s.facets.frame * (2.0 * dot(h, v) * h - v);
+}
+
+float facet_pdf(Seen s, vec3 squares, vec3 d)
+{
+    vec3 world = direction_or(d + s.viewer, d), h = world * s.facets.frame;
+    float towards = dot(world, s.viewer), determinant = max(squares.x * squares.y - squares.z * squares.z, 1e-16);
+    if (!(h.z > 1e-4 && towards > 1e-4))
+        return 0.0;
+    float e = (h.x * h.x * squares.y - 2.0 * h.x * h.y * squares.z + h.y * h.y * squares.x) / (determinant * h.z * h.z);
+    return exp(-e) * inversesqrt(determinant) / (4.0 * PI * h.z * h.z * h.z * towards);
+}
+
+float hemisphere_exponent(Lobes l)
+{
+    return l.has_fuzz ? 0.0 : 1.0; // fibres do not follow the cosine
+}
+
+// Half of the directions are chosen by the hemisphere, the others by one lobe like the other.
+float direction_pdf(Lobes l, vec3 d)
+{
+    float cosine = dot(d, l.s.surface.shown), sum = 0.0;
+    float pdf = cosine > 0.0 ? lobe_cosine(hemisphere_exponent(l), cosine) : 0.0;
+    if (l.glosses == 0)
+        return pdf;
+    int facets = l.has_facets ? 1 + int(l.s.part.flags.w) : 0;
+    for (int k = 0; k < facets; k++)
+        sum += facet_pdf(l.s, slopes_of(l.s, k), d);
+    if (!l.s.is_faceted && (l.s.part.flags.x & IS_GLOSSY) != 0u)
+        sum += lobe_cosine(l.s.exponent, dot(d, l.s.mirror));
+    if (l.coat > 0.0)
+        sum += lobe_cosine(l.s.part.optics.w, dot(d, l.coat_axis));
+    return 0.5 * (pdf + sum / float(l.glosses));
+}
+
+vec3 choose_direction(Lobes l, uint choice, vec2 at)
+{
+    int lobe = l.glosses == 0 ? -1 : int(choice % uint(2 * l.glosses)) - l.glosses;
+    if (lobe < 0)
+        return lobe_direction(l.s.surface.shown, hemisphere_exponent(l), at);
+    if (l.coat > 0.0 && lobe == l.glosses - 1)
+        return lobe_direction(l.coat_axis, l.s.part.optics.w, at);
+    return l.has_facets ? facet_direction(l.s, slopes_of(l.s, lobe), at) : lobe_direction(l.s.mirror, l.s.exponent, at);
+}
+
+// ---- Light ----
+
+// Numbers of the first place follow a sequence through the rounds; those of others are independent.
+vec2 numbers_of(uint item, int bounces, int round)
+{
+    return bounces == 0 ? spread_place(item, uint(round)) : spread_place(mixed(item, uint(round)), 0u);
+}
+
+vec3 from_texels(Lobes l, vec3 start, uint item, uint bits)
+{
+    vec3 light = vec3(0.0);
+    for (uint i = 0u; i < 1u << bits; i++) {
+        uint within = uint(numbers_of(mixed(item, i), kind.y, kind.w).x * 16777216.0) << 8;
+        SkySample sky = sky_sample(i << (32u - bits) | within >> bits);
+        if (!(dot(sky.direction, l.normal) > 0.0))
+            continue;
+        vec3 f = reflected(l, sky.direction) * sky.radiance;
+        float share = ground_passes(disc, start, sky.direction);
+        if (f.r + f.g + f.b > 0.0 && share > 0.0 && !tree_occluded(start, sky.direction, 0.0, 1e30))
+            light += f * (share / (float(1u << bits) * sky.pdf + direction_pdf(l, sky.direction)));
+    }
+    return light;
+}
+
+// Follows a direction; what does not meet anything takes light from the sky, and what does goes on.
+vec3 follow(Lobes l, vec3 start, vec3 through, uint item, uint bits, inout Path path)
+{
+    uint choice = kind.y == 0 ? item + uint(kind.w) : mixed(item, uint(kind.w));
+    vec3 d = choose_direction(l, choice, numbers_of(item, kind.y, kind.w));
+    float pdf = direction_pdf(l, d);
+    if (!(dot(d, l.normal) > 0.0 && pdf > 0.0))
+        return vec3(0.0);
+    vec3 f = reflected(l, d);
+    float way = ground_way(disc, start, d);
+    vec3 point = start + d * way;
+    float cover = way >= 0.0 ? ground_opacity(disc, point.x, point.z) : 0.0, open = 1.0 - cover;
+    TreeHit hit = tree_nearest(start, d, 0.0, cover > 0.0 ? way : 1e30);
+    path.way = vec4(d, point.x);
+    path.through.w = point.z;
+    path.triangle = uint(more.y);
+    if (hit.triangle != TREE_NO_TRIANGLE) {
+        path.way.w = hit.u;
+        path.through.w = hit.v;
+        path.triangle = hit.triangle | (hit.back ? BACK : 0u);
+        cover = 1.0;
+        open = 0.0;
+    }
+    path.through.rgb = through * f * (cover / pdf);
+    float largest = max(path.through.r, max(path.through.g, path.through.b)), chance = min(largest / FOLLOWED, 1.0);
+    if (kind.y < kind.z && largest > 0.0 && (kind.y == 0 || numbers_of(item ^ 0x5bd1e995u, 1, kind.w).x < chance)) {
+        path.through.rgb /= kind.y == 0 ? 1.0 : chance;
+        path.due = triangle_parts[path.triangle & ~BACK] >> 16 | uint(kind.y + 1) << 8;
+    }
+    SkySample sky = sky_towards(d);
+    return open > 0.0 ? f * sky.radiance * (open / (float(1u << bits) * sky.pdf + pdf)) : vec3(0.0);
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, size.xy)))
+        return;
+    uint at = uint(pixel.y * size.x + pixel.x), bits = kind.y == 0 ? 5u : 2u;
+    Place p;
+    vec3 through = vec3(1.0);
+    if (kind.y == 0) {
+        uint id = texelFetch(ids, pixel, 0).r;
+        if (id == 0u && kind.x == 0) {
+            paths[at].due = NOWHERE;
+            imageStore(light_image, pixel, vec4(0.0));
+        }
+        if (id == 0u || triangle_parts[(id & ~BACK) - 1u] >> 16 != uint(kind.x))
+            return;
+        p = place_of(id, pixel);
+        p.at_x *= more.x;
+        p.at_y *= more.x;
+    } else {
+        if (paths[at].due != uint(kind.x | kind.y << 8))
+            return;
+        p = hit_place(paths[at], paths[at].triangle & ~BACK, (paths[at].triangle & BACK) != 0u);
+        through = paths[at].through.rgb;
+    }
+    Lobes l = lobes_of_place(see_place(p, triangle_parts[p.triangle] & 0xfffu));
+    Path path = Path(vec4(0.0), vec4(0.0), 0u, NOWHERE);
+    vec3 start = ray_start(p, l.normal);
+    uint item = mixed(at, uint(kind.y));
+    float cover = kind.y == 0 ? l.s.cover : 1.0;
+    through *= cover;
+    vec3 light = emitted(l) + from_texels(l, start, mixed(item, 1u), bits);
+    light += follow(l, start, through, mixed(item, 2u), bits, path);
+    paths[at] = path;
+    vec4 before = kind.y == 0 ? vec4(vec3(0.0), cover) : imageLoad(light_image, pixel);
+    imageStore(light_image, pixel, before + vec4(through * light, 0.0));
+}
