@@ -1,7 +1,7 @@
 #include "render/bounce/bounce_internal.h"
 
 #include "config/colour/luminance.h"
-#include "render/brdf/lobe_fit.h"
+#include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
 #include "render/trace/spread.h"
 
@@ -175,23 +175,19 @@ static int lobes_of(const tl_surface *surface, const tl_material *material,
                     const struct tl_bounce_material *mean, const struct hit_place *place, vec3s normal,
                     vec3s viewer, struct tl_fitted_lobe lobes[TL_LOBE_FIT_SUM_MAX])
 {
-    const vec3s f0 = mean->specular[place->back];
-    if (material->gloss.model == TL_REFLECT_PHONG) {
-        const float facing = glms_vec3_dot(normal, viewer), rest = powf(1 - facing, 5);
-        lobes[0] =
-            (struct tl_fitted_lobe){.direction = glms_vec3_sub(glms_vec3_scale(normal, 2 * facing), viewer),
-                                    .exponent = tl_lobe_exponent(material->glossiness)};
-        for (int c = 0; c < 3; c++)
-            lobes[0].weight.raw[c] = f0.raw[c] > 0 ? f0.raw[c] + (1 - f0.raw[c]) * rest : 0;
-        return 1;
-    }
-    const float side = place->back ? -1.0f : 1.0f, smooth[3] = {0, 0, 0};
+    const float smooth[3] = {0, 0, 0};
     const vec4s stored = surface->tangents ? surface->tangents[place->corners[0]] : (vec4s){{0, 0, 0, 1}};
-    const struct tl_brdf_sum gloss = tl_brdf_sum_of(material, f0, mean->diffuse[place->back],
-                                                    material->glossiness, stored.w * side, smooth);
-    const struct tl_brdf_frame frame = tl_brdf_frame_make(normal, (vec3s){{stored.x, stored.y, stored.z}},
-                                                          stored.w, side * material->gloss.rotation);
-    return tl_lobe_fit_sum(&gloss, &frame, viewer, HIT_LOBES, lobes);
+    const struct tl_material_sample seen = {.material = material,
+                                            .normal = normal,
+                                            .viewer = viewer,
+                                            .tangent = {{stored.x, stored.y, stored.z}},
+                                            .handedness = stored.w,
+                                            .side = place->back ? -1.0f : 1.0f,
+                                            .diffuse = mean->diffuse[place->back],
+                                            .f0 = mean->specular[place->back],
+                                            .glossiness = material->glossiness,
+                                            .widening = smooth};
+    return tl_material_gloss_fit(&seen, HIT_LOBES, lobes);
 }
 
 /* Light that a place sends by its gloss to where a ray comes from: of the sky, and of what bounces to it. */

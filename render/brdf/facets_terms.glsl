@@ -35,6 +35,7 @@ TERM vec3 schlick_colour(vec3 f0, float cosine)
 
 // Fresnel's equations for unpolarised light at one interface [Born and Wolf 1999, 1.5.2]; `cosine` from 0 to 1. An index
 // below 1 reflects totally beyond the critical angle.
+#define COAT_INDEX 1.5f
 TERM float fresnel_dielectric(float index, float cosine)
 {
     float inside_squared = index * index - (1.0f - cosine * cosine);

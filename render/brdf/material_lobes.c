@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-#define COAT_INDEX 1.5f
-
 /* The coat's share of the light that fibres leave. */
 static float coat_share(const struct tl_material_sample *sample)
 {
@@ -27,6 +25,26 @@ float tl_material_base(const struct tl_material_sample *sample)
            (1 - coat_share(sample));
 }
 
+static struct tl_brdf_sum gloss_of(const struct tl_material_sample *sample)
+{
+    return tl_brdf_sum_of(sample->material, sample->f0, sample->diffuse, sample->glossiness,
+                          sample->handedness * sample->side, sample->widening);
+}
+
+static struct tl_brdf_frame frame_of(const struct tl_material_sample *sample)
+{
+    return tl_brdf_frame_make(sample->normal, sample->tangent, sample->handedness,
+                              sample->side * sample->material->gloss.rotation);
+}
+
+int tl_material_gloss_fit(const struct tl_material_sample *sample, int max_count,
+                          struct tl_fitted_lobe items[TL_LOBE_FIT_SUM_MAX])
+{
+    const struct tl_brdf_sum gloss = gloss_of(sample);
+    const struct tl_brdf_frame frame = frame_of(sample);
+    return tl_lobe_fit_sum(&gloss, &frame, sample->viewer, max_count, items);
+}
+
 struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *sample)
 {
     const tl_material *material = sample->material;
@@ -43,11 +61,9 @@ struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *s
         lobes.coat_exponent = tl_lobe_exponent(material->coat_glossiness);
     }
     if (lobes.is_faceted)
-        lobes.gloss = tl_brdf_sum_of(material, sample->f0, sample->diffuse, sample->glossiness,
-                                     sample->handedness * sample->side, sample->widening);
+        lobes.gloss = gloss_of(sample);
     if (lobes.is_faceted || material->measured)
-        lobes.frame = tl_brdf_frame_make(sample->normal, sample->tangent, sample->handedness,
-                                         sample->side * material->gloss.rotation);
+        lobes.frame = frame_of(sample);
     return lobes;
 }
 

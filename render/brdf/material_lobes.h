@@ -1,7 +1,7 @@
-/* The light that a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over gloss and
- * diffuse colour. The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel 1999, 4.4].
- * The two lobes of every material, K_1 about the normal and K_s about the mirror direction, are not listed:
- * their owner multiplies them by `base`, and has only the first where `is_faceted`.
+/* The light that a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over
+ * gloss and diffuse colour. The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel
+ * 1999, 4.4]. The two lobes of every material, K_1 about the normal and K_s about the mirror direction, are
+ * not listed: their owner multiplies them by `base`, and has only the first where `is_faceted`.
  *
  * Directions are unit, all in one space, whichever. Errors: none. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_MATERIAL_LOBES_H
@@ -38,6 +38,10 @@ struct tl_material_lobes {
 };
 
 struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *sample);
+/* The lobes of gloss alone, whichever its model, without what covers it; at most `max_count` for each gloss.
+ * Returns how many. */
+int tl_material_gloss_fit(const struct tl_material_sample *sample, int max_count,
+                          struct tl_fitted_lobe items[TL_LOBE_FIT_SUM_MAX]);
 /* `base` alone, for which nothing of facets is read. */
 float tl_material_base(const struct tl_material_sample *sample);
 

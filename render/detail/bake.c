@@ -178,43 +178,6 @@ void tl_horizon_maps_release(struct tl_horizon_maps *maps)
         tl_image_release(&maps->images[i]);
 }
 
-static float horizon_texel(const struct tl_horizon_maps *maps, const struct tl_height_field *field, int x,
-                           int y, int angle)
-{
-    int width = field->heights->width, height = field->heights->height;
-    x = field->clamp_u ? (x < 0 ? 0 : x >= width ? width - 1 : x) : ((x % width) + width) % width;
-    y = field->clamp_v ? (y < 0 ? 0 : y >= height ? height - 1 : y) : ((y % height) + height) % height;
-    const tl_image *image = &maps->images[angle / 4];
-    return (float)tl_image_bytes(image)[4 * ((size_t)y * (size_t)width + (size_t)x) + (size_t)(angle % 4)] /
-           255;
-}
-
-/* The sine of one angle, interpolated between texels. */
-static float horizon_at(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
-                        int angle)
-{
-    float u = (uv.x - floorf(uv.x)) * (float)field->heights->width - 0.5f;
-    float v = (uv.y - floorf(uv.y)) * (float)field->heights->height - 0.5f;
-    int column = (int)floorf(u), row = (int)floorf(v);
-    float sine = 0;
-    for (int i = 0; i < 4; i++) {
-        int x = column + (i & 1), y = row + (i >> 1);
-        float share = (1 - fabsf((float)x - u)) * (1 - fabsf((float)y - v));
-        sine += share * horizon_texel(maps, field, x, y, angle % maps->angle_count);
-    }
-    return sine;
-}
-
-float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
-                      float x, float y)
-{
-    float count = (float)maps->angle_count, step = 2 * (float)M_PI / count,
-          turn = atan2f(y, x) / step + count;
-    int first = (int)turn;
-    return detail_between(horizon_at(maps, field, uv, first), horizon_at(maps, field, uv, first + 1),
-                          (turn - (float)first) * step, step);
-}
-
 /* ---- The spread of normals ---- */
 
 /* The normal of a texel, renormalised, because bytes are rounded and a length below 1 would count as spread.

@@ -34,9 +34,6 @@ struct tl_horizon_maps {
 /* `angle_count`: a multiple of 4, at most TL_HORIZON_ANGLES_MAX. */
 struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field, int angle_count);
 void tl_horizon_maps_release(struct tl_horizon_maps *maps);
-/* The sine of the horizon towards (x, y), not both 0, interpolated between texels and angles. */
-float tl_horizon_sine(const struct tl_horizon_maps *maps, const struct tl_height_field *field, vec2s uv,
-                      float x, float y);
 
 /* The moments (x, y, x^2, y^2) of unit normals, F32 x4, from normals in F32 x3 or bytes. Averages of the
  * moments give the mean normal and its spread. */

@@ -5,6 +5,8 @@
 // VERTEX_VECTORS: directions come from vertices (vectors.frag). BAKED: diffuse light comes from light maps
 // (light_map.frag).
 #include "exponents.glsl"
+#include "facets_terms.glsl"
+#include "lobes_terms.glsl"
 #include "look_up.glsl"
 #include "sample.glsl"
 
@@ -178,16 +180,6 @@ vec3 light_of(int mode, Sample place, vec3 v, float ratio)
 }
 
 #ifdef LAYERED
-const float COAT_INDEX = 1.5;
-
-// Fresnel reflectance of the coat, as in brdf/fresnel.c.
-float coat_reflectance(float cosine)
-{
-    float g = sqrt(COAT_INDEX * COAT_INDEX - 1.0 + cosine * cosine), under = COAT_INDEX * COAT_INDEX * cosine;
-    float s = (cosine - g) / (cosine + g), p = (under - g) / (under + g);
-    return 0.5 * (s * s + p * p);
-}
-
 // The share of the coat, which lies on the smooth surface.
 float coat_share(Part part, Sample place, vec3 v)
 {
@@ -196,7 +188,7 @@ float coat_share(Part part, Sample place, vec3 v)
 #else
     float cosine = dot(place.smooth_normal, v);
 #endif
-    return part.coat * coat_reflectance(clamp(cosine, 0.0, 1.0));
+    return part.coat * fresnel_dielectric(COAT_INDEX, clamp(cosine, 0.0, 1.0));
 }
 
 vec3 coat_light(Part part, Sample place, vec3 v)
@@ -204,7 +196,7 @@ vec3 coat_light(Part part, Sample place, vec3 v)
 #ifdef VERTEX_VECTORS
     vec3 mirror = place.mirror;
 #else
-    vec3 mirror = 2.0 * clamp(dot(place.smooth_normal, v), 0.0, 1.0) * place.smooth_normal - v;
+    vec3 mirror = mirrored_viewer(place.smooth_normal, v);
 #endif
     return lobe_light(mirror, part.coat_glossiness);
 }

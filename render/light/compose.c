@@ -1,7 +1,6 @@
 #include "render/light/compose.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
 #include "render/light/seen_lobes_internal.h"
@@ -9,6 +8,26 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+struct tl_material_sample tl_sample_material(const tl_sample *sample, const tl_material *material,
+                                             const struct tl_triangle_ranges *ranges, vec3s eye)
+{
+    struct tl_material_sample made = {.material = material,
+                                      .smooth = sample->smooth,
+                                      .normal = sample->normal,
+                                      .viewer = glms_vec3_normalize(glms_vec3_sub(eye, sample->point)),
+                                      .side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f,
+                                      .diffuse = sample->diffuse,
+                                      .f0 = sample->specular,
+                                      .glossiness = sample->glossiness,
+                                      .widening = sample->widening};
+    if (material->gloss.model != TL_REFLECT_PHONG || material->measured) {
+        const vec4s tangent = tl_sample_tangent(sample, ranges);
+        made.tangent = (vec3s){{tangent.x, tangent.y, tangent.z}};
+        made.handedness = tangent.w;
+    }
+    return made;
+}
 
 /* A sample, in the environment's frame, in which all of this is done. */
 struct frame {
@@ -280,20 +299,13 @@ static void split_material_lobes(const struct block *block, const tl_material *m
                                  struct lobes *lobes)
 {
     const struct tl_compose_request *request = block->request;
-    struct tl_material_sample seen = {
-        .material = material,
-        .smooth = into_environment(block, sample->smooth),
-        .normal = into_environment(block, sample->normal),
-        .viewer = into_environment(block, glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)))};
+    const tl_sample whole = *sample;
+    struct tl_material_sample seen = tl_sample_material(&whole, material, request->ranges, request->eye);
+    seen.smooth = into_environment(block, seen.smooth);
+    seen.normal = into_environment(block, seen.normal);
+    seen.viewer = into_environment(block, seen.viewer);
+    seen.tangent = into_environment(block, seen.tangent);
     if (material->gloss.model != TL_REFLECT_PHONG) {
-        const vec4s tangent = tl_sample_tangent(sample, request->ranges);
-        seen.tangent = into_environment(block, (vec3s){{tangent.x, tangent.y, tangent.z}});
-        seen.handedness = tangent.w;
-        seen.side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f;
-        seen.diffuse = sample->diffuse;
-        seen.f0 = sample->specular;
-        seen.glossiness = sample->glossiness;
-        seen.widening = sample->widening;
         sample->specular = (vec3s){{0, 0, 0}};
         sample->glossiness = 0;
     }

@@ -17,6 +17,7 @@
 #define TOILE_RENDER_LIGHT_COMPOSE_H
 
 #include "render/bounce/bounce.h"
+#include "render/brdf/material_lobes.h"
 #include "render/env/lobes.h"
 #include "render/env/sun.h"
 #include "render/gbuffer/samples.h"
@@ -24,6 +25,11 @@
 #include "render/light/options.h"
 #include "render/light/region_lights.h"
 #include "render/visibility/points.h"
+
+/* A sample as its lobes are made from it; with its tangent only where they have a frame. Borrows
+ * both. */
+struct tl_material_sample tl_sample_material(const tl_sample *sample, const tl_material *material,
+                                             const struct tl_triangle_ranges *ranges, vec3s eye);
 
 struct tl_compose_request {
     const struct tl_samples *samples;

@@ -1,7 +1,7 @@
 #include "render/light/lobe_sums.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/material_lobes.h"
+#include "render/light/compose.h"
 
 #include <epoxy/gl.h>
 
@@ -48,31 +48,6 @@ static int by_weight(const void *a, const void *b)
     return (first < second) - (first > second);
 }
 
-/* The lobes of a sample's facets; coat and fuzz, which passes do not draw, take nothing from them. */
-static int fit(const struct tl_lobe_sums_request *request, const tl_sample *sample,
-               const tl_material *material, struct tl_fitted_lobe lobes[TL_MATERIAL_LOBES_MAX])
-{
-    tl_material bare = *material;
-    bare.coat = 0;
-    bare.fuzz = (struct tl_fuzz){0};
-    const vec4s tangent = tl_sample_tangent(sample, request->ranges);
-    const struct tl_material_sample seen = {
-        .material = &bare,
-        .smooth = sample->smooth,
-        .normal = sample->normal,
-        .viewer = glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)),
-        .tangent = {{tangent.x, tangent.y, tangent.z}},
-        .handedness = tangent.w,
-        .side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f,
-        .diffuse = sample->diffuse,
-        .f0 = sample->specular,
-        .glossiness = sample->glossiness,
-        .widening = sample->widening};
-    const struct tl_material_lobes of = tl_material_lobes_of(&seen);
-    int facets;
-    return tl_material_lobes_fit(&of, request->max_count, lobes, &facets);
-}
-
 /* Writes the lobes of a sample into its texel of each layer; the lightest ones are left out where there are
  * too many. A sample that reflects nothing has one of weight 0. */
 static void write_sample(const struct tl_lobe_sums_request *request, const tl_sample *sample, int count,
@@ -80,10 +55,13 @@ static void write_sample(const struct tl_lobe_sums_request *request, const tl_sa
 {
     const size_t layer = CHANNELS * (size_t)request->samples->width * (size_t)request->samples->height;
     const tl_material *material = material_of(request, sample);
-    struct tl_fitted_lobe lobes[TL_MATERIAL_LOBES_MAX] = {{.direction = sample->normal, .exponent = 1}};
+    struct tl_fitted_lobe lobes[TL_LOBE_FIT_SUM_MAX] = {{.direction = sample->normal, .exponent = 1}};
     if (material->gloss.model == TL_REFLECT_PHONG)
         return;
-    const int fitted = fit(request, sample, material, lobes);
+    /* Passes do not draw coat and fuzz, which take nothing from these. */
+    const struct tl_material_sample seen =
+        tl_sample_material(sample, material, request->ranges, request->eye);
+    const int fitted = tl_material_gloss_fit(&seen, request->max_count, lobes);
     if (fitted > count)
         qsort(lobes, (size_t)fitted, sizeof *lobes, by_weight);
     for (int k = 0; k < count && (k == 0 || k < fitted); k++) {

@@ -1,9 +1,10 @@
 #include "render/light/mirrors.h"
 
 #include "config/base/memory.h"
-#include "config/colour/srgb.h"
+#include "render/brdf/facets.h"
 #include "render/env/exponent.h"
 #include "render/light/options.h"
+#include "render/trace/cutout.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,56 +32,12 @@ vec3s tl_mirror_direction(vec3s axis, float exponent, int m, int count)
     return glms_vec3_add(glms_vec3_scale(axis, cosine), glms_vec3_scale(side, sine));
 }
 
-static const tl_material *material_of(const tl_surface *surface, uint32_t triangle)
-{
-    for (size_t p = 0; p + 1 < surface->part_count; p++)
-        if (3 * triangle < surface->parts[p].first_index + surface->parts[p].index_count &&
-            3 * triangle >= surface->parts[p].first_index)
-            return &surface->materials[surface->parts[p].material];
-    return &surface->materials[surface->parts[surface->part_count - 1].material];
-}
-
-/* The map's colour at its nearest texel. */
-static vec3s map_colour(const struct tl_map *map, vec2s uv)
-{
-    const tl_image *image = map->image;
-    if (!image || image->type != TL_IMAGE_U8)
-        return (vec3s){{1, 1, 1}};
-    vec2s at = tl_uv_transformed(&map->transform, uv);
-    int place[2], sizes[2] = {image->width, image->height};
-    for (int i = 0; i < 2; i++) {
-        bool clamps = i == 0 ? map->clamp_u : map->clamp_v;
-        float t = clamps ? fminf(fmaxf(at.raw[i], 0), 1) : at.raw[i] - floorf(at.raw[i]);
-        int texel = isfinite(t) ? (int)(t * (float)sizes[i]) : 0;
-        place[i] = texel < sizes[i] ? texel : sizes[i] - 1;
-    }
-    const uint8_t *texel =
-        tl_image_bytes(image) +
-        ((size_t)place[1] * (size_t)image->width + (size_t)place[0]) * (size_t)image->channels;
-    vec3s colour;
-    for (int k = 0; k < 3; k++) {
-        float value = (float)texel[image->channels < 3 ? 0 : k] / 255;
-        colour.raw[k] = image->linear ? value : tl_srgb_to_linear(value);
-    }
-    return colour;
-}
-
-/* Schlick's term as gbuffer.frag has it. */
-static vec3s reflectance(vec3s f0, float cosine)
-{
-    float rest = 1 - fminf(fmaxf(cosine, 0), 1), fifth = rest * rest * rest * rest * rest;
-    vec3s f;
-    for (int c = 0; c < 3; c++)
-        f.raw[c] = f0.raw[c] + (fminf(50 * f0.raw[c], 1) - f0.raw[c]) * fifth;
-    return f;
-}
-
 /* A point of a triangle as it is seen along `direction`. */
 static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const float weights[3], bool back,
                              vec3s direction)
 {
     const uint32_t *corners = surface->indices + 3 * (size_t)triangle;
-    const tl_material *material = material_of(surface, triangle);
+    const tl_material *material = &surface->materials[tl_triangle_part(surface, triangle)->material];
     tl_sample sample = {.weights = {weights[0], weights[1], weights[2]}, .cover = 1 - material->openness};
     vec2s uv = {{0, 0}};
     for (int i = 0; i < 3; i++) {
@@ -92,16 +49,16 @@ static tl_sample seen_sample(const tl_surface *surface, uint32_t triangle, const
     }
     sample.smooth = glms_vec3_normalize(back ? glms_vec3_negate(sample.smooth) : sample.smooth);
     sample.normal = sample.smooth;
-    float cosine = fmaxf(-glms_vec3_dot(sample.normal, direction), 0);
-    sample.mirror = glms_vec3_normalize(glms_vec3_add(direction, glms_vec3_scale(sample.normal, 2 * cosine)));
+    const vec3s viewer = glms_vec3_negate(direction);
+    sample.mirror = mirror_direction(sample.normal, viewer);
     sample.glossiness = material->glossiness;
-    vec3s f0 = glms_vec3_mul(material->specular, map_colour(&material->specular_map, uv));
-    sample.diffuse = glms_vec3_mul(material->diffuse, map_colour(&material->diffuse_map, uv));
+    vec3s f0 = glms_vec3_mul(material->specular, tl_map_colour_at(&material->specular_map, uv));
+    sample.diffuse = glms_vec3_mul(material->diffuse, tl_map_colour_at(&material->diffuse_map, uv));
     if (back && material->back.is_given) {
         sample.diffuse = material->back.diffuse;
         f0 = material->back.specular;
     }
-    sample.specular = reflectance(f0, cosine);
+    sample.specular = schlick_colour(f0, glms_vec3_dot(sample.normal, viewer));
     return sample;
 }
 

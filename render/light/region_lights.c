@@ -139,13 +139,6 @@ bool tl_region_lights_have(const struct tl_region_lights *lights, uint32_t expon
     return !lights->is_exact || !(exponents & ~lights->gain.made);
 }
 
-void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
-                           enum tl_region_weight weight, const struct tl_lobes *lobes)
-{
-    tl_region_lights_begin(lights, regions, weight);
-    tl_region_lights_add(lights, lobes, ~0u);
-}
-
 void tl_region_lights_release(struct tl_region_lights *lights)
 {
     tl_lobes_release(&lights->gain);

@@ -48,11 +48,9 @@ struct tl_region_lights {
     struct tl_lobes gain, diffuse_gain;
 };
 
-/* Replaces what `lights` held. `lobes` are E, of the exponents that will be asked for. */
-void tl_region_lights_make(struct tl_region_lights *lights, const struct tl_regions *regions,
-                           enum tl_region_weight weight, const struct tl_lobes *lobes);
-/* In two steps. The first is quick and makes no gains; the second makes those of `exponents`, bits as in
- * `lobes`, that are not there yet. Most of what lights take is the gains of the sharpest lobes. */
+/* Replaces what `lights` held, in two steps. The first is quick and makes no gains; the second makes those of
+ * `exponents`, bits as in `lobes`, that are not there yet. `lobes` are E, of the exponents that will be asked
+ * for. Most of what lights take is the gains of the sharpest lobes. */
 void tl_region_lights_begin(struct tl_region_lights *lights, const struct tl_regions *regions,
                             enum tl_region_weight weight);
 void tl_region_lights_add(struct tl_region_lights *lights, const struct tl_lobes *lobes, uint32_t exponents);

@@ -44,13 +44,6 @@ TERM float disc_share(float u)
     return 0.5f + v * (0.63f - v * v * (0.069f + 0.061f * v * v));
 }
 
-// Share of a disc-shaped region of half-angle `cone` that lies above the horizon, when its centre has this cosine to
-// the normal. Within 0.01 for cones to 0.41 rad (24 regions), 0.04 to 0.84 (6).
-TERM float horizon_share(float cosine, float cone)
-{
-    return disc_share(cosine / sin(clamp(cone, 1e-4f, 1.5707963f)));
-}
-
 // A bumped surface's own shadow: 0 where the light lies below the plane of the smooth normal, a steep ramp above, which
 // flickers less than a step does [Schroecker 2002, 4.5]. Its steepness costs light: with 8 an image is 0.7 % darker
 // than with 32.

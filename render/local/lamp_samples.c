@@ -1,9 +1,9 @@
 #include "render/local/lamp_samples.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/material_lobes.h"
 #include "render/brdf/tables/measured.h"
 #include "render/env/exponent.h"
+#include "render/light/compose.h"
 #include "render/trace/cutout.h"
 
 #include <math.h>
@@ -27,19 +27,8 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
                       .has_two = index >= samples->primary_count + samples->behind_count};
     if (lit.has_two)
         return lit;
-    const vec4s tangent = tl_sample_tangent(sample, request->ranges);
-    const struct tl_material_sample seen = {
-        .material = lit.material,
-        .smooth = sample->smooth,
-        .normal = sample->normal,
-        .viewer = glms_vec3_normalize(glms_vec3_sub(request->eye, sample->point)),
-        .tangent = {{tangent.x, tangent.y, tangent.z}},
-        .handedness = tangent.w,
-        .side = sample->triangle & TL_SAMPLE_BACK ? -1.0f : 1.0f,
-        .diffuse = sample->diffuse,
-        .f0 = sample->specular,
-        .glossiness = sample->glossiness,
-        .widening = sample->widening};
+    const struct tl_material_sample seen =
+        tl_sample_material(sample, lit.material, request->ranges, request->eye);
     lit.lobes = tl_material_lobes_of(&seen);
     return lit;
 }

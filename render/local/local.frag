@@ -311,7 +311,7 @@ vec3 under_coat(vec3 light, vec3 l, vec3 n)
 {
 #ifdef COAT
     vec3 v = direction_or(eye - point, n);
-    float cosine = max(dot(n, v), 0.0), reflected = lamp_layers.x * fresnel_dielectric(1.5, cosine);
+    float cosine = max(dot(n, v), 0.0), reflected = lamp_layers.x * fresnel_dielectric(COAT_INDEX, cosine);
     vec3 axis = direction_or(2.0 * cosine * n - v, n), across = cross(axis, l);
     float lobe = exact_power(dot(axis, l), dot(across, across), lamp_layers.y);
     light *= 1.0 - reflected;
@@ -381,7 +381,7 @@ void main()
 #elif defined(EMISSION)
 #ifdef COAT
     vec3 n = side * smooth_normal;
-    sent *= 1.0 - lamp_layers.x * fresnel_dielectric(1.5, max(dot(n, direction_or(eye - point, n)), 0.0));
+    sent *= 1.0 - lamp_layers.x * fresnel_dielectric(COAT_INDEX, max(dot(n, direction_or(eye - point, n)), 0.0));
 #endif
 #ifdef FUZZ
     vec3 up = fibre_axis(side, smooth_normal);

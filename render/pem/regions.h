@@ -59,10 +59,6 @@ void tl_regions_cut(const tl_cube *cube, int count, struct tl_regions *out);
  * the contents of `out`. */
 void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *out);
 
-/* The cut of the sphere with `count` regions, at most as many as `from` (a cut of the sphere) has: siblings
- * are merged in the reverse order of their cuts. The result is that of tl_regions_cut_sphere for the same
- * cube, except for rounding of `power`. `out` must not be `from`. */
-void tl_regions_merge(const struct tl_regions *from, int count, struct tl_regions *out);
 /* A deep copy. */
 struct tl_regions tl_regions_copy(const struct tl_regions *regions);
 void tl_regions_release(struct tl_regions *regions);

@@ -37,13 +37,6 @@ void tl_regions_begin(const tl_cube *cube, struct tl_regions *out)
     }
 }
 
-void tl_regions_begin_like(const struct tl_regions *from, struct tl_regions *out)
-{
-    allocate(from->size, out);
-    memcpy(out->solid_angles, from->solid_angles, texel_count(out) / 6 * sizeof *out->solid_angles);
-    memcpy(out->importance, from->importance, texel_count(out) * sizeof *out->importance);
-}
-
 /* Extracts the even bits of a Morton code. */
 static int even_bits(uint32_t code)
 {

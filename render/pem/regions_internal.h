@@ -12,8 +12,6 @@
 /* Releases the contents of `out`, allocates it, and fills in `size`, `solid_angles` and `importance` from the
  * cube. */
 void tl_regions_begin(const tl_cube *cube, struct tl_regions *out);
-/* The same with the values of `from`. */
-void tl_regions_begin_like(const struct tl_regions *from, struct tl_regions *out);
 /* Fills in `texels` and `first`. */
 void tl_regions_order(struct tl_regions *regions);
 /* Fills in direction, solid_angle, importance and cone of the items. */

@@ -392,23 +392,3 @@ void tl_regions_cut_sphere(const tl_cube *cube, int count, struct tl_regions *ou
     tl_regions_weigh(out);
     tl_regions_colour(cube, out);
 }
-
-void tl_regions_merge(const struct tl_regions *from, int count, struct tl_regions *out)
-{
-    assert(count >= 1 && count <= from->count && from->node_count > 0 && out != from);
-    int region_of[2 * TL_REGIONS_MAX], merged[TL_REGIONS_MAX] = {0};
-    tl_regions_begin_like(from, out);
-    keep_nodes(from->nodes, from->node_count, count, out, region_of);
-    for (int i = 0; i < from->node_count; i++)
-        if (from->nodes[i].region >= 0)
-            merged[from->nodes[i].region] = region_of[i];
-    for (size_t i = 0; i < 6 * (size_t)from->size * (size_t)from->size; i++)
-        out->labels[i] = (uint16_t)merged[from->labels[i]];
-    tl_regions_order(out);
-    tl_regions_measure(out);
-    tl_regions_weigh(out);
-    for (int i = 0; i < from->count; i++) {
-        vec3s *power = &out->items[merged[i]].power;
-        *power = glms_vec3_add(*power, from->items[i].power);
-    }
-}

@@ -140,9 +140,4 @@ TL_INLINE struct tl_lobe_set_shares tl_lobe_set_shares(tl_quad f0)
         {lobe_set_high_share(f0[0]), lobe_set_high_share(f0[1]), lobe_set_high_share(f0[2]), 0}};
 }
 
-/* The lobes towards a viewer above the surface, as tl_lobe_fit_make gives them. Returns their number. */
-int tl_lobe_set_table_look_up(const struct tl_lobe_set_table *table, const struct tl_brdf_frame *frame,
-                              vec3s viewer, vec3s f0, float glossiness,
-                              struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX]);
-
 #endif

@@ -302,14 +302,6 @@ struct tl_brdf_tables tl_brdf_tables_make(const struct tl_brdf *brdf,
     return tables;
 }
 
-struct tl_brdf_table tl_fresnel_table_make(const struct tl_brdf *brdf, int input, int size, int precision)
-{
-    struct tl_brdf_table_params params = {.size = size, .precision = precision};
-    struct factor factor = {
-        .brdf = brdf, .params = &params, .value = fresnel_alone, .x = cosines(input), .channels = 3};
-    return make_table(&factor);
-}
-
 void tl_brdf_tables_release(struct tl_brdf_tables *tables)
 {
     for (int i = 0; i < tables->count; i++)
@@ -323,14 +315,4 @@ size_t tl_brdf_tables_bytes(const struct tl_brdf_tables *tables)
     for (int i = 0; i < tables->count; i++)
         bytes += value_count(&tables->tables[i]) * texel_bytes(tables->tables[i].precision);
     return bytes;
-}
-
-vec3s tl_fresnel_additive(vec3s reflectance, vec3s mirror, vec3s diffuse)
-{
-    return glms_vec3_add(glms_vec3_mul(reflectance, mirror), diffuse);
-}
-
-vec3s tl_fresnel_coat(vec3s reflectance, vec3s mirror, vec3s diffuse)
-{
-    return glms_vec3_add(diffuse, glms_vec3_mul(reflectance, glms_vec3_sub(mirror, diffuse)));
 }

@@ -121,13 +121,4 @@ vec3s tl_brdf_table_at(const struct tl_brdf_table *table, float u, float v);
 /* f_r cos a by channel: the product of all tables, or 0 where n.l <= 0 or n.v <= 0. */
 vec3s tl_brdf_tables_gloss(const struct tl_brdf_tables *tables, const float inputs[TL_AXIS_COUNT]);
 
-/* The Fresnel term alone over its cosine [Heidrich and Seidel 1999, 4.4], size x 1 texels. The caller
- * releases it by free(texels). */
-struct tl_brdf_table tl_fresnel_table_make(const struct tl_brdf *brdf, int input, int size, int precision);
-
-/* The combination of a mirror's light Lm with the light Ld below it [Heidrich and Seidel 1999, 4.4]:
- * additive, Lo = F Lm + Ld, or as a coat, Lo = F Lm + (1 - F) Ld. */
-vec3s tl_fresnel_additive(vec3s reflectance, vec3s mirror, vec3s diffuse);
-vec3s tl_fresnel_coat(vec3s reflectance, vec3s mirror, vec3s diffuse);
-
 #endif

@@ -23,7 +23,7 @@ TERM float one_text(int number, uint trial)
         return number == 6   ? lobe_cosine(s, cosine)
                : number == 7 ? lobe_broadened_exponent(s, d.y)
                : number == 8 ? disc_cosine(cosine, e.x)
-               : number == 9 ? horizon_share(cosine, e.x)
+               : number == 9 ? disc_share(2.0f * cosine)
                : number == 10 ? region_lobe(cosine, 0.1f + e.x, 1.0f / (0.1f + e.x), s)
                               : region_lobe_diffuse(cosine, 0.1f + e.x, 1.0f / (0.1f + e.x));
     // Maps of lobes.

@@ -127,7 +127,8 @@ static struct scene scene_open(int regions, float glossiness, bool bumped)
     }
     tl_regions_cut_sphere(&scene.cube, regions, &scene.regions);
     tl_lobes_make(&scene.lobes, &scene.cube, tl_exponents_needed(glossiness, glossiness));
-    tl_region_lights_make(&scene.lights, &scene.regions, TL_WEIGHT_POWER, &scene.lobes);
+    tl_region_lights_begin(&scene.lights, &scene.regions, TL_WEIGHT_POWER);
+    tl_region_lights_add(&scene.lights, &scene.lobes, ~0u);
     fill_values(&scene);
     fill_samples(&scene, glossiness, bumped);
     scene.light = TL_NEW_ARRAY(float, (size_t)4 * SAMPLES);

@@ -38,14 +38,16 @@ static void make_light(float brightest, int regions, uint64_t hashes[COUNT])
     struct tl_region_lights lights = {0};
     tl_regions_cut_sphere(&cube, regions, &cut);
     tl_lobes_make(&lobes, &cube, 1u << 0 | 1u << 6);
-    tl_region_lights_make(&lights, &cut, TL_WEIGHT_POWER, &lobes);
+    tl_region_lights_begin(&lights, &cut, TL_WEIGHT_POWER);
+    tl_region_lights_add(&lights, &lobes, ~0u);
     hashes[CUBE] = tl_hash_words(TL_HASH_START, cube.texels, (size_t)18 * SIZE * SIZE * sizeof(float));
     hashes[GAIN] = hash_lobes(&lights.gain);
     hashes[DIFFUSE_GAIN] = hash_lobes(&lights.diffuse_gain);
     /* The same regions for other light. */
     for (size_t i = 0, side = (size_t)lobes.maps[6].side + 2; i < 4 * side * side; i++)
         lobes.maps[6].texels[i] *= 2;
-    tl_region_lights_make(&lights, &cut, TL_WEIGHT_POWER, &lobes);
+    tl_region_lights_begin(&lights, &cut, TL_WEIGHT_POWER);
+    tl_region_lights_add(&lights, &lobes, ~0u);
     hashes[TWICE] = hash_lobes(&lights.gain);
     tl_region_lights_release(&lights);
     tl_lobes_release(&lobes);

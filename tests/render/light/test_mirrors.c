@@ -116,7 +116,8 @@ static void what_is_met_is_lit(void **state)
     struct tl_suns suns = {0};
     tl_regions_cut_sphere(&cube, 96, &regions);
     tl_lobes_make(&lobes, &cube, tl_exponents_needed(0, 1));
-    tl_region_lights_make(lights, &regions, TL_WEIGHT_POWER, &lobes);
+    tl_region_lights_begin(lights, &regions, TL_WEIGHT_POWER);
+    tl_region_lights_add(lights, &lobes, ~0u);
     uint16_t values[96];
     memset(values, 0xff, sizeof values);
     for (size_t k = 0; k < TL_COUNT(glossinesses); k++) {

@@ -25,12 +25,6 @@ static double lobe(double cosine, double exponent)
     return cosine > 0 ? (exponent + 1) / (2 * M_PI) * pow(cosine, exponent) : 0;
 }
 
-static double above(double cosine, double unused)
-{
-    (void)unused;
-    return cosine > 0;
-}
-
 /* Root mean square angle from the centre, over the disc. */
 static double disc_spread(double cone)
 {
@@ -141,21 +135,6 @@ static void test_disc_share(void **state)
     assert_near(disc_share(-1), 0, 1e-6);
 }
 
-/* Rings and spokes resolve the share to 0.003. */
-static void test_horizon_share(void **state)
-{
-    (void)state;
-    const double cones[] = {0.03, 0.1, 0.2, 0.41, 0.84}, bounds[] = {0.004, 0.004, 0.006, 0.0125, 0.043};
-    for (int c = 0; c < 5; c++)
-        for (int degrees = 0; degrees <= 180; degrees++) {
-            double angle = (double)((float)degrees * RADIANS);
-            assert_near(horizon_share((float)cos(angle), (float)cones[c]),
-                        disc_mean(cones[c], angle, 0, above), bounds[c]);
-        }
-    assert_near(horizon_share(0.001f, 0), 1, 1e-6); /* a point is above or it is not */
-    assert_near(horizon_share(0, 3), 0.5, 1e-6);
-}
-
 static void test_self_shadow_ramp(void **state)
 {
     (void)state;
@@ -173,7 +152,6 @@ int main(void)
         cmocka_unit_test(test_disc_height),
         cmocka_unit_test(test_disc_cosine),
         cmocka_unit_test(test_disc_share),
-        cmocka_unit_test(test_horizon_share),
         cmocka_unit_test(test_self_shadow_ramp),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -228,30 +228,6 @@ static void expect_same(const struct tl_regions *a, const struct tl_regions *b)
     }
 }
 
-/* Every smaller cut is a prefix of every larger one. */
-static void merging_is_the_smaller_cut(void **state)
-{
-    (void)state;
-    tl_cube cubes[] = {noise_cube(32), cube_of(32, constant), cube_of(64, blob)};
-    for (size_t c = 0; c < TL_COUNT(cubes); c++) {
-        struct tl_regions maximum = {0}, merged = {0}, again = {0}, direct = {0};
-        tl_regions_cut_sphere(&cubes[c], 384, &maximum);
-        for (int count = 1; count < 384; count += 1 + count / 3) {
-            tl_regions_merge(&maximum, count, &merged);
-            tl_regions_cut_sphere(&cubes[c], count, &direct);
-            expect_same(&merged, &direct);
-            tl_regions_merge(&merged, (count + 1) / 2, &again); /* and of what was merged */
-            tl_regions_cut_sphere(&cubes[c], (count + 1) / 2, &direct);
-            expect_same(&again, &direct);
-        }
-        tl_regions_release(&maximum);
-        tl_regions_release(&merged);
-        tl_regions_release(&again);
-        tl_regions_release(&direct);
-        tl_cube_release(&cubes[c]);
-    }
-}
-
 static void extremes_are_cut(void **state)
 {
     (void)state;
@@ -530,7 +506,6 @@ int main(void)
         cmocka_unit_test(cuts_are_partitions_and_trees),
         cmocka_unit_test(regions_of_even_light_are_even),
         cmocka_unit_test(compact_light_is_never_cut),
-        cmocka_unit_test(merging_is_the_smaller_cut),
         cmocka_unit_test(extremes_are_cut),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(spread_is_the_mean_square_angle),

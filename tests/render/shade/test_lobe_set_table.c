@@ -3,7 +3,7 @@
  * albedo, which is the sum of their weights, their exponent, and the light that they fetch from a smooth
  * environment whose convolution with a lobe is known. */
 #include "render/brdf/ward_lanes.h"
-#include "render/shade/lobe_set_table.h"
+#include "tests/render/shade/lobe_set_look_up.h"
 
 #include "tests/testing.h"
 
@@ -176,8 +176,8 @@ static void compare(const struct lobe_set_case *item, const struct tl_lobe_set_t
         struct tl_brdf brdf = tl_brdf_of(&material, reflectances[i], query.glossiness);
         int count =
             tl_lobe_fit_make(&brdf, &query.frame, query.viewer, table->lobe_count, table->lobe_count, fitted);
-        int known = tl_lobe_set_table_look_up(table, &query.frame, query.viewer, reflectances[i],
-                                              query.glossiness, found);
+        int known =
+            look_lobe_set_up(table, &query.frame, query.viewer, reflectances[i], query.glossiness, found);
         struct fetched is = fetch(found, known), want = fetch(fitted, count);
         bool grazing = query.cosine < GRAZING;
         for (int c = 0; c < CHANNELS; c++) {
@@ -305,11 +305,9 @@ static void test_nothing_below_the_surface(void **state)
     struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
     tl_lobe_set_table_make(&material, 0.9f, 0.9f, LOBES, &table);
     assert_int_equal(
-        tl_lobe_set_table_look_up(&table, &frame, (vec3s){{0.6f, 0, -0.8f}}, reflectances[0], 0.9f, lobes),
-        0);
-    assert_int_equal(
-        tl_lobe_set_table_look_up(&table, &frame, (vec3s){{0.6f, 0, 0.8f}}, reflectances[0], 0.9f, lobes),
-        LOBES);
+        look_lobe_set_up(&table, &frame, (vec3s){{0.6f, 0, -0.8f}}, reflectances[0], 0.9f, lobes), 0);
+    assert_int_equal(look_lobe_set_up(&table, &frame, (vec3s){{0.6f, 0, 0.8f}}, reflectances[0], 0.9f, lobes),
+                     LOBES);
     tl_lobe_set_table_release(&table);
 }
 

@@ -5,6 +5,7 @@
 #include "render/shade/pixels.h"
 
 #include "tests/render/scenes.h"
+#include "tests/render/shade/lobe_set_look_up.h"
 #include "tests/render/shade/traced_ids.h"
 
 #include "tests/testing.h"
@@ -225,12 +226,11 @@ static void evaluate_gloss(const struct one_pixel *one, const struct tl_trace_hi
     } else {
         for (int g = 0; g < point->layers.lobes.gloss.count; g++) {
             struct tl_fitted_lobe lobes[TL_LOBE_FIT_MAX];
-            int count =
-                g == 0 && set
-                    ? tl_lobe_set_table_look_up(set, &point->layers.lobes.frame, point->viewer, point->f0,
-                                                point->glossiness, lobes)
-                    : tl_lobe_fit_make(&point->layers.lobes.gloss.items[g], &point->layers.lobes.frame,
-                                       point->viewer, 1, one->materials->parts[part].lobe_set_count, lobes);
+            int count = g == 0 && set ? look_lobe_set_up(set, &point->layers.lobes.frame, point->viewer,
+                                                         point->f0, point->glossiness, lobes)
+                                      : tl_lobe_fit_make(&point->layers.lobes.gloss.items[g],
+                                                         &point->layers.lobes.frame, point->viewer, 1,
+                                                         one->materials->parts[part].lobe_set_count, lobes);
             for (int k = 0; k < count; k++)
                 *light = glms_vec3_add(
                     *light,
