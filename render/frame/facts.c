@@ -213,6 +213,19 @@ static bool has_coat(const tl_material *material)
     return material->coat > 0;
 }
 
+/* Returns why pixels cannot add the lamps' light themselves, by each material's formula; NULL: they can. */
+static const char *lamps_refusal(const tl_frame *frame, const struct tl_shading_params *shading)
+{
+    struct tl_lamp lamps[TL_LAMPS_MAX];
+    if (tl_lamps_lit(frame, lamps) == 0)
+        return NULL;
+    if (memcmp(shading, tl_shading_options.defaults, sizeof *shading) != 0)
+        return "lamps whose shading is not exact (table shading)";
+    return tl_materials_have(frame->surfaces, frame->surface_count, is_measured)
+               ? "measured reflectance under lamps"
+               : NULL;
+}
+
 /* Returns why ratios at vertices cannot light the pixels on either engine; NULL: they can. */
 static const char *vertices_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
@@ -226,16 +239,15 @@ static const char *vertices_refusal(const tl_frame *frame, const struct tl_rende
         return "scenes whose environment is black";
     if (has_mirrors(frame, light))
         return "near mirrors (light.reflect_scene)";
-    return tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail)
-               ? NULL
-               : "such detail (detail.mode, detail.shadow, height maps)";
+    if (!tl_shade_materials_fit(frame->surfaces, frame->surface_count, &settings->detail))
+        return "such detail (detail.mode, detail.shadow, height maps)";
+    return lamps_refusal(frame, &settings->shading);
 }
 
 /* True when ratios at vertices can light the pixels on the CPU: nothing in the scene needs samples. */
 static bool fits_vertices(const tl_frame *frame, const struct tl_render_settings *settings)
 {
-    struct tl_lamp lamps[TL_LAMPS_MAX];
-    return !vertices_refusal(frame, settings) && tl_lamps_lit(frame, lamps) == 0 &&
+    return !vertices_refusal(frame, settings) &&
            !tl_materials_have(frame->surfaces, frame->surface_count, tl_material_emits) &&
            !tl_materials_have(frame->surfaces, frame->surface_count, has_coat);
 }
@@ -275,7 +287,6 @@ static tl_bits ratio_facts(const tl_frame *frame, const struct tl_render_setting
 
 const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
-    struct tl_lamp lamps[TL_LAMPS_MAX];
     const char *refusal = vertices_refusal(frame, settings);
     if (settings->image.view != TL_VIEW_LIGHT)
         return "views other than light (image.view)";
@@ -285,11 +296,6 @@ const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_
         return "light that bounces once (light.bounce)";
     if (settings->light.lobes > TL_CARD_LOBES)
         return "so many lobes of a gloss (light.lobes)";
-    const bool is_lit = tl_lamps_lit(frame, lamps) > 0;
-    if (is_lit && memcmp(&settings->shading, tl_shading_options.defaults, sizeof settings->shading) != 0)
-        return "lamps whose shading is not exact (table shading)";
-    if (is_lit && tl_materials_have(frame->surfaces, frame->surface_count, is_measured))
-        return "measured reflectance under lamps";
     return tl_card_refusal(frame->surfaces, frame->surface_count);
 }
 

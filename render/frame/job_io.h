@@ -68,7 +68,7 @@
     JOB(points, TL_FACT(RAYS) | TL_FACT(SHADOWS), "rays: visibility of the regions, kept at vertices")       \
     JOB(bounce, TL_FACT(BOUNCE), "rays: light that surfaces send on to each other, kept at vertices")        \
     JOB(ratios, TL_FACT(RATIOS), "ratio of seen to exact light, at vertices")                                \
-    JOB(sun_pixels, TL_FACT(RATIOS), "rays: what every pixel sees of the suns")                              \
+    JOB(sun_pixels, TL_FACT(RATIOS), "rays: what every pixel sees of suns and lamps")                        \
     JOB(shade, TL_FACT(RATIOS), "exact light times the interpolated ratio, pixel by pixel")                  \
     JOB(card_surfaces, TL_FACT(CARD), "vertices to the card, its tree of rays fitted to them")               \
     JOB(card_ids, TL_FACT(CARD_RATIOS), "the nearest triangle at every pixel; vertices that are seen")    \
@@ -193,13 +193,13 @@
     IO(SEES, regions_revision) IO(SEES, environment) IO(WRITES, ratios)
 
 #define TL_JOB_sun_pixels(IO)                                                                                \
-    IO(READS, ids) IO(READS, shade_materials) IO(READS, suns) IO(READS, trace)                               \
+    IO(READS, ids) IO(READS, shade_materials) IO(READS, suns) IO(READS, lamps) IO(READS, trace)              \
     IO(READS, yaw) IO(READS, shift) IO(READS, camera) IO(READS, shapes)                                      \
     IO(READS, ground) IO(READS, ground_input) IO(WRITES, pixel_triangles) IO(WRITES, sun_pixels)
 
 #define TL_JOB_shade(IO)                                                                                     \
     IO(READS, ids) IO(READS, pixel_ids) IO(READS, ratios) IO(READS, pixel_triangles)                         \
-    IO(READS, sun_pixels) IO(READS, shade_materials) IO(READS, exact) IO(READS, suns)                        \
+    IO(READS, sun_pixels) IO(READS, shade_materials) IO(READS, exact) IO(READS, suns) IO(READS, lamps)       \
     IO(READS, yaw) IO(READS, shift) IO(READS, camera) IO(READS, size)                                        \
     IO(READS, shapes) IO(READS, ground) IO(READS, ground_input) IO(AFTER, TL_INPUT_RATIO)                    \
     IO(AFTER, TL_INPUT_DEVICE) IO(AFTER, TL_INPUT_VIEW) IO(SEES, trace) IO(WRITES, present)

@@ -151,14 +151,15 @@ bool tl_run_sun_pixels(const struct tl_sun_pixels_job *job, tl_error *error)
     (void)error;
     tl_pixel_triangles_make(job->pixel_triangles, job->ids, &job->shift->view, &job->shapes->ranges,
                             job->shade_materials);
+    struct tl_pixel_lights lights;
+    tl_pixel_lights_make(job->suns, *job->yaw, job->lamps->items, job->lamps->count, &lights);
     const struct tl_sun_pixels_request request = {.ids = job->ids,
                                                   .triangles = job->pixel_triangles,
                                                   .ranges = &job->shapes->ranges,
-                                                  .suns = job->suns,
+                                                  .lights = &lights,
                                                   .trace = job->trace,
                                                   .openness = job->shade_materials->openness,
-                                                  .ground = job->ground_input->is_drawn ? job->ground : NULL,
-                                                  .environment_yaw = *job->yaw};
+                                                  .ground = job->ground_input->is_drawn ? job->ground : NULL};
     tl_sun_pixels_update(job->sun_pixels, &request);
     return true;
 }
@@ -191,13 +192,15 @@ static void enlarge(const struct tl_shade_job *job, const float *shaded)
 bool tl_run_shade(const struct tl_shade_job *job, tl_error *error)
 {
     (void)error;
+    struct tl_pixel_lights lights;
+    tl_pixel_lights_make(job->suns, *job->yaw, job->lamps->items, job->lamps->count, &lights);
     const struct tl_pixels_request request = {.ids = job->ids,
                                               .triangles = job->pixel_triangles,
                                               .ranges = &job->shapes->ranges,
                                               .materials = job->shade_materials,
                                               .ratios = job->ratios,
                                               .lobes = job->exact->lobes,
-                                              .suns = job->suns,
+                                              .lights = &lights,
                                               .sun_pixels = job->sun_pixels,
                                               .cover_m = tl_points_cover_m(job->trace),
                                               .ground = job->ground_input->is_drawn ? job->ground : NULL,

@@ -337,7 +337,7 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
     }
 }
 
-/* ---- Suns ---- */
+/* ---- Suns and lamps ---- */
 
 static bool is_plain_ward(const struct tl_gloss *model)
 {
@@ -346,14 +346,14 @@ static bool is_plain_ward(const struct tl_gloss *model)
 
 /* tl_brdf_gloss_under_disc of Ward's facets. `thread` < 0: of the surface. */
 TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss, int thread,
-                        const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
+                        const struct tl_sun *sun, const float towards[3][TL_LANES], tl_quad lit[TL_LANES])
 {
     const float wider = sun->radius * sun->radius / 8;
     const float(*square_of)[TL_LANES] = thread < 0 ? gloss->square : gloss->thread_square[thread];
     const bool is_bounded = thread >= 0 || lanes->look.part->material->gloss.ward == TL_WARD_BOUNDED;
     float lobe[TL_LANES], share[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
-        vec3s normal = tl_lane_vector(gloss->normal, i);
+        vec3s normal = tl_lane_vector(gloss->normal, i), direction = tl_lane_vector(towards, i);
         vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
         float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
         float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
@@ -372,8 +372,8 @@ TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
 
 /* Adds other facets than Ward's: one by one, where the sun is seen. */
 TL_INLINE void add_brdf(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
-                        const struct tl_sun *sun, vec3s direction, const float seen[TL_LANES],
-                        tl_quad lit[TL_LANES])
+                        const struct tl_sun *sun, const float towards[3][TL_LANES],
+                        const float seen[TL_LANES], tl_quad lit[TL_LANES])
 {
     const struct tl_look_lanes *look = &lanes->look;
     for (int i = 0; i < look->count; i++) {
@@ -386,43 +386,58 @@ TL_INLINE void add_brdf(const struct tl_pixel_lanes *lanes, const struct gloss_l
         const struct tl_brdf_frame frame = {tl_lane_vector(gloss->normal, i),
                                             tl_lane_vector(gloss->tangent, i),
                                             tl_lane_vector(gloss->bitangent, i)};
-        lit[i] += tl_pixel_quad(
-            tl_brdf_gloss_under_disc(&brdf, &frame, direction, tl_lane_vector(look->viewer, i), sun->radius));
+        lit[i] += tl_pixel_quad(tl_brdf_gloss_under_disc(&brdf, &frame, tl_lane_vector(towards, i),
+                                                         tl_lane_vector(look->viewer, i), sun->radius));
     }
 }
 
 TL_INLINE void add_mirrored(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss,
-                            const struct tl_sun *sun, vec3s direction, tl_quad lit[TL_LANES])
+                            const struct tl_sun *sun, const float towards[3][TL_LANES], tl_quad lit[TL_LANES])
 {
     float lobe[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         float exponent = lobe_broadened_exponent(gloss->exponent[i], sun->radius * GLM_SQRT1_2f);
-        float cosine = tl_maxf(glms_vec3_dot(direction, tl_lane_vector(gloss->mirror, i)), 1e-30f);
+        float cosine =
+            tl_maxf(glms_vec3_dot(tl_lane_vector(towards, i), tl_lane_vector(gloss->mirror, i)), 1e-30f);
         lobe[i] = 0.159154943f * (exponent + 1) * tl_power(cosine, exponent);
     }
     for (int i = 0; i < lanes->look.count; i++)
         lit[i] += lobe[i] * gloss->reflectance[i];
 }
 
-TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes, int sun,
-                       const struct gloss_lanes *gloss, tl_quad light[TL_LANES])
+/* Directions to a light, and the shares of its power that arrive where nothing is in the way. */
+TL_INLINE void find_light(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes, int light,
+                          float towards[3][TL_LANES], float shares[TL_LANES])
 {
-    const struct tl_pixels_request *request = scene->request;
-    const struct tl_sun *item = &request->suns->items[sun];
+    const struct tl_pixel_light *source = &scene->request->lights->items[light];
+    for (int i = 0; i < TL_LANES; i++) {
+        const struct tl_pixel_lit lit = tl_pixel_light_at(source, tl_lane_vector(lanes->point, i));
+        tl_lane_store(towards, i, lit.direction);
+        shares[i] = lit.share;
+    }
+}
+
+TL_INLINE void add_light(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes, int number,
+                         const struct gloss_lanes *gloss, tl_quad light[TL_LANES])
+{
+    const struct tl_pixel_light *source = &scene->request->lights->items[number];
+    const struct tl_sun *sun = &source->sun;
     const struct tl_look_lanes *look = &lanes->look;
     const struct tl_shade_part *part = look->part;
-    const vec3s direction = scene->suns[sun];
     float seen[TL_LANES], through[TL_LANES], lobe[TL_LANES], other_lobe[TL_LANES], any = 0;
+    float towards[3][TL_LANES], shares[TL_LANES];
+    find_light(scene, lanes, number, towards, shares);
     for (int i = 0; i < TL_LANES; i++) {
+        const vec3s direction = tl_lane_vector(towards, i);
         float cosine = look->side[i] * glms_vec3_dot(direction, tl_lane_vector(look->smooth, i));
         float shown = glms_vec3_dot(direction, tl_lane_vector(look->shown, i));
-        seen[i] = tl_pixel_sun_above(item, cosine);
-        through[i] = part->transmits ? tl_pixel_sun_above(item, -cosine) : 0;
+        seen[i] = shares[i] * tl_pixel_light_above(source, cosine);
+        through[i] = part->transmits ? shares[i] * tl_pixel_light_above(source, -cosine) : 0;
         lobe[i] = tl_pixel_diffuse_lobe(shown);
         other_lobe[i] = tl_pixel_diffuse_lobe(-shown);
     }
     for (int i = 0; i < look->count; i++) {
-        float visible = tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
+        float visible = tl_pixel_light_seen(scene, number, lanes->pixel[i]);
         seen[i] *= visible;
         through[i] *= visible;
         any = tl_maxf(any, tl_maxf(seen[i], through[i]));
@@ -433,37 +448,40 @@ TL_INLINE void add_sun(const struct tl_pixel_scene *scene, const struct tl_pixel
     for (int i = 0; i < look->count; i++)
         lit[i] = look->diffuse[i] * lobe[i];
     if (part->is_faceted && is_plain_ward(&part->material->gloss))
-        add_ward(lanes, gloss, -1, item, direction, lit);
+        add_ward(lanes, gloss, -1, sun, towards, lit);
     else if (part->is_faceted)
-        add_brdf(lanes, gloss, item, direction, seen, lit);
+        add_brdf(lanes, gloss, sun, towards, seen, lit);
     else if (part->is_glossy)
-        add_mirrored(lanes, gloss, item, direction, lit);
+        add_mirrored(lanes, gloss, sun, towards, lit);
     for (int k = 0; k < part->material->thread_count; k++)
-        add_ward(lanes, gloss, k, item, direction, lit);
+        add_ward(lanes, gloss, k, sun, towards, lit);
     for (int i = 0; i < look->count; i++)
         if (seen[i] > 0)
-            light[i] += seen[i] * tl_pixel_quad(item->power) * lit[i];
+            light[i] += seen[i] * tl_pixel_quad(sun->power) * lit[i];
     if (!part->transmits)
         return;
-    const tl_quad coming_through = tl_pixel_quad(item->power) * tl_pixel_quad(part->material->transmission);
+    const tl_quad coming_through = tl_pixel_quad(sun->power) * tl_pixel_quad(part->material->transmission);
     for (int i = 0; i < look->count; i++)
         light[i] += (through[i] * other_lobe[i]) * coming_through;
 }
 
 /* ---- Fuzz ---- */
 
-TL_INLINE void add_fibres_of_sun(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
-                                 int sun, const float normal[3][TL_LANES], tl_quad fibres[TL_LANES])
+TL_INLINE void add_fibres_of_light(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
+                                   int number, const float normal[3][TL_LANES], tl_quad fibres[TL_LANES])
 {
-    const struct tl_sun *item = &scene->request->suns->items[sun];
+    const struct tl_pixel_light *source = &scene->request->lights->items[number];
     const struct tl_look_lanes *look = &lanes->look;
+    float towards[3][TL_LANES], shares[TL_LANES];
+    find_light(scene, lanes, number, towards, shares);
     for (int i = 0; i < look->count; i++) {
-        const vec3s n = tl_lane_vector(normal, i);
-        const float height = look->side[i] * glms_vec3_dot(scene->suns[sun], tl_lane_vector(look->smooth, i));
-        float seen = tl_pixel_sun_above(item, height) * tl_pixel_sun_seen(scene, sun, lanes->pixel[i]);
+        const vec3s n = tl_lane_vector(normal, i), direction = tl_lane_vector(towards, i);
+        const float height = look->side[i] * glms_vec3_dot(direction, tl_lane_vector(look->smooth, i));
+        float seen = shares[i] * tl_pixel_light_above(source, height) *
+                     tl_pixel_light_seen(scene, number, lanes->pixel[i]);
         if (seen > 0)
-            fibres[i] += tl_pixel_quad(item->power) *
-                         (seen * fuzz_value(look->part->material->fuzz.roughness, n, scene->suns[sun],
+            fibres[i] += tl_pixel_quad(source->sun.power) *
+                         (seen * fuzz_value(look->part->material->fuzz.roughness, n, direction,
                                             tl_lane_vector(look->viewer, i)));
     }
 }
@@ -500,8 +518,8 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
             sum[c] = tl_maxf(sum[c], 0);
         fibres[i] = sum * lanes->fuzz_ratio[i];
     }
-    for (int i = 0; i < scene->request->suns->count; i++)
-        add_fibres_of_sun(scene, lanes, i, normal, fibres);
+    for (int i = 0; i < scene->request->lights->count; i++)
+        add_fibres_of_light(scene, lanes, i, normal, fibres);
     for (int i = 0; i < look->count; i++)
         light[i] = light[i] * under[i] + tl_pixel_quad(fuzz->colour) * fibres[i];
 }
@@ -530,8 +548,8 @@ TL_CLONES static void light_lanes(const struct tl_pixel_scene *scene, const stru
         add_facets(scene, lanes, &gloss, light);
     else if (part->is_glossy)
         add_lobe(scene, lanes, &gloss, light);
-    for (int i = 0; i < scene->request->suns->count; i++)
-        add_sun(scene, lanes, i, &gloss, light);
+    for (int i = 0; i < scene->request->lights->count; i++)
+        add_light(scene, lanes, i, &gloss, light);
     if (part->has_fuzz)
         add_fuzz(scene, lanes, light);
 }

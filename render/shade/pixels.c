@@ -20,12 +20,12 @@ struct pixel_run {
     tl_quad other[3];              /* ... of the diffuse light of the other side */
     tl_quad fuzz[3];               /* ... of fibres */
     tl_quad normals[3], tangents[3];
-    tl_quad uvs[3];                /* u, v, u, v */
-    tl_quad slopes[3], slope;      /* of the weights, not normalised: across twice, up twice; their sum */
-    tl_quad sunlight[TL_SUNS_MAX]; /* of a flat run, where all of the sun is seen */
-    bool is_mixed;                 /* some corners are covered, some are not */
-    bool is_flat;                  /* matt, of one colour and one normal */
-    bool is_fading;                /* the ground where it fades */
+    tl_quad uvs[3];                   /* u, v, u, v */
+    tl_quad slopes[3], slope;         /* of the weights, not normalised: across twice, up twice; their sum */
+    tl_quad lit[TL_PIXEL_LIGHTS_MAX]; /* of a flat run, where all of the light is seen */
+    bool is_mixed;                    /* some corners are covered, some are not */
+    bool is_flat;                     /* matt, of one colour and one normal */
+    bool is_fading;                   /* the ground where it fades */
 };
 
 /* A part of one normal and one colour: the light at the corners is all that a pixel interpolates. */
@@ -41,11 +41,11 @@ static void flatten(const struct tl_pixel_scene *scene, struct pixel_run *run)
     tl_quad light = colour * tl_lobe_map_fetch(&request->lobes->maps[0], octahedral_place(d));
     for (int i = 0; i < 3; i++)
         run->diffuse[i] *= light;
-    for (int i = 0; i < request->suns->count; i++) {
-        const struct tl_sun *sun = &request->suns->items[i];
-        float cosine = glms_vec3_dot(scene->suns[i], normal);
-        run->sunlight[i] = colour * tl_pixel_quad(sun->power) *
-                           (tl_pixel_diffuse_lobe(cosine) * tl_pixel_sun_above(sun, cosine));
+    for (int i = 0; i < request->lights->count; i++) {
+        const struct tl_pixel_light *source = &request->lights->items[i];
+        const float cosine = glms_vec3_dot(source->sun.direction, normal);
+        run->lit[i] = colour * tl_pixel_quad(source->sun.power) *
+                      (tl_pixel_diffuse_lobe(cosine) * tl_pixel_light_above(source, cosine));
     }
 }
 
@@ -104,7 +104,8 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
     run->is_mixed = covered > 0 && covered < 3;
     run->is_fading = fades(request, triangle);
     run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->is_faceted &&
-                   !run->part->transmits && !run->part->has_fuzz && has_one_normal(run);
+                   !run->part->transmits && !run->part->has_fuzz && !request->lights->are_near &&
+                   has_one_normal(run);
     if (run->is_flat)
         flatten(scene, run);
 }
@@ -168,8 +169,8 @@ TL_INLINE tl_quad flat_pixel(const struct tl_pixel_scene *scene, const struct pi
                              const float ratio_weights[3], size_t pixel)
 {
     tl_quad colour = weighted_quad(run->diffuse, ratio_weights);
-    for (int i = 0; i < scene->request->suns->count; i++)
-        colour += tl_pixel_sun_seen(scene, i, pixel) * run->sunlight[i];
+    for (int i = 0; i < scene->request->lights->count; i++)
+        colour += tl_pixel_light_seen(scene, i, pixel) * run->lit[i];
     return colour;
 }
 
@@ -231,6 +232,8 @@ TL_INLINE void shade_pixel(const struct tl_pixel_scene *scene, const struct pixe
     lanes->x[lane] = (float)x;
     lanes->y[lane] = (float)y;
     lanes->pixel[lane] = pixel;
+    if (scene->request->lights->are_near)
+        tl_lane_store(lanes->point, lane, point_of(run->triangle, weights.at));
     lanes->cover[lane] = cover;
     lanes->to[lane] = to;
     lanes->diffuse_ratio[lane] = weighted_quad(run->diffuse, ratio_weights);
@@ -250,7 +253,7 @@ TL_INLINE int shade_flat(const struct tl_pixel_scene *scene, const struct pixel_
 {
     const struct tl_pixels_request *request = scene->request;
     const struct tl_pixel_triangle *triangle = run->triangle;
-    const int width = request->ids->width, suns = request->suns->count;
+    const int width = request->ids->width, lights = request->lights->count;
     const size_t first = (size_t)y * (size_t)width;
     const uint32_t id = row[x];
     float base[3], step[3];
@@ -264,8 +267,8 @@ TL_INLINE int shade_flat(const struct tl_pixel_scene *scene, const struct pixel_
               c = tl_maxf(base[2] + step[2] * (float)x, 0);
         tl_quad colour = (a * run->diffuse[0] + b * run->diffuse[1] + c * run->diffuse[2]) *
                          (1 / tl_maxf(a + b + c, 1e-30f));
-        for (int i = 0; i < suns; i++)
-            colour += tl_pixel_sun_seen(scene, i, first + (size_t)x) * run->sunlight[i];
+        for (int i = 0; i < lights; i++)
+            colour += tl_pixel_light_seen(scene, i, first + (size_t)x) * run->lit[i];
         colour[3] = 1;
         out[x] = colour;
     }
@@ -419,8 +422,6 @@ void tl_pixels_shade(const struct tl_pixels_request *request, int side, float *i
                                    .turn_cosine = cosf(request->environment_yaw),
                                    .turn_sine = sinf(request->environment_yaw)};
     place_rays(request, &scene);
-    for (int i = 0; i < request->suns->count; i++)
-        scene.suns[i] = tl_turn_direction(request->suns->items[i].direction, request->environment_yaw);
     if (side == 1)
         shade_all(&scene, image);
     else

@@ -1,7 +1,8 @@
 /* Light at every pixel from ratios at vertices, in one pass over the ID buffer: interpolation within the
- * triangle, material, exact light of the environment times the interpolated ratio, suns.
+ * triangle, material, exact light of the environment times the interpolated ratio, suns and lamps.
  *
- *     c = kd E(n, 1) ratio_d + sum of lobes weight E(direction, s) ratio_g + kt E(-n, 1) ratio_d' + suns
+ *     c = kd E(n, 1) ratio_d + sum of lobes weight E(direction, s) ratio_g + kt E(-n, 1) ratio_d' + suns,
+ * lamps
  *
  * where fuzz is left out (render/brdf/fuzz.h: its exact light times a ratio of its own), and ratio_d' is that
  * of the other side, from which light comes through. The layers behind open cloth are blended as
@@ -12,7 +13,6 @@
 #ifndef TOILE_RENDER_SHADE_PIXELS_H
 #define TOILE_RENDER_SHADE_PIXELS_H
 
-#include "render/env/sun.h"
 #include "render/scene/view.h"
 #include "render/shade/ratios.h"
 #include "render/shade/sun_pixels.h"
@@ -26,8 +26,8 @@ struct tl_pixels_request {
     const struct tl_shade_materials *materials;
     const struct tl_vertex_ratios *ratios;
     const struct tl_lobes *lobes;
-    const struct tl_suns *suns;
-    const struct tl_sun_pixels *sun_pixels; /* `visible` NULL: all of that sun is seen */
+    const struct tl_pixel_lights *lights;
+    const struct tl_sun_pixels *sun_pixels; /* `visible` NULL: all of that light is seen */
     const struct tl_ground *ground;         /* the last of the surfaces, or NULL when none is drawn */
     const struct tl_view *view;
     float environment_yaw; /* rad */

@@ -19,13 +19,13 @@ struct tl_pixel_scene {
     const struct tl_pixel_blends *blends;
     float turn_cosine, turn_sine; /* of the environment's yaw */
     vec3s first, across, up;      /* the ray through pixel (0, 0), and its changes */
-    vec3s suns[TL_SUNS_MAX];      /* directions, world */
 };
 
 /* Pixels of one part, wherever they lie, evaluated together. */
 struct tl_pixel_lanes {
     struct tl_look_lanes look; /* its viewers are found from the places: */
     float x[TL_LANES], y[TL_LANES];
+    float point[3][TL_LANES]; /* where some lights are near */
     size_t pixel[TL_LANES];
     tl_quad diffuse_ratio[TL_LANES], glossy_ratio[TL_LANES];
     tl_quad other_ratio[TL_LANES]; /* diffuse, of the other side; where the part transmits */
@@ -46,16 +46,10 @@ TL_INLINE float tl_pixel_diffuse_lobe(float cosine)
     return 0.318309886f * tl_maxf(cosine, 0);
 }
 
-/* Share of a sun's disc above the plane of the smooth normal. */
-TL_INLINE float tl_pixel_sun_above(const struct tl_sun *sun, float cosine)
+/* The visible share of a light at a pixel. */
+TL_INLINE float tl_pixel_light_seen(const struct tl_pixel_scene *scene, int light, size_t pixel)
 {
-    return disc_share(cosine / tl_maxf(sun->radius, 1e-3f));
-}
-
-/* The visible share of a sun at a pixel. */
-TL_INLINE float tl_pixel_sun_seen(const struct tl_pixel_scene *scene, int sun, size_t pixel)
-{
-    const float *visible = scene->request->sun_pixels->visible[scene->layer][sun];
+    const float *visible = scene->request->sun_pixels->visible[scene->layer][light];
     return visible ? visible[pixel] : 1;
 }
 

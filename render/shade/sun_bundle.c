@@ -2,14 +2,15 @@
 
 #include <math.h>
 
-struct tl_sun_bundle tl_sun_bundle_begin(const struct tl_sun_pixels_request *request, vec3s direction)
+struct tl_sun_bundle tl_sun_bundle_begin(const struct tl_sun_pixels_request *request,
+                                         const struct tl_pixel_light *light)
 {
     return (struct tl_sun_bundle){.request = request,
-                                  .direction = direction,
+                                  .light = light,
                                   .offset_m = tl_trace_offset(request->trace),
                                   /* Not `coherent`, though they are parallel: most pass close by an edge, and
                                      Embree takes a tenth longer with it. */
-                                  .rays = {.to_m = INFINITY}};
+                                  .rays = {.to_m = light->lamp.kind == TL_LAMP_POINT ? 1 : INFINITY}};
 }
 
 static vec3s weighted(const vec3s v[3], const float w[3])
@@ -31,8 +32,9 @@ bool tl_sun_start(const struct tl_sun_bundle *bundle, uint32_t pixel, vec3s *sta
         normals[i] =
             glms_vec3_scale(triangle->surface->normals[triangle->corners[i]], triangle->back ? -1.0f : 1.0f);
     }
+    const vec3s flat = weighted(corners, weights.at);
     vec3s smooth = glms_vec3_normalize(weighted(normals, weights.at));
-    float cosine = glms_vec3_dot(smooth, bundle->direction);
+    float cosine = glms_vec3_dot(smooth, tl_pixel_light_at(bundle->light, flat).direction);
     if (cosine < 0 && triangle->transmits) { /* its other side faces the sun, and shines through */
         for (int i = 0; i < 3; i++)
             normals[i] = glms_vec3_negate(normals[i]);
@@ -41,7 +43,7 @@ bool tl_sun_start(const struct tl_sun_bundle *bundle, uint32_t pixel, vec3s *sta
     }
     if (!(cosine > 0))
         return false;
-    vec3s point = tl_smooth_point(weighted(corners, weights.at), corners, normals, weights.at);
+    vec3s point = tl_smooth_point(flat, corners, normals, weights.at);
     *start = glms_vec3_add(point, glms_vec3_scale(smooth, bundle->offset_m));
     return true;
 }
@@ -61,12 +63,18 @@ int tl_sun_bundle_trace(struct tl_sun_bundle *bundle, float seen[TL_SUN_BUNDLE])
 void tl_sun_bundle_add(struct tl_sun_bundle *bundle, uint32_t pixel, vec3s start)
 {
     int k = bundle->rays.count++;
+    const bool is_near = bundle->light->lamp.kind == TL_LAMP_POINT;
+    const vec3s direction = tl_pixel_light_at(bundle->light, start).direction;
+    /* Towards a near lamp the ray has the length of the way, and ends at 1. */
+    const vec3s way = is_near ? glms_vec3_sub(bundle->light->lamp.position, start) : direction;
     bundle->pixels[k] = pixel;
-    bundle->ground[k] = tl_ground_visibility(bundle->request->ground, start, bundle->direction);
+    bundle->ground[k] =
+        is_near ? tl_ground_visibility_to(bundle->request->ground, start, direction, glms_vec3_norm(way))
+                : tl_ground_visibility(bundle->request->ground, start, direction);
     bundle->rays.origin_x[k] = start.x;
     bundle->rays.origin_y[k] = start.y;
     bundle->rays.origin_z[k] = start.z;
-    bundle->rays.direction_x[k] = bundle->direction.x;
-    bundle->rays.direction_y[k] = bundle->direction.y;
-    bundle->rays.direction_z[k] = bundle->direction.z;
+    bundle->rays.direction_x[k] = way.x;
+    bundle->rays.direction_y[k] = way.y;
+    bundle->rays.direction_z[k] = way.z;
 }

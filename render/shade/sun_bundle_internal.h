@@ -1,4 +1,4 @@
-/* Rays of pixels towards one place of a sun, gathered until they are a packet. */
+/* Rays of pixels towards one place of a sun or towards a lamp, gathered until they are a packet. */
 #ifndef TOILE_RENDER_SHADE_SUN_BUNDLE_INTERNAL_H
 #define TOILE_RENDER_SHADE_SUN_BUNDLE_INTERNAL_H
 
@@ -39,7 +39,7 @@ static inline float tl_sun_share_of(uint8_t state)
 
 struct tl_sun_bundle {
     const struct tl_sun_pixels_request *request;
-    vec3s direction;
+    const struct tl_pixel_light *light;
     float offset_m;
     struct tl_ray_packet rays;
     uint32_t pixels[TL_SUN_BUNDLE];
@@ -47,7 +47,9 @@ struct tl_sun_bundle {
     size_t count;                /* rays traced so far */
 };
 
-struct tl_sun_bundle tl_sun_bundle_begin(const struct tl_sun_pixels_request *request, vec3s direction);
+/* The light must outlive the bundle. */
+struct tl_sun_bundle tl_sun_bundle_begin(const struct tl_sun_pixels_request *request,
+                                         const struct tl_pixel_light *light);
 
 /* The origin of a covered pixel's rays, as tl_sample_start has it. False where the surface faces away. */
 bool tl_sun_start(const struct tl_sun_bundle *bundle, uint32_t pixel, vec3s *start);

@@ -1,6 +1,5 @@
 #include "render/shade/sun_penumbra_internal.h"
 
-#include "render/env/cube.h"
 #include "render/shade/sun_bundle_internal.h"
 
 #include <string.h>
@@ -153,8 +152,8 @@ static size_t look_at_places(struct chunk *chunk, const struct tl_sun_pixels_req
 {
     size_t rays = 0;
     for (int k = first; k <= last; k++) {
-        struct tl_sun_bundle bundle =
-            tl_sun_bundle_begin(request, tl_turn_direction(sun->samples[k], request->environment_yaw));
+        struct tl_pixel_light place = {.sun.direction = sun->samples[k]};
+        struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, &place);
         for (int i = 0; i < chunk->count; i++) {
             if (!chunk->is_settled[i])
                 tl_sun_bundle_add(&bundle, (uint32_t)i, chunk->starts[i]);
@@ -173,9 +172,9 @@ static size_t look_at_places(struct chunk *chunk, const struct tl_sun_pixels_req
 static size_t soften_chunk(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
                            int sun, float *visible, size_t first, size_t end)
 {
-    const struct tl_sun *item = &request->suns->items[sun];
-    const struct tl_sun_bundle towards =
-        tl_sun_bundle_begin(request, tl_turn_direction(item->direction, request->environment_yaw));
+    const struct tl_pixel_light *light = &request->lights->items[sun];
+    const struct tl_sun *item = &light->sun;
+    const struct tl_sun_bundle towards = tl_sun_bundle_begin(request, light);
     const int more = item->sample_count - 1 < MORE ? item->sample_count - 1 : MORE, half = more / 2;
     uint8_t *is_partial = pixels->is_partial + first;
     struct chunk chunk = {.count = (int)(end - first)};
@@ -204,7 +203,7 @@ size_t tl_sun_soften(const struct tl_sun_pixels *pixels, const struct tl_sun_pix
 {
     const int width = request->ids->width, height = request->ids->height;
     size_t first = 0, count = begin_list(pixels, width, height, visible), rays = 0;
-    if (request->suns->items[sun].sample_count < 2)
+    if (request->lights->items[sun].sun.sample_count < 2)
         return 0;
     for (int growth = 0; first < count; growth++) {
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)

@@ -1,7 +1,6 @@
 #include "render/shade/sun_pixels.h"
 
 #include "config/base/memory.h"
-#include "render/env/cube.h"
 #include "render/shade/sun_bundle_internal.h"
 #include "render/shade/sun_penumbra_internal.h"
 
@@ -141,10 +140,10 @@ static struct cell cell_at(const struct tl_sun_pixels_request *request, const ui
 }
 
 /* Decides every pixel of a row at multiples of `step`, and the last one. */
-static size_t trace_row(const struct tl_sun_pixels_request *request, vec3s direction, int y, int step,
-                        uint8_t *states)
+static size_t trace_row(const struct tl_sun_pixels_request *request, const struct tl_pixel_light *light,
+                        int y, int step, uint8_t *states)
 {
-    struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
+    struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, light);
     const int width = request->ids->width, cell_y = y - y % GROUND_CELL;
     const uint32_t row = (uint32_t)y * (uint32_t)width;
     struct cell cell = {.x = -1};
@@ -168,15 +167,15 @@ static size_t trace_row(const struct tl_sun_pixels_request *request, vec3s direc
 }
 
 /* First every eighth pixel each way, then every fourth where that is not clear; and the last ones. */
-static size_t look_at_grid(const struct tl_sun_pixels_request *request, vec3s direction, uint8_t *states)
+static size_t look_at_grid(const struct tl_sun_pixels_request *request, const struct tl_pixel_light *light,
+                           uint8_t *states)
 {
     size_t rays = 0;
     for (int step = GROUND_CELL; step >= CELL; step -= GROUND_CELL - CELL) {
         const int height = request->ids->height, lines = (height - 1 + step - 1) / step + 1;
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
         for (int line = 0; line < lines; line++)
-            rays +=
-                trace_row(request, direction, line * step < height ? line * step : height - 1, step, states);
+            rays += trace_row(request, light, line * step < height ? line * step : height - 1, step, states);
     }
     return rays;
 }
@@ -226,13 +225,13 @@ static enum cell_state fill_cell(struct tl_sun_bundle *bundle, const struct cell
 }
 
 static size_t fill_cells(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
-                         vec3s direction)
+                         const struct tl_pixel_light *light)
 {
     const int width = request->ids->width, height = request->ids->height, columns = cells_along(width);
     size_t rays = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : rays)
     for (int y = 0; y < height; y += CELL) {
-        struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
+        struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, light);
         uint8_t *cells = pixels->cells + (size_t)(y / CELL) * (size_t)columns;
         if (y + CELL < pixels->first_row || y >= pixels->end_row) {
             memset(cells, BARE, (size_t)columns);
@@ -302,7 +301,7 @@ static void trace_cell(struct tl_sun_bundle *bundle, int x, int y, uint8_t *stat
 
 /* A narrow shadow that some cells found is followed through those that its pixels lie within. */
 static size_t follow_shadows(const struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request,
-                             vec3s direction)
+                             const struct tl_pixel_light *light)
 {
     const size_t columns = (size_t)cells_along(request->ids->width),
                  cells = columns * (size_t)cells_along(request->ids->height);
@@ -313,7 +312,7 @@ static size_t follow_shadows(const struct tl_sun_pixels *pixels, const struct tl
     while (first < count) {
 #pragma omp parallel for schedule(dynamic) reduction(+ : rays)
         for (size_t i = first; i < count; i += CELLS_A_TIME) {
-            struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, direction);
+            struct tl_sun_bundle bundle = tl_sun_bundle_begin(request, light);
             for (size_t k = i; k < i + CELLS_A_TIME && k < count; k++)
                 trace_cell(&bundle, (int)(pixels->late[k] % columns) * CELL,
                            (int)(pixels->late[k] / columns) * CELL, pixels->states);
@@ -343,20 +342,20 @@ static void find_rows(struct tl_sun_pixels *pixels, const struct tl_id_buffer *i
 static void trace_sun(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request, int sun,
                       float *visible)
 {
-    const struct tl_sun *item = &request->suns->items[sun];
-    vec3s direction = tl_turn_direction(item->sample_count > 0 ? item->samples[0] : item->direction,
-                                        request->environment_yaw);
+    struct tl_pixel_light light = request->lights->items[sun];
+    if (light.sun.sample_count > 0)
+        light.sun.direction = light.sun.samples[0];
     memset(pixels->states, TL_SUN_UNKNOWN, (size_t)request->ids->width * (size_t)request->ids->height);
-    pixels->rays += look_at_grid(request, direction, pixels->states);
-    pixels->rays += fill_cells(pixels, request, direction);
-    pixels->rays += follow_shadows(pixels, request, direction);
+    pixels->rays += look_at_grid(request, &light, pixels->states);
+    pixels->rays += fill_cells(pixels, request, &light);
+    pixels->rays += follow_shadows(pixels, request, &light);
     pixels->rays += tl_sun_soften(pixels, request, sun, visible);
 }
 
 void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixels_request *request)
 {
     const struct tl_id_buffer *ids = request->ids;
-    reserve(pixels, ids->width, ids->height, ids->layer_count, request->suns->count);
+    reserve(pixels, ids->width, ids->height, ids->layer_count, request->lights->count);
     pixels->rays = 0;
     float weight = 1;
     for (int layer = 0; layer < ids->layer_count; layer++, weight *= request->openness) {
@@ -365,7 +364,7 @@ void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixe
         of_layer.ids = &ids_of_layer;
         find_rows(pixels, ids, layer);
         pixels->contrast = CONTRAST / weight;
-        for (int sun = 0; sun < request->suns->count; sun++)
+        for (int sun = 0; sun < request->lights->count; sun++)
             trace_sun(pixels, &of_layer, sun, pixels->visible[layer][sun]);
     }
 }
@@ -373,7 +372,7 @@ void tl_sun_pixels_update(struct tl_sun_pixels *pixels, const struct tl_sun_pixe
 void tl_sun_pixels_release(struct tl_sun_pixels *pixels)
 {
     for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS; layer++)
-        for (int i = 0; i < TL_SUNS_MAX; i++)
+        for (int i = 0; i < TL_PIXEL_LIGHTS_MAX; i++)
             free(pixels->visible[layer][i]);
     free(pixels->states);
     free(pixels->minimum);
@@ -391,7 +390,7 @@ size_t tl_sun_pixels_bytes(const struct tl_sun_pixels *pixels)
 {
     size_t each = 5 + sizeof(uint32_t);
     for (int layer = 0; layer <= TL_TRANSPARENCY_LAYERS; layer++)
-        for (int i = 0; i < TL_SUNS_MAX; i++)
+        for (int i = 0; i < TL_PIXEL_LIGHTS_MAX; i++)
             each += pixels->visible[layer][i] ? sizeof(float) : 0;
     return each * pixels->capacity + (1 + sizeof(uint32_t)) * pixels->cell_capacity +
            sizeof(size_t) * (size_t)pixels->row_capacity;

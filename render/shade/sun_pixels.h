@@ -1,16 +1,17 @@
-/* Shadows of the suns at every pixel, layer by layer, by rays where they are needed: from every fourth pixel
- * each way first, or every eighth on the ground; where the corners of a cell agree and are of one surface,
- * its pixels take their answer; the other pixels are traced themselves, and so are the pixels of cells beside
- * one that turns out otherwise. Pixels near an edge of the shadow get more rays to other places of the sun,
- * and so do those near a pixel that sees a part of it: the penumbra; fewer where a difference is hardly seen,
- * because it is one of sheer cloth's shadows or lies behind sheer cloth. What is missed are shadows narrower
- * than a cell along all of their length (tests/render/shade/test_sun_pixels.c counts the pixels).
+/* Shadows of suns and lamps at every pixel, layer by layer, by rays where they are needed: from every fourth
+ * pixel each way first, or every eighth on the ground; where the corners of a cell agree and are of one
+ * surface, its pixels take their answer; the other pixels are traced themselves, and so are the pixels of
+ * cells beside one that turns out otherwise. Pixels near an edge of the shadow get more rays to other places
+ * of the sun, and so do those near a pixel that sees a part of it: the penumbra; fewer where a difference is
+ * hardly seen, because it is one of sheer cloth's shadows or lies behind sheer cloth. What is missed are
+ * shadows narrower than a cell along all of their length (tests/render/shade/test_sun_pixels.c counts the
+ * pixels).
  *
  * Lifetime: owns its arrays. Threads: one call at a time; results do not depend on their number. */
 #ifndef TOILE_RENDER_SHADE_SUN_PIXELS_H
 #define TOILE_RENDER_SHADE_SUN_PIXELS_H
 
-#include "render/env/sun.h"
+#include "render/shade/pixel_lights.h"
 #include "render/shade/triangles.h"
 #include "render/surfaces/ground.h"
 #include "render/trace/trace.h"
@@ -19,7 +20,7 @@ struct tl_sun_pixels {
     size_t capacity; /* pixels */
     /* Shares by layer of the ID buffer, [height][width], in [0, 1]; of pixels that face the sun, with either
      * side where light comes through. */
-    float *visible[1 + TL_TRANSPARENCY_LAYERS][TL_SUNS_MAX];
+    float *visible[1 + TL_TRANSPARENCY_LAYERS][TL_PIXEL_LIGHTS_MAX];
     uint8_t *states;            /* of a layer: what was seen */
     uint8_t *minimum, *maximum; /* ... there and in the rows above and below */
     uint8_t *marks;             /* ... whether it lies beside an edge */
@@ -41,10 +42,9 @@ struct tl_sun_pixels_request {
     const struct tl_id_buffer *ids;
     const struct tl_pixel_triangles *triangles; /* of `ids` */
     const struct tl_triangle_ranges *ranges;
-    const struct tl_suns *suns;
+    const struct tl_pixel_lights *lights;
     const tl_trace *trace;
     const struct tl_ground *ground; /* NULL: none */
-    float environment_yaw;          /* rad */
     float openness;                 /* the greatest of a material: a layer's weight is that of the one before,
                                        times this */
 };

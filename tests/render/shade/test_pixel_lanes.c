@@ -1,7 +1,7 @@
 /* The light of pixels that are evaluated together against the light of each by itself, from the reference
- * renderer's shading point and the functions that define gloss, environment and suns one direction at a time,
- * added up along the pixel's ray where surfaces are open; and the same bits whatever pixels fill the other
- * lanes. */
+ * renderer's shading point and the functions that define gloss, environment, suns and lamps one direction at
+ * a time, added up along the pixel's ray where surfaces are open; and the same bits whatever pixels fill the
+ * other lanes. */
 #include "render/shade/pixels.h"
 
 #include "tests/render/scenes.h"
@@ -46,7 +46,9 @@ struct lanes_scene {
     struct tl_lobes lobes;
     struct tl_vertex_ratios ratios;
     struct tl_suns suns;
-    float *visible; /* [LAYERS][PIXELS] of the first sun; the second is seen from everywhere */
+    struct tl_lamp lamps[2];
+    size_t lamp_count;
+    float *visible; /* [LAYERS][PIXELS] of the first sun and the first lamp; all of the others is seen */
     tl_frame frame;
 };
 
@@ -95,6 +97,11 @@ static void make_light(struct lanes_scene *scene)
         scene->suns.items[i] = (struct tl_sun){.direction = glms_vec3_normalize(directions[i]),
                                                .power = {{2, 1.8f - (float)i, 1.5f}},
                                                .radius = 0.03f + 0.05f * (float)i};
+    scene->lamps[0] = (struct tl_lamp){.kind = TL_LAMP_DIRECTIONAL,
+                                       .direction = glms_vec3_normalize((vec3s){{0.2f, 0.8f, 0.9f}}),
+                                       .irradiance = {{1, 2, 1.5f}}};
+    scene->lamps[1] = (struct tl_lamp){
+        .kind = TL_LAMP_POINT, .position = {{-0.4f, 1.5f, 0.7f}}, .irradiance = {{1.5f, 0.7f, 1}}};
 }
 
 /* Random ratios; a fifth of the corners is covered. */
@@ -275,6 +282,30 @@ static vec3s transmitted(const struct one_pixel *one, const struct tl_trace_hit 
     return glms_vec3_mul(point->material->transmission, light);
 }
 
+/* The lamps' light that a point of a layer sends back or lets through. */
+static vec3s lamplight(const struct one_pixel *one, vec3s at, const struct tl_shading_point *point,
+                       float visible)
+{
+    vec3s sum = {{0, 0, 0}};
+    for (size_t i = 0; i < one->scene->lamp_count; i++) {
+        const struct tl_lamplight light = tl_lamp_at(&one->scene->lamps[i], at, point->horizon);
+        const float facing = glms_vec3_dot(point->horizon, light.direction);
+        const float shown = fminf(32 * fabsf(facing), 1) * (i == 0 ? visible : 1);
+        const float cosine = glms_vec3_dot(point->normal, light.direction) / (float)M_PI;
+        const struct tl_material_lobes *lobes = &point->layers.lobes;
+        vec3s sent = glms_vec3_scale(point->material->transmission, fmaxf(-cosine, 0));
+        if (facing > 0) {
+            vec3s gloss = glms_vec3_scale(
+                point->glossy, lobe_cosine(point->exponent, glms_vec3_dot(light.direction, point->axis)));
+            if (point->layered && lobes->is_faceted)
+                gloss = tl_brdf_sum_gloss(&lobes->gloss, &lobes->frame, light.direction, point->viewer);
+            sent = glms_vec3_add(glms_vec3_scale(point->albedo, fmaxf(cosine, 0)), gloss);
+        }
+        sum = glms_vec3_add(sum, glms_vec3_scale(glms_vec3_mul(light.irradiance, sent), shown));
+    }
+    return sum;
+}
+
 /* One layer, by the hit there: what `ray` meets first. `above` is that of the layer before, NULL: none. */
 static vec3s evaluate_layer(const struct one_pixel *one, const struct tl_ray_differential *ray,
                             const struct tl_trace_hit *hit, const struct tl_trace_hit *above, float visible)
@@ -299,6 +330,8 @@ static vec3s evaluate_layer(const struct one_pixel *one, const struct tl_ray_dif
         vec3s light = glms_vec3_add(glms_vec3_scale(point.albedo, cosine / (float)M_PI), glints[i]);
         colour = glms_vec3_add(colour, glms_vec3_scale(glms_vec3_mul(sun->power, light), seen));
     }
+    const vec3s at = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, hit->distance_m));
+    colour = glms_vec3_add(colour, lamplight(one, at, &point, visible));
     return glms_vec3_add(colour, transmitted(one, hit, &point, visible));
 }
 
@@ -448,26 +481,32 @@ struct lanes_case {
     int minify; /* enum tl_detail_minify */
     float yaw;
     bool from_below;
+    size_t lamps;
 };
 
 static const struct lanes_case cases[] = {
-    {"matt", be_matt, TL_DETAIL_MINIFY_NONE, 0, false},
-    {"two lobes", be_glossy, TL_DETAIL_MINIFY_NONE, 0.7f, false},
-    {"satin", be_satin, TL_DETAIL_MINIFY_LEAN, 0, false},
-    {"satin, turned, from below", be_satin, TL_DETAIL_MINIFY_LEAN, 1, true},
-    {"satin with maps", be_satin_with_maps, TL_DETAIL_MINIFY_TOKSVIG, 0.4f, false},
-    {"shot silk", be_shot, TL_DETAIL_MINIFY_LEAN, 0.4f, false},
-    {"threads under facets", be_threads_under_facets, TL_DETAIL_MINIFY_LEAN, 0, false},
-    {"torrance-sparrow", be_torrance_sparrow, TL_DETAIL_MINIFY_NONE, 0, false},
-    {"ggx", be_ggx, TL_DETAIL_MINIFY_NONE, 0, false},
-    {"woven satin", be_woven, TL_DETAIL_MINIFY_LEAN, 0, false},
-    {"woven satin, from below", be_woven, TL_DETAIL_MINIFY_NONE, 0, true},
-    {"maps", be_mapped, TL_DETAIL_MINIFY_LEAN, 0, false},
-    {"maps, turned, from below", be_mapped, TL_DETAIL_MINIFY_TOKSVIG, 1, true},
-    {"sheer, all of it", be_sheer, TL_DETAIL_MINIFY_LEAN, 0.5f, false},
-    {"voile", be_voile, TL_DETAIL_MINIFY_NONE, 0, false},
-    {"voile from below", be_voile, TL_DETAIL_MINIFY_NONE, 0, true},
-    {"net of satin", be_net, TL_DETAIL_MINIFY_NONE, 0, false},
+    {"matt", be_matt, TL_DETAIL_MINIFY_NONE, 0, false, 0},
+    {"two lobes", be_glossy, TL_DETAIL_MINIFY_NONE, 0.7f, false, 0},
+    {"satin", be_satin, TL_DETAIL_MINIFY_LEAN, 0, false, 0},
+    {"satin, turned, from below", be_satin, TL_DETAIL_MINIFY_LEAN, 1, true, 0},
+    {"satin with maps", be_satin_with_maps, TL_DETAIL_MINIFY_TOKSVIG, 0.4f, false, 0},
+    {"shot silk", be_shot, TL_DETAIL_MINIFY_LEAN, 0.4f, false, 0},
+    {"threads under facets", be_threads_under_facets, TL_DETAIL_MINIFY_LEAN, 0, false, 0},
+    {"torrance-sparrow", be_torrance_sparrow, TL_DETAIL_MINIFY_NONE, 0, false, 0},
+    {"ggx", be_ggx, TL_DETAIL_MINIFY_NONE, 0, false, 0},
+    {"woven satin", be_woven, TL_DETAIL_MINIFY_LEAN, 0, false, 0},
+    {"woven satin, from below", be_woven, TL_DETAIL_MINIFY_NONE, 0, true, 0},
+    {"maps", be_mapped, TL_DETAIL_MINIFY_LEAN, 0, false, 0},
+    {"maps, turned, from below", be_mapped, TL_DETAIL_MINIFY_TOKSVIG, 1, true, 0},
+    {"sheer, all of it", be_sheer, TL_DETAIL_MINIFY_LEAN, 0.5f, false, 0},
+    {"voile", be_voile, TL_DETAIL_MINIFY_NONE, 0, false, 0},
+    {"voile from below", be_voile, TL_DETAIL_MINIFY_NONE, 0, true, 0},
+    {"net of satin", be_net, TL_DETAIL_MINIFY_NONE, 0, false, 0},
+    {"matt, a far lamp", be_matt, TL_DETAIL_MINIFY_NONE, 0, false, 1},
+    {"satin, lamps", be_satin, TL_DETAIL_MINIFY_LEAN, 0.4f, false, 2},
+    {"ggx, lamps", be_ggx, TL_DETAIL_MINIFY_NONE, 0, false, 2},
+    {"maps, lamps, from below", be_mapped, TL_DETAIL_MINIFY_LEAN, 1, true, 2},
+    {"sheer, lamps", be_sheer, TL_DETAIL_MINIFY_LEAN, 0, false, 2},
 };
 
 static void draw(const struct lanes_scene *scene, const struct tl_shade_materials *materials,
@@ -476,7 +515,9 @@ static void draw(const struct lanes_scene *scene, const struct tl_shade_material
     struct tl_pixel_triangles triangles = {0};
     struct tl_sun_pixels sun_pixels = {0};
     for (size_t k = 0; k < LAYERS; k++)
-        sun_pixels.visible[k][0] = scene->visible + k * PIXELS;
+        sun_pixels.visible[k][0] = sun_pixels.visible[k][scene->suns.count] = scene->visible + k * PIXELS;
+    struct tl_pixel_lights lights;
+    tl_pixel_lights_make(&scene->suns, yaw, scene->lamps, scene->lamp_count, &lights);
     tl_pixel_triangles_make(&triangles, ids, &scene->view, &scene->ranges, materials);
     const struct tl_pixels_request request = {.ids = ids,
                                               .triangles = &triangles,
@@ -484,7 +525,7 @@ static void draw(const struct lanes_scene *scene, const struct tl_shade_material
                                               .materials = materials,
                                               .ratios = &scene->ratios,
                                               .lobes = &scene->lobes,
-                                              .suns = &scene->suns,
+                                              .lights = &lights,
                                               .sun_pixels = &sun_pixels,
                                               .view = &scene->view,
                                               .environment_yaw = yaw,
@@ -575,6 +616,7 @@ static void check_case(struct lanes_scene *scene, const struct lanes_case *item)
         scene->shapes[i].material.double_sided = true;
     }
     item->edit(scene);
+    scene->lamp_count = item->lamps;
     look_from(scene, item->from_below);
     struct tl_detail_params detail = *(const struct tl_detail_params *)tl_detail_options.defaults;
     detail.minify = item->minify;

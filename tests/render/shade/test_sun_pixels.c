@@ -1,6 +1,6 @@
-/* Shadows of the suns at every pixel against rays from every pixel to every place of the sun: how many pixels
- * are wrong where all of the sun is seen or none, and how far off the penumbrae are. The ID buffer is made by
- * rays too, so no device is needed. */
+/* Shadows of suns and lamps at every pixel against rays from every pixel to every place of the sun, or to the
+ * lamp: how many pixels are wrong where all of the sun is seen or none, and how far off the penumbrae are.
+ * The ID buffer is made by rays too, so no device is needed. */
 #include "render/shade/sun_pixels.h"
 
 #include "tests/render/scenes.h"
@@ -32,6 +32,8 @@ struct sunny {
     struct tl_id_buffer ids;
     struct tl_trace_hit *hits; /* of the pixels by layer; of the ground: surface `shape_count` */
     struct tl_suns suns;
+    size_t lamp_count;
+    struct tl_lamp lamps[2];
 };
 
 /* Places of a sun of equal power: a spiral over the disc, the first in its middle, the first few spread all
@@ -110,6 +112,18 @@ static void open_sheer(struct sunny *scene)
     place_sun(&scene->suns.items[1], (vec3s){{-0.9f, 0.5f, 0.1f}}, RADIUS);
 }
 
+/* Lamps in place of the suns: one above everything, and one below the sheet, which does not shade it. */
+static void open_lamplit(struct sunny *scene)
+{
+    open_sunny(scene);
+    scene->suns.count = 0;
+    scene->lamp_count = 2;
+    scene->lamps[0] = (struct tl_lamp){.kind = TL_LAMP_POINT, .position = {{0.9f, 1.6f, 0.8f}}};
+    scene->lamps[1] = (struct tl_lamp){.kind = TL_LAMP_POINT, .position = {{0.35f, 0.3f, 0.35f}}};
+    for (int i = 0; i < 2; i++)
+        scene->lamps[i].irradiance = (vec3s){{1, 1, 1}};
+}
+
 /* A line of NARROW pixels across. */
 #define NARROW 1.4f
 static void open_narrow(struct sunny *scene)
@@ -145,12 +159,12 @@ static vec3s turned(vec3s d, float yaw)
     return (vec3s){{c * d.x + s * d.z, d.y, c * d.z - s * d.x}};
 }
 
-/* What open sheets let through, one after the other; 0: something is closed. */
-static float let_through(const struct sunny *scene, vec3s start, vec3s direction)
+/* What open sheets let through up to a distance, one after the other; 0: something is closed. */
+static float let_through(const struct sunny *scene, vec3s start, vec3s direction, float to_m)
 {
     float through = 1, from_m = 0;
     while (through > 0) {
-        struct tl_trace_hit hit = tl_trace_nearest(scene->trace, start, direction, from_m, INFINITY);
+        struct tl_trace_hit hit = tl_trace_nearest(scene->trace, start, direction, from_m, to_m);
         if (hit.surface == TL_TRACE_NONE)
             break;
         through *= scene->surfaces[hit.surface].materials[0].openness;
@@ -159,11 +173,12 @@ static float let_through(const struct sunny *scene, vec3s start, vec3s direction
     return through;
 }
 
-/* The share of the sun that arrives at what is seen, by a ray to each of its places; -1 where the surface
- * faces away and nothing shines through. */
-static float traced(const struct sunny *scene, const struct tl_sun *sun, float yaw,
-                    const struct tl_trace_hit *hit)
+/* The share of a light that arrives at what is seen, by a ray to each place of a sun, or to a lamp; -1 where
+ * the surface faces away and nothing shines through. Lamps are numbered after the suns. */
+static float traced(const struct sunny *scene, int light, float yaw, const struct tl_trace_hit *hit)
 {
+    const struct tl_sun *sun = light < scene->suns.count ? &scene->suns.items[light] : NULL;
+    const struct tl_lamp *lamp = sun ? NULL : &scene->lamps[light - scene->suns.count];
     const tl_surface *surface = scene->listed[hit->surface];
     const float weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
     vec3s corners[3], normals[3], point = {{0, 0, 0}}, smooth = {{0, 0, 0}};
@@ -175,7 +190,8 @@ static float traced(const struct sunny *scene, const struct tl_sun *sun, float y
         smooth = glms_vec3_add(smooth, glms_vec3_scale(normals[i], weights[i]));
     }
     smooth = glms_vec3_normalize(smooth);
-    float cosine = glms_vec3_dot(smooth, turned(sun->samples[0], yaw));
+    float cosine = glms_vec3_dot(smooth, sun ? turned(sun->samples[0], yaw)
+                                             : glms_vec3_normalize(glms_vec3_sub(lamp->position, point)));
     if (cosine < 0 && tl_material_transmits(&surface->materials[0])) {
         smooth = glms_vec3_negate(smooth);
         for (int i = 0; i < 3; i++)
@@ -187,9 +203,16 @@ static float traced(const struct sunny *scene, const struct tl_sun *sun, float y
     vec3s start = glms_vec3_add(tl_smooth_point(point, corners, normals, weights),
                                 glms_vec3_scale(smooth, tl_trace_offset(scene->trace)));
     float seen = 0;
+    if (lamp) {
+        const vec3s way = glms_vec3_sub(lamp->position, start);
+        const vec3s direction = glms_vec3_normalize(way);
+        return let_through(scene, start, direction, glms_vec3_norm(way)) *
+               tl_ground_visibility_to(&scene->ground, start, direction, glms_vec3_norm(way));
+    }
     for (int i = 0; i < sun->sample_count; i++) {
         vec3s direction = turned(sun->samples[i], yaw);
-        seen += let_through(scene, start, direction) * tl_ground_visibility(&scene->ground, start, direction);
+        seen += let_through(scene, start, direction, INFINITY) *
+                tl_ground_visibility(&scene->ground, start, direction);
     }
     return seen / (float)sun->sample_count;
 }
@@ -214,7 +237,7 @@ static struct counts count_pixels(const struct sunny *scene, const float *visibl
     for (size_t i = 0; i < PIXELS; i++) {
         if (ids.ids[i] == 0)
             continue;
-        float share = traced(scene, &scene->suns.items[sun], yaw, &scene->hits[(size_t)layer * PIXELS + i]);
+        float share = traced(scene, sun, yaw, &scene->hits[(size_t)layer * PIXELS + i]);
         if (share < 0)
             continue;
         if (fabsf(share - powers[0]) < 1e-5f || fabsf(share - powers[1]) < 1e-5f) {
@@ -250,14 +273,15 @@ static struct tl_sun_pixels pixels_of(const struct sunny *scene, float yaw)
 {
     struct tl_pixel_triangles triangles = {0};
     tl_pixel_triangles_make(&triangles, &scene->ids, &scene->view, &scene->ranges, &scene->materials);
+    struct tl_pixel_lights lights;
+    tl_pixel_lights_make(&scene->suns, yaw, scene->lamps, scene->lamp_count, &lights);
     const struct tl_sun_pixels_request request = {.ids = &scene->ids,
                                                   .triangles = &triangles,
                                                   .ranges = &scene->ranges,
-                                                  .suns = &scene->suns,
+                                                  .lights = &lights,
                                                   .trace = scene->trace,
                                                   .ground = &scene->ground,
-                                                  .openness = scene->materials.openness,
-                                                  .environment_yaw = yaw};
+                                                  .openness = scene->materials.openness};
     struct tl_sun_pixels pixels = {0};
     tl_sun_pixels_update(&pixels, &request);
     tl_pixel_triangles_release(&triangles);
@@ -348,10 +372,30 @@ static void test_narrow_shadows(void **state)
     close_sunny(&scene);
 }
 
+/* Measured: one wrong and none. */
+static void test_lamps_at_pixels(void **state)
+{
+    (void)state;
+    struct sunny scene;
+    open_lamplit(&scene);
+    struct tl_sun_pixels pixels = pixels_of(&scene, 0);
+    printf("lamps: %zu rays for %zu pixels\n", pixels.rays, scene.ids.covered);
+    assert_true(pixels.rays < scene.lamp_count * scene.ids.covered);
+    for (int lamp = 0; lamp < 2; lamp++) {
+        struct counts counts = count_pixels(&scene, pixels.visible[0][lamp], 0, lamp, 0);
+        printf("  lamp %d: %zu lit, %zu dark, %zu of these wrong\n", lamp, counts.lit, counts.dark,
+               counts.wrong);
+        assert_true(counts.dark > 1000 && counts.lit > 1000);
+        assert_true((double)counts.wrong <= WRONG_SHARE * (double)(counts.lit + counts.dark));
+    }
+    tl_sun_pixels_release(&pixels);
+    close_sunny(&scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_suns_at_pixels),
-                                       cmocka_unit_test(test_sheer_layers),
-                                       cmocka_unit_test(test_narrow_shadows)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_suns_at_pixels), cmocka_unit_test(test_sheer_layers),
+        cmocka_unit_test(test_narrow_shadows), cmocka_unit_test(test_lamps_at_pixels)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
