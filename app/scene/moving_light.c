@@ -87,15 +87,17 @@ static bool load_numbered(const tl_environment_sequence *sequence, int index, tl
 static bool load_frame(struct tl_moving_light *light, tl_error *error)
 {
     tl_environment first;
-    if (!load_numbered(&light->sequence, light->shown, &light->environment, error))
-        return false;
-    if (light->shown == 0)
-        return true;
     if (!load_numbered(&light->sequence, 0, &first, error))
         return false;
-    show_like(&first, &light->environment);
+    if (light->shown == 0) {
+        light->environment = first;
+        return true;
+    }
+    bool loaded = load_numbered(&light->sequence, light->shown, &light->environment, error);
+    if (loaded)
+        show_like(&first, &light->environment);
     tl_environment_release(&first);
-    return true;
+    return loaded;
 }
 
 static bool load(struct tl_moving_light *light, const char *name, double position, tl_error *error)
@@ -107,6 +109,10 @@ static bool load(struct tl_moving_light *light, const char *name, double positio
                lay_out(name, &light->environment, error);
     if (!tl_environment_sequence_open(name, &light->sequence, error))
         return false;
+    if (light->sequence.film)
+        tl_info(
+            "%s: %d frames; a film has no light above white: its lamps and suns are weaker than they were",
+            name, light->sequence.count);
     light->shown = frame_at(&light->sequence, position);
     return load_frame(light, error);
 }

@@ -85,9 +85,10 @@ static const struct tl_option scene_rows[] = {
         struct tl_scene_params, smooth, TL_AFFECTS_MATERIALS,
         "draws cloth of up to 40,000 triangles as a smooth surface, each triangle as four; creases stay at "
         "seams and hard edges; files, measures and contacts have the mesh itself"),
-    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
-                           "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
-                           "sequence of files, sky.####.exr, where each # is a digit of the frame's number"),
+    TL_OPTION_NAME_OR_PATH(
+        struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
+        "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
+        "sequence of files, sky.####.exr, where each # is a digit of the frame's number; or a film, .mp4"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
         "fabric, which sets the tables fabric, weave and material: built in, a YAML file, a U3M file or "

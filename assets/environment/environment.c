@@ -149,6 +149,28 @@ static bool is_radiance(const char *path)
     return tl_radiance_begins(start, got);
 }
 
+/* Names, cleans and arranges what holds a picture; releases it on failure. */
+static bool finish(const char *path, enum tl_exr_envmap kind, tl_environment *environment, tl_error *error)
+{
+    const char *slash = strrchr(path, '/');
+    drop_alpha(&environment->image);
+    clean_values(environment);
+    if (!arrange(path, kind, environment, error)) {
+        tl_environment_release(environment);
+        return false;
+    }
+    environment->name = tl_copy_string(slash ? slash + 1 : path);
+    tl_environment_adapt(environment);
+    return true;
+}
+
+bool tl_environment_take(const char *path, tl_image *image, tl_environment *out, tl_error *error)
+{
+    *out = (tl_environment){.image = *image};
+    *image = (tl_image){0};
+    return finish(path, TL_EXR_NOT_ENVMAP, out, error);
+}
+
 bool tl_environment_load(const char *path, tl_environment *out, tl_error *error)
 {
     *out = (tl_environment){0};
@@ -159,15 +181,8 @@ bool tl_environment_load(const char *path, tl_environment *out, tl_error *error)
     if (is_radiance(path) ? !load_radiance(path, &environment.image, error)
                           : !tl_exr_load(path, &environment.image, &kind, error))
         return false;
-    drop_alpha(&environment.image);
-    clean_values(&environment);
-    if (!arrange(path, kind, &environment, error)) {
-        tl_environment_release(&environment);
+    if (!finish(path, kind, &environment, error))
         return false;
-    }
-    const char *slash = strrchr(path, '/');
-    environment.name = tl_copy_string(slash ? slash + 1 : path);
-    tl_environment_adapt(&environment);
     *out = environment;
     return true;
 }

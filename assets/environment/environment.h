@@ -17,6 +17,9 @@
  * Threads: several threads may load at once. */
 bool tl_environment_load(const char *path, tl_environment *out, tl_error *error);
 
+/* The same of a picture in memory, F32, which it takes, also on failure. */
+bool tl_environment_take(const char *path, tl_image *image, tl_environment *out, tl_error *error);
+
 /* Computes `shown` and `ground` of a lat-long or cube map; leaves other layouts as they are. */
 void tl_environment_adapt(tl_environment *environment);
 

@@ -7,7 +7,7 @@
 
 bool tl_environment_is_sequence(const char *name)
 {
-    return tl_sequence_is_pattern(name);
+    return tl_film_is(name) || tl_sequence_is_pattern(name);
 }
 
 static bool check_numbers(const char *pattern, const int *numbers, size_t count, tl_error *error)
@@ -24,8 +24,19 @@ static bool check_numbers(const char *pattern, const int *numbers, size_t count,
     return true;
 }
 
+static bool open_film(const char *path, tl_environment_sequence *out, tl_error *error)
+{
+    tl_film *film = tl_film_open(path, error);
+    if (film)
+        *out = (tl_environment_sequence){
+            .pattern = tl_copy_string(path), .film = film, .count = tl_film_frame_count(film)};
+    return film != NULL;
+}
+
 bool tl_environment_sequence_open(const char *pattern, tl_environment_sequence *out, tl_error *error)
 {
+    if (tl_film_is(pattern))
+        return open_film(pattern, out, error);
     int *numbers;
     size_t count;
     if (!tl_sequence_list(pattern, &numbers, &count, error))
@@ -40,6 +51,7 @@ bool tl_environment_sequence_open(const char *pattern, tl_environment_sequence *
 
 void tl_environment_sequence_release(tl_environment_sequence *sequence)
 {
+    tl_film_close(&sequence->film);
     free(sequence->pattern);
     *sequence = (tl_environment_sequence){0};
 }
@@ -47,6 +59,10 @@ void tl_environment_sequence_release(tl_environment_sequence *sequence)
 bool tl_environment_sequence_load(const tl_environment_sequence *sequence, int index, tl_environment *out,
                                   tl_error *error)
 {
+    tl_image frame;
+    if (sequence->film)
+        return tl_film_read(sequence->film, index, &frame, error) &&
+               tl_environment_take(sequence->pattern, &frame, out, error);
     char *path = tl_sequence_path(sequence->pattern, sequence->first + index);
     bool loaded = tl_environment_load(path, out, error);
     free(path);

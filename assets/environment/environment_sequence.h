@@ -1,23 +1,26 @@
-/* Sequences of environments: one file per frame, named by a pattern (assets/motion/sequence.h). The numbers
- * may start anywhere and have no gaps.
+/* Sequences of environments: one file per frame, named by a pattern (assets/motion/sequence.h), whose numbers
+ * may start anywhere and have no gaps; or a film (assets/environment/film.h).
  *
- * Errors: a pattern without files and a gap are refused when the sequence is opened, a damaged frame when it
- * is loaded. Lifetime: tl_environment_sequence owns its pattern; nothing stays open. Threads: any. */
+ * Errors: a pattern without files, a gap and what is no film are refused when the sequence is opened, a
+ * damaged frame when it is loaded. Lifetime: tl_environment_sequence owns its pattern and its film, whose
+ * process runs until then. Threads: one at a time for a sequence. */
 #ifndef TOILE_ASSETS_ENVIRONMENT_ENVIRONMENT_SEQUENCE_H
 #define TOILE_ASSETS_ENVIRONMENT_ENVIRONMENT_SEQUENCE_H
 
 #include "assets/environment/environment.h"
+#include "assets/environment/film.h"
 
 typedef struct tl_environment_sequence {
     char *pattern;
-    int first; /* number of frame 0 */
-    int count; /* frames; 0 only in a zeroed struct */
+    tl_film *film; /* its frames; NULL: files */
+    int first;     /* number of frame 0 */
+    int count;     /* frames; 0 only in a zeroed struct */
 } tl_environment_sequence;
 
-/* Whether `name` is a pattern and no file of that very name exists. */
+/* Whether `name` is a film's, or a pattern and no file of that very name exists. */
 bool tl_environment_is_sequence(const char *name);
 
-/* Lists the files of a pattern; none is read yet. */
+/* Lists the files of a pattern, or the frames of a film; none is read yet. */
 bool tl_environment_sequence_open(const char *pattern, tl_environment_sequence *out, tl_error *error);
 /* Frees and zeroes; a zeroed sequence is accepted. */
 void tl_environment_sequence_release(tl_environment_sequence *sequence);

@@ -3,18 +3,15 @@
 #include "config/base/file.h"
 #include "config/base/log.h"
 #include "config/base/memory.h"
+#include "config/base/process.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
-
-extern char **environ;
 
 struct tl_video {
     struct tl_writer writer;
@@ -35,34 +32,6 @@ static const char *container_of(const char *path)
     return NULL;
 }
 
-/* Runs ffmpeg with `input` as its stdin and `log` for its output; waits for nothing. In a group of its
- * own, so that Ctrl-C on the terminal reaches this program only. Returns 0, or what went wrong. */
-static int start(char *const arguments[], int input, int log, pid_t *out)
-{
-    posix_spawn_file_actions_t files;
-    posix_spawnattr_t attributes;
-    posix_spawn_file_actions_init(&files);
-    posix_spawnattr_init(&attributes);
-    posix_spawn_file_actions_adddup2(&files, input, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&files, log, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&files, log, STDERR_FILENO);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    int reason = posix_spawnp(out, arguments[0], &files, &attributes, arguments, environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&files);
-    return reason;
-}
-
-static int wait_for(pid_t process)
-{
-    int status = 0;
-    while (waitpid(process, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 bool tl_video_check(const char *path, tl_error *error)
 {
     if (!container_of(path))
@@ -71,10 +40,10 @@ bool tl_video_check(const char *path, tl_error *error)
     char *const arguments[] = {"ffmpeg", "-version", NULL};
     int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
     pid_t process = 0;
-    int reason = nothing < 0 ? errno : start(arguments, nothing, nothing, &process);
+    int reason = nothing < 0 ? errno : tl_process_start(arguments, nothing, nothing, nothing, &process);
     if (nothing >= 0)
         close(nothing);
-    if (reason == 0 && wait_for(process) == 0)
+    if (reason == 0 && tl_process_wait(process) == 0)
         return true;
     return tl_fail(error, TL_USAGE,
                    "--video: the command ffmpeg cannot be run: install the package ffmpeg, or leave --video "
@@ -198,7 +167,9 @@ static bool encode(tl_video *video, FILE *log, tl_error *error)
                                NULL};
     int ends[2] = {-1, -1};
     pid_t process = 0;
-    int reason = pipe2(ends, O_CLOEXEC) != 0 ? errno : start(arguments, ends[0], fileno(log), &process);
+    int reason = pipe2(ends, O_CLOEXEC) != 0
+                     ? errno
+                     : tl_process_start(arguments, ends[0], fileno(log), fileno(log), &process);
     free(size);
     free(rate);
     free(target);
@@ -216,7 +187,7 @@ static bool encode(tl_video *video, FILE *log, tl_error *error)
     bool heard = feed(video, ends[1]);
     close(ends[1]);
     sigaction(SIGPIPE, &before, NULL);
-    int status = wait_for(process);
+    int status = tl_process_wait(process);
     if (heard && status == 0)
         return true;
     char words[256];

@@ -197,8 +197,9 @@ static struct errors compare(const struct tl_swatch_maps *swatch)
     for (int row = 0; row < SIDE; row++)
         for (int column = 0; column < SIDE; column++) {
             double x, y, n[3];
-            const float *own = tl_image_floats(&swatch->normal) + 3 * (row * SIDE + column);
-            const float *albedo = tl_image_floats(&swatch->albedo) + 3 * (row * SIDE + column);
+            const float *own = tl_image_floats(&swatch->normal) + (size_t)3 * (size_t)(row * SIDE + column);
+            const float *albedo =
+                tl_image_floats(&swatch->albedo) + (size_t)3 * (size_t)(row * SIDE + column);
             place(column, row, &x, &y);
             normal_at(x, y, n);
             const double found[3] = {(double)own[0], (double)own[1], (double)own[2]};
@@ -356,7 +357,7 @@ static void test_bad_pictures(void **state)
     tl_error error = {0};
     char *path = file_of("bright.png"), *exr = file_of("nan.exr");
     tl_image picture = tl_image_create(16, 16, 3, TL_IMAGE_U8), read;
-    memset(tl_image_bytes(&picture), 255, 16 * 3 * 2);
+    memset(tl_image_bytes(&picture), 255, (size_t)16 * 3 * 2);
     assert_ok(tl_image_save_png(path, &picture, &error), error);
     assert_false(tl_swatch_picture_load(path, &read, &error));
     assert_non_null(strstr(error.message, "12 % of it is saturated"));
@@ -388,7 +389,7 @@ static void test_too_dark(void **state)
             tl_image_floats(&pictures[k])[i] = k < 2 || i % 7 ? 0.3f : 0;
     }
     for (int k = 0; k < 2; k++)
-        memset(tl_image_floats(&pictures[k]), 0, sizeof(float) * 3 * 32);
+        memset(tl_image_floats(&pictures[k]), 0, sizeof(float) * 3 * (size_t)32);
     assert_false(tl_swatch_solve(&rig, pictures, &swatch, &error));
     assert_non_null(strstr(error.message, "fewer than three lamps"));
     for (int k = 0; k < 4; k++)
