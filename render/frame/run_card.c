@@ -1,5 +1,7 @@
 /* Jobs of frames on the graphics card. */
 #include "config/base/hash.h"
+#include "config/base/interrupt.h"
+#include "config/base/log.h"
 #include "render/frame/job_io.h"
 #include "render/frame/settings.h"
 
@@ -81,14 +83,17 @@ bool tl_run_card_rest(const struct tl_card_rest_job *job, tl_error *error)
         .footprint = samples_of(job->size),
     };
     tl_linear_image_begin_gpu(image, job->gpu, size->width, size->height);
+    struct tl_progress progress = tl_progress_begin("averaging");
     bool fine = true;
-    for (int i = 0; fine && i < job->shift->rounds; i++) {
+    for (int i = 0; fine && i < job->shift->rounds && !(i > 0 && tl_interrupted()); i++) {
         request.round = job->shift->before + i;
         const struct tl_view view =
             tl_frame_shifted_view(&job->camera->view, request.round, size->width, size->height);
         const struct tl_card_view seen = {.view = &view, .width = size->width, .height = size->height};
         fine = tl_card_see(job->card, &seen, error) &&
                tl_card_draw_round(job->card, &request, &image->target.colours[0], error);
+        tl_progress_update(&progress, i + 1, job->shift->rounds);
     }
+    tl_progress_end(&progress);
     return fine;
 }

@@ -31,7 +31,7 @@ static void name_bits(tl_bits bits, const char *const *names, char *out, size_t 
 {
     size_t length = 0;
     out[0] = '\0';
-    for (int bit = 0; bit < 64; bit++) {
+    for (int bit = 0; bit < (int)(8 * sizeof bits); bit++) {
         if (!(bits & (tl_bits)1 << bit))
             continue;
         const char *name = names && names[bit] ? names[bit] : "?";

@@ -203,12 +203,29 @@ static void long_reasons_are_cut(void **state)
                         "changed: a resource of quite some name, a resource of quite some name");
 }
 
+/* The last bit of a set has a name, too. */
+static void every_bit_is_named(void **state)
+{
+    enum { LAST = 8 * sizeof(tl_bits) - 1 };
+    (void)state;
+    const char *names[LAST + 1] = {[LAST] = "the last"};
+    const tl_job maker[] = {{"maker", "", 0, BIT(LAST), 0, {"only"}, NULL}};
+    const struct tl_plan_input input = {.wanted = BIT(LAST), .resource_names = names};
+    tl_plan plan;
+    tl_plan_make(maker, 1, &input, NULL, &plan);
+    assert_string_equal(plan.rows[0].reason, "not made yet: the last");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plans_follow_the_table),          cmocka_unit_test(stale_results_are_made_again),
-        cmocka_unit_test(levels_are_the_most_exact),       cmocka_unit_test(predictions_are_of_what_runs),
-        cmocka_unit_test(tables_out_of_order_are_refused), cmocka_unit_test(long_reasons_are_cut),
+        cmocka_unit_test(plans_follow_the_table),
+        cmocka_unit_test(stale_results_are_made_again),
+        cmocka_unit_test(levels_are_the_most_exact),
+        cmocka_unit_test(predictions_are_of_what_runs),
+        cmocka_unit_test(tables_out_of_order_are_refused),
+        cmocka_unit_test(long_reasons_are_cut),
+        cmocka_unit_test(every_bit_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
