@@ -261,10 +261,10 @@ static void learn_costs(tl_renderer *renderer, tl_plan *plan, double new_regions
 /* Runs a job and everything that it asks of GL, by the CPU's clock: GL's own is wrong on software drivers. */
 static bool run_and_wait(tl_renderer *renderer, int job, struct tl_plan_row *row, tl_error *error)
 {
-    const double started_s = tl_clock_s();
+    row->began_s = tl_clock_s();
     const bool has_run = tl_frame_jobs[job].run(&renderer->resources, row->level, error);
     glFinish();
-    row->took_ms = 1000 * (tl_clock_s() - started_s);
+    row->took_ms = 1000 * (tl_clock_s() - row->began_s);
     return has_run && tl_gpu_check(renderer->resources.gpu, error);
 }
 
@@ -282,6 +282,7 @@ static bool run_jobs(tl_renderer *renderer, tl_plan *plan, tl_error *error)
 static bool queue_jobs(tl_renderer *renderer, tl_plan *plan, tl_error *error)
 {
     struct tl_timer_times times;
+    double began_s = tl_clock_s();
     tl_timer_begin(renderer->timer, 0);
     for (int i = 0; i < plan->count; i++) {
         if (plan->rows[i].action != TL_JOB_RUN)
@@ -292,8 +293,12 @@ static bool queue_jobs(tl_renderer *renderer, tl_plan *plan, tl_error *error)
     }
     glFinish();
     while (tl_timer_take(renderer->timer, &times))
-        for (int i = 0; i < times.count; i++)
-            plan->rows[times.marks[i].part].took_ms = times.marks[i].ms;
+        for (int i = 0; i < times.count; i++) {
+            struct tl_plan_row *row = &plan->rows[times.marks[i].part];
+            row->took_ms = times.marks[i].ms;
+            row->began_s = began_s;
+            began_s += 1e-3 * row->took_ms;
+        }
     return tl_gpu_check(renderer->resources.gpu, error);
 }
 

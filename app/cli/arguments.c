@@ -150,6 +150,8 @@ static const struct flag flags_known[] = {
     {"--path", TL_FLAGS_FLY, FLAG_TEXT, AT(path), NULL, "FILE.yaml", "camera path; else one round the scene"},
     {"--video", TL_FLAGS_FLY, FLAG_TEXT, AT(video), NULL, "FILE.mp4",
      "write a video of the flight; .mp4, .mkv or .mov, by ffmpeg"},
+    {"--trace", TL_FLAGS_FLY, FLAG_TEXT, AT(trace), NULL, "FILE.json",
+     "write a timeline of jobs and busy threads, for ui.perfetto.dev"},
     {"--against", TL_FLAGS_FLY, FLAG_TEXT, AT(against), NULL, "FOLDER",
      "compare with an earlier flight, job by job; without a verdict where the wall and the CPU time of the "
      "frame disagree, as on a machine that was busier in one of them"},

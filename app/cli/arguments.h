@@ -29,7 +29,7 @@ enum tl_flag_set {
     TL_FLAGS_AOV = 1 << 13,     /* --aov */
     TL_FLAGS_SHEET = 1 << 14,   /* lists of what a contact sheet shows, --same-drape */
     TL_FLAGS_CAPTURE = 1 << 15, /* --capture, and those of the scene but the image's */
-    TL_FLAGS_FLY = 1 << 16,     /* --frames N --path --video --against --replay --oracle --hash */
+    TL_FLAGS_FLY = 1 << 16,     /* --frames N --path --video --trace --against --replay --oracle --hash */
     TL_FLAGS_BUDGET = 1 << 17,  /* --budget MS */
     TL_FLAGS_CLEAR = 1 << 18,   /* --clear */
     TL_FLAGS_SHARD = 1 << 19,   /* --shard I/N */
@@ -49,7 +49,7 @@ struct tl_arguments {
     const char *screenshots; /* folder for screenshots */
     const char *axis;
     const char *layout, *from;
-    const char *path, *video, *against, *replay;
+    const char *path, *video, *trace, *against, *replay;
     const char *mask;
     const char *card, *lights;
     struct { /* names with commas between them */

@@ -59,8 +59,9 @@ struct tl_plan_row {
     char reason[120];
     /* Time by the cost model; NaN while it is unknown, 0 for what does not run. */
     double predicted_ms;
-    /* Once carried out; 0 for what did not run. */
-    double took_ms;
+    /* Once carried out; 0 for what did not run. When it began is by tl_clock_s; of the graphics card's jobs
+     * it is as if the card began the first when that was queued. */
+    double took_ms, began_s;
     /* The same by the table's costs, on the table's machine; 0 where it has none. */
     double work_ms;
 };

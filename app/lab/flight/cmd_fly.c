@@ -281,10 +281,12 @@ static bool fly(struct flying *flying, struct tl_headless *headless, tl_error *e
     }
     tl_error failure = {0};
     bool done = tl_fly(headless, &flying->options, &path, &flying->flight, error) &&
+                tl_timeline_commit(&flying->options.trace, error) &&
                 tl_fly_judge(headless, &flying->flight, error);
     if (flying->flight.count == 0)
         return done;
     bool reported = report(flying, headless, done ? NULL : error->message, &failure) &&
+                    tl_timeline_commit(&flying->options.trace, &failure) &&
                     tl_video_commit(&flying->options.video, &failure);
     if (done && !reported)
         *error = failure;
@@ -302,7 +304,12 @@ bool tl_command_fly(const struct tl_arguments *arguments, tl_error *error)
         flying->options.video = tl_video_begin(arguments->video, flying->settings.cloth.frame_rate, error);
         done = flying->options.video != NULL;
     }
+    if (done && arguments->trace) {
+        flying->options.trace = tl_timeline_begin(arguments->trace, error);
+        done = flying->options.trace != NULL;
+    }
     done = done && tl_headless_open(&headless, &flying->settings, error) && fly(flying, &headless, error);
+    tl_timeline_abandon(&flying->options.trace);
     tl_video_abandon(&flying->options.video);
     tl_flight_release(&flying->flight);
     tl_flight_record_release(&flying->replay);

@@ -22,6 +22,13 @@ struct recorder {
     tl_quality_governor *governor; /* NULL: a replay */
 };
 
+/* Adds what began at `began_s` and ends now to the trace, if there is one. */
+static void trace_since(const struct recorder *recorder, const char *name, double began_s)
+{
+    if (recorder->options->trace)
+        tl_timeline_add(recorder->options->trace, name, began_s, 1e3 * (tl_clock_s() - began_s));
+}
+
 /* The settings of a frame at full quality. */
 static void settings_at(const struct tl_headless *headless, const struct tl_flight *flight, int number,
                         struct tl_settings *out)
@@ -189,18 +196,22 @@ static bool draw_timed(struct recorder *recorder, int number, struct tl_flight_f
     struct tl_quality_choice choice;
     struct tl_settings wanted;
     settings_at(headless, recorder->flight, number, &wanted);
+    const double began_s = tl_clock_s();
     struct tl_stopwatch watch = tl_stopwatch_start();
     if (!choose(recorder, &wanted, number, &choice, error))
         return false;
+    const double cloth_began_s = tl_clock_s();
     struct tl_stopwatch cloth_watch = tl_stopwatch_start();
     if (number > 0 && !tl_motion_advance(&recorder->motion, number, error))
         return false;
     frame->cloth_ms = tl_stopwatch_read(&cloth_watch).wall_ms;
+    trace_since(recorder, "cloth", cloth_began_s);
     const tl_frame shown = tl_session_frame(headless->session);
     const struct tl_render_settings render = drawn_at(&choice.levels, &wanted);
     if (!tl_renderer_draw(headless->renderer, &shown, &render, error))
         return false;
     const struct tl_taken taken = tl_stopwatch_read(&watch); /* every job ends with a glFinish */
+    trace_since(recorder, "frame", began_s);
     frame->total_ms = taken.wall_ms;
     frame->cpu_ms = taken.cpu_ms;
     if (getloadavg(&frame->load, 1) != 1)
@@ -233,6 +244,8 @@ static bool record_frame(struct recorder *recorder, int number, tl_error *error)
     if (recorder->governor && number == 0)
         prepare_levels(recorder);
     record_jobs(flight, plan, &frame);
+    if (recorder->options->trace)
+        tl_timeline_add_plan(recorder->options->trace, plan);
     frame.memory_bytes = tl_renderer_memory(recorder->headless->renderer).total;
     flight->frames[number] = frame;
     flight->count = number + 1;

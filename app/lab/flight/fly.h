@@ -9,6 +9,7 @@
 #define TOILE_APP_LAB_FLIGHT_FLY_H
 
 #include "app/budget/governor.h"
+#include "app/lab/flight/timeline.h"
 #include "app/lab/flight/video.h"
 #include "app/scene/headless.h"
 #include "app/scene/path.h"
@@ -81,6 +82,7 @@ struct tl_fly_options {
     int shard, shards;              /* of the frames to compare every shards-th, from shard; 0, 1: all */
     const struct tl_flight *replay; /* levels are taken from here; NULL: chosen */
     tl_video *video;                /* gets every image; NULL: none */
+    tl_timeline *trace;             /* gets every frame's jobs; NULL: none */
 };
 
 /* Records a flight along `path`, which it takes ownership of, from the session's frame 0. After a failure or

@@ -17,6 +17,7 @@ refuse "an unknown kind of video" "unknown kind of video" fly -o f --video fligh
 
 $TOILE fly $small --frames 24 --budget 10 --hash --oracle 11 -o a >said
 check "it says what it came to" grep -q "within 1.1 x 10 ms" said
+refuse "a trace in a missing folder" "nowhere/trace.json" fly -o a --trace nowhere/trace.json
 check "the garment's error comes first" grep -q "FLIP of the garment 0\.[0-9]*, of its worst 5 % 0\.[0-9]*" said
 check "four files" test "$(ls a | tr '\n' ' ')" = "frames.csv path.yaml report.html summary.json "
 status=0
@@ -33,7 +34,7 @@ refuse "a replay of other work" "was flown with light.regions" fly $small --set 
 refuse "a comparison of other work" "was flown with image.width" fly $small --size 32x48 --against a -o b
 
 printf 'keys:\n  - {time_s: 0, yaw_deg: 0}\n  - {time_s: 0.2, yaw_deg: 90}\n' >path.yaml
-$TOILE fly $small --path path.yaml -o c --json >said.json
+$TOILE fly $small --path path.yaml -o c --json --trace trace.json >said.json
 check "a path of its own has its own length" test "$(wc -l <c/frames.csv)" -eq 8
 refuse "another path is other work" "another path" fly $small --path path.yaml --against a -o b
 
@@ -71,6 +72,39 @@ else
     echo "skipped: files are not parsed: python3 is absent"
 fi
 
+if command -v python3 >/dev/null; then
+    check "a trace: what a frame consists of, and busy threads" python3 - <<'PYTHON'
+import csv, json, os
+trace = json.load(open("trace.json"))["traceEvents"]
+rows = list(csv.DictReader(open("c/frames.csv")))
+names = {e["tid"]: e["args"]["name"] for e in trace if e["ph"] == "M"}
+spans = [e for e in trace if e["ph"] == "X"]
+jobs = [e for e in spans if e["tid"] == 1]
+frames = sorted((e for e in jobs if e["name"] == "frame"), key=lambda e: e["ts"])
+assert len(frames) == len(rows) == 7 and names[1] == "frames and their jobs", (len(frames), names)
+for i, (frame, row) in enumerate(zip(frames, rows)):
+    end = frame["ts"] + frame["dur"]
+    assert abs(frame["dur"] - 1e3 * float(row["total_ms"])) < 1e3, frame
+    assert i == 0 or frames[i - 1]["ts"] + frames[i - 1]["dur"] <= frame["ts"]
+    inside = [e for e in jobs if e is not frame and frame["ts"] <= e["ts"] < end]
+    want = {k[4:-3] for k in row if k.startswith("job_") and float(row[k]) > 0} | ({"cloth"} if i else set())
+    assert want <= {e["name"] for e in inside} <= want | {"cloth"}, (want, inside)
+    inside.sort(key=lambda e: e["ts"])
+    for a, b in zip(inside, inside[1:] + [{"ts": end}]):
+        assert a["ts"] + a["dur"] <= b["ts"] + 1, (a, b)
+busy = [e for e in spans if e["tid"] != 1]
+assert {e["name"] for e in busy} == {"busy"} and {e["tid"] for e in busy} <= set(names)
+main = [e for e in busy if names[e["tid"]] == "main thread"]
+assert main and all(e["dur"] > 900 for e in busy)
+total = dict.fromkeys(set(names) - {1}, 0)
+for thread in total:
+    mine = sorted((e for e in busy if e["tid"] == thread), key=lambda e: e["ts"])
+    assert all(a["ts"] + a["dur"] <= b["ts"] + 1 for a, b in zip(mine, mine[1:])), names[thread]
+    total[thread] = sum(max(0, e["ts"] + e["dur"] - max(e["ts"], frames[0]["ts"])) for e in mine)
+assert len(total) > 1 or os.cpu_count() == 1, "software GL has threads"
+assert len(total) == 1 or min(total.values()) < 0.5 * max(total.values()), "each thread has a clock of its own"
+PYTHON
+fi
 for folder in a b c; do check_report $folder/report.html 3; done
 
 mkdir empty
