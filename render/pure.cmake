@@ -91,6 +91,7 @@ add_library(toile_light STATIC
   reference/shading_point.c
   surfaces/ground.c
   trace/cutout.c
+  trace/holes.c
   trace/trace.c
   trace/tree.c
   detail/transfer.c

@@ -35,7 +35,7 @@ size_t tl_card_bytes(const tl_graphics_card *card);
 void tl_card_forget(tl_graphics_card *card);
 bool tl_card_reload(tl_graphics_card *card, tl_error *error); /* its shaders */
 
-/* Returns why the graphics card cannot draw these surfaces' materials; NULL: it can. A constant text. */
+/* Returns why the graphics card cannot draw these surfaces; NULL: it can. A constant text. */
 const char *tl_card_refusal(const tl_surface *surfaces, size_t count);
 /* Returns why this GL cannot run the kernels; NULL: it can. */
 const char *tl_card_gl_refusal(const tl_gpu *gpu);

@@ -5,6 +5,7 @@
 #include "card_frame.glsl"
 #include "card_geometry.glsl"
 #define TREE_BINDING CARD_NODES
+#define HOLES_BINDING CARD_HOLES
 #include "trace.glsl"
 #include "card_lobes.glsl"
 #include "bounced_terms.glsl"
@@ -133,21 +134,28 @@ struct Arrival {
 Arrival follow(vec3 o, vec3 d, float cosine)
 {
     float way = ground_way(disc, o, d), to = way >= 0.0 && disc.w > 0.0 ? way : 1e30;
-    TreeHit hit = tree_nearest(o, d, 0.0, to);
     Arrival found = Arrival(vec3(0.0), 1.0, true);
-    if (hit.triangle != TREE_NO_TRIANGLE) {
+    float from = 0.0;
+    for (int layer = 0; layer <= 4 && found.open > 0.0; layer++) { // TL_TRANSPARENCY_LAYERS
+        TreeHit hit = tree_nearest(o, d, from, to);
+        if (hit.triangle == TREE_NO_TRIANGLE)
+            break;
+        float share = layer < 4 ? hit.open : 0.0;
         uint side = 3u * (2u * hit.triangle + (hit.back ? 1u : 0u));
         vec4 sum = (1.0 - hit.u - hit.v) * sent[triangle_probes[side]] + hit.u * sent[triangle_probes[side + 1u]] +
                    hit.v * sent[triangle_probes[side + 2u]];
-        found.is_known = sum.w > 0.1;
-        found.light = found.is_known ? sum.rgb / (sum.w * spread_pdf(cosine)) : vec3(0.0);
-        found.open = 0.0;
-    } else if (to < 1e29) {
+        bool is_known = sum.w > 0.1;
+        found.is_known = found.is_known && is_known;
+        found.light += is_known ? found.open * (1.0 - share) * sum.rgb / (sum.w * spread_pdf(cosine)) : vec3(0.0);
+        found.open *= share;
+        from = hit.distance + eye.w;
+    }
+    if (found.open > 0.0 && to < 1e29) {
         vec3 point = o + d * to;
         float cover = ground_opacity(disc, point.x, point.z);
-        found.open = 1.0 - cover;
         if (cover > 0.0)
-            found.light = sent_by_ground(point) * (cover / spread_pdf(cosine));
+            found.light += sent_by_ground(point) * (found.open * cover / spread_pdf(cosine));
+        found.open *= 1.0 - cover;
     }
     return found;
 }
@@ -179,15 +187,15 @@ void trace(uint at, uint vertex, uint ray, vec3 n, vec3 o)
             if (cosine > 0.0) {
                 float share = ground_passes(disc, o, d);
                 all_of[thread] = weighted_sky(in_sky, cosine);
-                open_of[thread] = share > 0.0 && !tree_occluded(o, d, 0.0, 1e30) ? all_of[thread] * share : vec3(0.0);
+                open_of[thread] = share > 0.0 ? all_of[thread] * share * tree_transmittance(o, d, 0.0, 1e30) : vec3(0.0);
             }
         }
     } else if (ray < RAYS + SKY_RAYS + uint(counts.y)) {
         Sun sun = sun_at(int(ray - RAYS - SKY_RAYS), o, n);
         d = sun.towards;
         float cosine = dot(n, d), share = cosine > 0.0 ? ground_passes_from(o, d, sun.way) : 0.0;
-        if (share > 0.0 && !tree_occluded(o, d, 0.0, sun.way))
-            sun_of[thread] = sun.power * (share * cosine / PI);
+        if (share > 0.0)
+            sun_of[thread] = sun.power * (share * tree_transmittance(o, d, 0.0, sun.way) * cosine / PI);
     }
     way_of[thread] = d;
 }
@@ -222,9 +230,10 @@ void sum_up(uint probe, uint vertex, bool back, uint first, float mean, vec3 n)
         sunlight += sun_of[k];
     arrives *= mean;
     vec3 lit = exact_diffuse(into_environment(n)) * share_of(open, all);
-    uint part = 4u * vertex_parts[vertex], albedo = part + (back ? 2u : 0u);
+    uint part = 5u * vertex_parts[vertex], albedo = part + (back ? 2u : 0u);
     vec3 emission = vec3(albedos[part].w, albedos[part + 1u].w, albedos[part + 2u].w);
     found[17u * probe] = vec4(arrives, 1.0);
+    sent_now[uint(counts.z) + probe] = vec4(lit + arrives + sunlight, 1.0);
     sent_now[probe] = vec4(albedos[albedo].rgb * (lit + arrives) + albedos[albedo + 1u].rgb * sunlight + emission, 1.0);
 }
 

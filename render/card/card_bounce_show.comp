@@ -51,7 +51,7 @@ void main()
         return;
     uint probe = list[at];
     vec4 sum = vec4(0.0);
-    if (from[4u * probe + 3u] != 0u)
+    if ((from[4u * probe + 3u] & 1u) != 0u)
         sum = mean_of(probe, term);
     else
         for (uint k = 0u; k < 3u; k++)

@@ -16,7 +16,7 @@ layout(std140, binding = 0) uniform FrameValues
     vec4 turn;           // cosine and sine of the environment's yaw
     ivec4 size;          // width, height, tiles across, tiles up
     ivec4 counts;        // regions, suns with lamps, probes, triangles
-    uvec4 numbers;       // probes with bounced light of their own, 1: light bounces
+    uvec4 numbers;       // probes with bounced light of their own, 1: light bounces, triangles before the ground's
     vec4 suns[8];        // direction, radius; then lamps: direction or position, -1
     vec4 sun_powers[8];  // w: 1: of a position, at 1 m
     vec4 sun_places[64]; // [4][16] directions of places of each, those farthest apart first

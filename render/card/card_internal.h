@@ -12,6 +12,7 @@
 /* PROGRAM(name, file, defines): the compute programs. */
 #define TL_CARD_PROGRAMS(PROGRAM)                                                                            \
     PROGRAM(list_tiles, "card_tiles.comp", NULL)                                                             \
+    PROGRAM(behind, "card_behind.comp", NULL)                                                                \
     PROGRAM(bounce, "card_bounce.comp", NULL)                                                                \
     PROGRAM(bounce_fill, "card_bounce_fill.comp", NULL)                                                      \
     PROGRAM(bounce_show, "card_bounce_show.comp", NULL)                                                      \
@@ -29,6 +30,7 @@
     (TL_EXPONENT_COUNT + 2) /* those of the exponents, and the gain of diffuse light                         \
                              */
 #define TL_CARD_SUNS   (TL_SUNS_MAX + TL_LAMPS_MAX)
+#define TL_CARD_LAYERS (1 + TL_TRANSPARENCY_LAYERS)
 #define TL_CARD_PLACES 16                /* of a sun */
 #define TL_CARD_MAPS   (TL_MAP_USES + 5) /* of a class: see list_maps */
 
@@ -55,7 +57,7 @@ struct tl_graphics_card {
 #define MEMBER(name, file, defines) tl_program name;
     TL_CARD_PROGRAMS(MEMBER)
 #undef MEMBER
-    tl_program draw_ids;
+    tl_program draw_ids[2]; /* without and with holes */
     struct tl_card_frame frame;
     tl_buffer frame_buffer, blends;         /* of uniforms */
     unsigned vertex_array, ids_framebuffer; /* GL names */
@@ -72,13 +74,14 @@ struct tl_graphics_card {
     tl_texture no_map; /* one texel of 0 */
 
     /* State of the view. */
-    tl_texture ids, depth, light; /* of the samples */
+    int layers;                                   /* 1: nothing is seen through */
+    tl_texture ids[TL_CARD_LAYERS], depth, light; /* of the samples */
 
     /* State of the light. */
     uint64_t light_revision;
     bool have_light;
     tl_texture lobe_atlas, gain_atlas;
-    tl_texture coarse, sun_seen; /* sun_seen: a layer for each sun and lamp */
+    tl_texture coarse, sun_seen[TL_CARD_LAYERS]; /* sun_seen: a layer for each sun and lamp */
     struct tl_bounce_sky sky;
     uint32_t bounce_frames; /* since the shapes were new */
 

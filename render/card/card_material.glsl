@@ -27,12 +27,14 @@ struct Part {
     uvec4 table_first;     // its first vector; enum tl_facets, tl_masking; tl_reflectance, tl_fresnel << 4
     vec4 optics;           // index, extinction; share under a coat, exponent of its lobe
     vec4 emission;
+    vec4 transmission;     // w: openness
     vec4 map_rows[12];     // two of each map, from the mesh's UV
     uvec4 flags;           // bits; first triangle of the surface; maps, by bit; systems of threads
 };
 const uint IS_GLOSSY = 1u, IS_FACETED = 2u, HAS_OWN_BUMPS = 4u, OWN_ARE_MOMENTS = 8u, HAS_WEAVE_BUMPS = 16u,
            WEAVE_ARE_MOMENTS = 32u, HAS_YARNS = 64u, IS_SEWN = 128u, FADES = 256u, HAS_BACK = 512u, IS_BOUNDED = 1024u,
-           HAS_FUZZ = 2048u, IS_WOVEN = 4096u, HAS_MAP = 8192u, HAS_BUMPS = 16384u, HAS_TABLE = 32768u, LEAN = 1u << 20, TOKSVIG = 1u << 21;
+           HAS_FUZZ = 2048u, IS_WOVEN = 4096u, HAS_MAP = 8192u, HAS_BUMPS = 16384u, HAS_TABLE = 32768u,
+           TRANSMITS = 65536u, LEAN = 1u << 20, TOKSVIG = 1u << 21;
 layout(std430, binding = CARD_PARTS) restrict readonly buffer Parts
 {
     Part parts[];

@@ -244,7 +244,7 @@ vec3 follow(Lobes l, vec3 start, vec3 through, uint item, uint bits, inout Path 
     float largest = max(path.through.r, max(path.through.g, path.through.b)), chance = min(largest / FOLLOWED, 1.0);
     if (kind.y < kind.z && largest > 0.0 && (kind.y == 0 || numbers_of(item ^ 0x5bd1e995u, 1, kind.w).x < chance)) {
         path.through.rgb /= kind.y == 0 ? 1.0 : chance;
-        path.due = triangle_parts[path.triangle & ~BACK] >> 16 | uint(kind.y + 1) << 8;
+        path.due = (triangle_parts[path.triangle & ~BACK] >> 16 & 15u) | uint(kind.y + 1) << 8;
     }
     SkySample sky = sky_towards(d);
     return open > 0.0 ? f * sky.radiance * (open / (float(1u << bits) * sky.pdf + pdf)) : vec3(0.0);
@@ -264,7 +264,7 @@ void main()
             paths[at].due = NOWHERE;
             imageStore(light_image, pixel, vec4(0.0));
         }
-        if (id == 0u || triangle_parts[(id & ~BACK) - 1u] >> 16 != uint(kind.x))
+        if (id == 0u || (triangle_parts[(id & ~BACK) - 1u] >> 16 & 15u) != uint(kind.x))
             return;
         p = place_of(id, pixel);
         p.at_x *= more.x;

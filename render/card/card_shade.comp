@@ -2,8 +2,8 @@
 // The light of one class of materials, tile by tile: exact light times the interpolated ratio, and suns (render/shade).
 #include "card_frame.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(location = 0) uniform ivec2 kind; // class, first tile of its list
-layout(rgba16f, binding = 0) restrict writeonly uniform image2D light_image;
+layout(location = 0) uniform ivec3 kind; // class, first tile of its list, layer
+layout(rgba16f, binding = 0) restrict uniform image2D light_image;
 layout(std430, binding = CARD_TILES) restrict readonly buffer Tiles
 {
     uint tiles[];
@@ -33,7 +33,7 @@ vec3 light_of(Seen s, ivec2 pixel)
     vec4 gloss[3] = vec4[3](ratios[at.x + 1u], ratios[at.y + 1u], ratios[at.z + 1u]);
     vec3 w = s.p.weights, covered = vec3(gloss[0].w, gloss[1].w, gloss[2].w);
     float all = covered.x + covered.y + covered.z;
-    if (all > 0.0 && all < 3.0) { // corners that are covered do not count: the pixel is not
+    if (all > 0.0 && all < 3.0 && kind.z == 0) { // corners that are covered do not count: the nearest layer is not
         w = (w + 1e-6) * (1.0 - covered);
         w /= w.x + w.y + w.z;
     }
@@ -41,6 +41,13 @@ vec3 light_of(Seen s, ivec2 pixel)
                      (w.x * ratios[at.x].rgb + w.y * ratios[at.y].rgb + w.z * ratios[at.z].rgb) +
                  exact_gloss(s) * (w.x * gloss[0].rgb + w.y * gloss[1].rgb + w.z * gloss[2].rgb);
 #ifdef RICH
+    if ((s.part.flags.x & TRANSMITS) != 0u) {
+        corner = 3u * (2u * s.p.triangle + (s.p.back ? 0u : 1u));
+        vec3 ratio = vec3(0.0);
+        for (int k = 0; k < 3; k++)
+            ratio += s.p.weights[k] * ratios[4u * triangle_probes[corner + uint(k)]].rgb;
+        light += s.part.transmission.rgb * exact_diffuse(into_environment(-s.surface.shown)) * ratio;
+    }
     bool has_fuzz = (s.part.flags.x & HAS_FUZZ) != 0u;
     vec3 smooth_normal = s.side * s.surface.smooth_normal, sheen = vec3(0.0);
     Fibres fibres = fibres_of(s.part, smooth_normal, s.surface.shown, s.viewer);
@@ -59,6 +66,13 @@ vec3 light_of(Seen s, ivec2 pixel)
         float facing = s.side * dot(sun.towards, s.surface.smooth_normal);
         float above = sun.is_lamp ? self_shadow_ramp(facing) : disc_share(facing / max(sun.radius, 1e-3));
         float seen = above * texelFetch(sun_seen, ivec3(pixel, i), 0).r;
+#ifdef RICH
+        if ((s.part.flags.x & TRANSMITS) != 0u && facing < 0.0) {
+            float through = sun.is_lamp ? 1.0 : disc_share(-facing / max(sun.radius, 1e-3));
+            through *= texelFetch(sun_seen, ivec3(pixel, i), 0).r * max(-dot(sun.towards, s.surface.shown), 0.0) / PI;
+            light += through * sun.power * s.part.transmission.rgb;
+        }
+#endif
         if (!(seen > 0.0))
             continue;
         float cosine = max(dot(sun.towards, s.surface.shown), 0.0);
@@ -92,9 +106,12 @@ void main()
         imageStore(light_image, pixel, vec4(0.0));
 #else
     uint part = id != 0u ? triangle_parts[(id & 0x7fffffffu) - 1u] : 0u;
-    if (part >> 16 != uint(kind.x))
+    if ((part >> 16 & 15u) != uint(kind.x))
         return;
     Seen s = see(id, part & 0xfffu, pixel);
-    imageStore(light_image, pixel, vec4(light_of(s, pixel) * s.cover, s.cover));
+    // Nearer layers leave what they do not cover.
+    float cover = s.cover * (1.0 - s.part.transmission.w);
+    vec4 nearer = kind.z > 0 ? imageLoad(light_image, pixel) : vec4(0.0);
+    imageStore(light_image, pixel, nearer + (1.0 - nearer.a) * cover * vec4(light_of(s, pixel), 1.0));
 #endif
 }

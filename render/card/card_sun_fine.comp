@@ -4,6 +4,7 @@
 #include "card_frame.glsl"
 #include "card_pixel.glsl"
 #define TREE_BINDING CARD_NODES
+#define HOLES_BINDING CARD_HOLES
 #include "trace.glsl"
 #include "card_sun_start.glsl"
 layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
@@ -28,7 +29,7 @@ float agreed(uint id, ivec2 pixel)
     uint c = texelFetch(coarse, ivec2(cell.x, next.y), 0).r, d = texelFetch(coarse, next, 0).r;
     if (a != b || b != c || c != d || a >> 4 != surface)
         return -1.0;
-    return (a & 15u) == 0u ? 0.0 : (a & 15u) == 4u ? 1.0 : -1.0;
+    return (a & 7u) == 0u ? 0.0 : (a & 7u) == 4u ? 1.0 : -1.0;
 }
 
 void main()
@@ -46,7 +47,8 @@ void main()
     if (result < 0.0) {
         vec3 start;
         result = 0.0;
-        if (sun_start(place_of(id, pixel), sun, start)) {
+        bool transmits = (triangle_parts[(id & 0x7fffffffu) - 1u] & CARD_TRANSMITS) != 0u;
+        if (sun_start(place_of(id, pixel), sun, transmits, start) != 0u) {
             slot = atomicAdd(count, 1u);
             starts[slot] = start;
             seen[slot] = 0u;
@@ -55,24 +57,22 @@ void main()
     barrier();
     uint traced = count;
     for (uint k = mine; k < places.x * traced; k += 256u)
-        if (sees_sun(sun, k / traced, starts[k % traced]))
-            atomicAdd(seen[k % traced], 1u);
+        atomicAdd(seen[k % traced], sees_sun(sun, k / traced, starts[k % traced]));
     barrier();
-    bool is_partial = slot < 64u && seen[slot] != 0u && seen[slot] != places.x;
+    bool is_partial = slot < 64u && seen[slot] != 0u && seen[slot] != 255u * places.x;
     if (slot < 64u && !is_partial)
-        result = seen[slot] == places.x ? 1.0 : 0.0;
+        result = seen[slot] == 255u * places.x ? 1.0 : 0.0;
     if (is_partial)
         again[atomicAdd(again_count, 1u)] = slot;
     barrier();
     uint partial = again_count;
     for (uint k = mine; k < (places.y - places.x) * partial; k += 256u) {
         uint at = again[k % partial];
-        if (sees_sun(sun, places.x + k / partial, starts[at]))
-            atomicAdd(seen[at], 1u);
+        atomicAdd(seen[at], sees_sun(sun, places.x + k / partial, starts[at]));
     }
     barrier();
     if (is_partial)
-        result = float(seen[slot]) / float(places.y);
+        result = float(seen[slot]) / (255.0 * float(places.y));
     if (is_inside)
         imageStore(visible, pixel, vec4(result));
 }

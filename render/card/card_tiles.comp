@@ -31,7 +31,7 @@ void main()
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (all(lessThan(at, size.xy))) {
         uint id = texelFetch(ids, at, 0).r;
-        atomicOr(classes, 1u << (id != 0u ? triangle_parts[(id & 0x7fffffffu) - 1u] >> 16 : 0u));
+        atomicOr(classes, 1u << (id != 0u ? triangle_parts[(id & 0x7fffffffu) - 1u] >> 16 & 15u : 0u));
     }
     barrier();
     if (mine < uint(CARD_CLASSES_MAX) && (classes >> mine & 1u) != 0u) {

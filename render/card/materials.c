@@ -19,7 +19,7 @@ struct card_part {
     float fuzz[4], fuzz_more[4];
     float table[4];
     uint32_t table_first[4];
-    float optics[4], emission[4];
+    float optics[4], emission[4], transmission[4];
     float map_rows[TL_MAP_USES + 1][2][4];
     uint32_t flags[4];
 };
@@ -40,6 +40,7 @@ enum {
     HAS_MAP = 8192,
     HAS_BUMPS = 16384,
     HAS_TABLE = 32768,
+    TRANSMITS = 65536,
     LEAN = 1 << 20,
     TOKSVIG = 1 << 21
 };
@@ -48,24 +49,11 @@ enum {
 #define PARTS_MAX    (1 << 12)
 #define SURFACES_MAX 16
 
-static const char *refusal_of(const tl_material *material)
-{
-    if (material->openness > 0 || material->alpha_cutoff > 0)
-        return "cloth with holes";
-    if (tl_material_transmits(material))
-        return "light that shines through cloth";
-    return NULL;
-}
-
 const char *tl_card_refusal(const tl_surface *surfaces, size_t count)
 {
     size_t parts = 1; /* the ground's */
     for (size_t s = 0; s < count; s++)
-        for (size_t p = 0; p < surfaces[s].part_count; p++, parts++) {
-            const char *refusal = refusal_of(&surfaces[s].materials[surfaces[s].parts[p].material]);
-            if (refusal)
-                return refusal;
-        }
+        parts += surfaces[s].part_count;
     return count + 1 > SURFACES_MAX || parts > PARTS_MAX ? "so many surfaces or parts" : NULL;
 }
 
@@ -175,7 +163,7 @@ static bool add_class(tl_graphics_card *card, const struct tl_shade_part *part, 
 /* The class of a part, which is made when it is the first; -1: error. */
 static int class_of(tl_graphics_card *card, const struct tl_shade_part *part, tl_error *error)
 {
-    if (!part->has_maps && !part->has_bumps && !part->is_faceted && !part->has_fuzz &&
+    if (!part->transmits && !part->has_maps && !part->has_bumps && !part->is_faceted && !part->has_fuzz &&
         !(part->material->coat > 0) && !tl_material_emits(part->material))
         return 1;
     for (int i = 2; i < card->class_count; i++)
@@ -295,7 +283,8 @@ static uint32_t flags_of(const struct tl_shade_materials *materials, const struc
                 {part->has_fuzz, HAS_FUZZ},
                 {part->has_maps, HAS_MAP},
                 {part->has_maps && part->has_bumps, HAS_BUMPS},
-                {part->lobe_set, HAS_TABLE}};
+                {part->lobe_set, HAS_TABLE},
+                {part->transmits, TRANSMITS}};
     for (size_t i = 0; i < TL_COUNT(rows); i++)
         flags |= rows[i].is_so ? rows[i].flag : 0;
     return flags;
@@ -375,6 +364,7 @@ static void fill_part(const struct tl_shade_materials *materials, const struct t
     to->optics[2] = material->coat;
     to->optics[3] = tl_lobe_exponent(material->coat_glossiness);
     tl_card_put(to->emission, material->emission, 0);
+    tl_card_put(to->transmission, material->transmission, material->openness);
     fill_means(part, to);
     fill_maps(materials, part, to);
     if (part->construction) {
@@ -390,12 +380,13 @@ static void fill_part(const struct tl_shade_materials *materials, const struct t
     to->flags[3] = (uint32_t)material->thread_count;
 }
 
-static void fill_albedos(const struct tl_bounce_material *material, float to[4][4])
+static void fill_albedos(const struct tl_bounce_material *material, float to[5][4])
 {
     for (int side = 0; side < 2; side++) {
         tl_card_put(to[2 * side], material->albedo[side], 0);
         tl_card_put(to[2 * side + 1], material->whole[side], 0);
     }
+    tl_card_put(to[4], material->transmission, 0);
     for (int c = 0; c < 3; c++)
         to[c][3] = material->emission.raw[c];
 }
@@ -411,7 +402,10 @@ static bool send_triangle_parts(tl_graphics_card *card, const struct tl_card_sur
         const tl_surface *surface = ranges->surfaces[s];
         for (uint32_t t = 0; t < surface->index_count / 3; t++) {
             const uint32_t part = (uint32_t)tl_shade_part_at(request->materials, surface, s, t);
-            of_triangle[ranges->first[s] + t] = part | (uint32_t)s << 12 | kinds[part] << 16;
+            const struct tl_shade_part *of = &request->materials->parts[part];
+            of_triangle[ranges->first[s] + t] = part | (uint32_t)s << 12 | kinds[part] << 16 |
+                                                (of->material->openness > 0 ? CARD_IS_OPEN : 0) |
+                                                (of->transmits ? CARD_TRANSMITS : 0);
             for (size_t k = 0; k < 3; k++)
                 of_vertex[first + surface->indices[3 * t + k]] = part;
         }
@@ -432,9 +426,10 @@ bool tl_card_send_materials(tl_graphics_card *card, const struct tl_card_surface
     const struct tl_triangle_ranges *ranges = request->ranges;
     const size_t count = materials->first_parts[materials->surface_count];
     tl_card_release_materials(card);
+    card->layers = materials->openness > 0 ? TL_CARD_LAYERS : 1;
     struct card_part *parts = TL_NEW_ARRAY(struct card_part, count);
     uint32_t *kinds = TL_NEW_ARRAY(uint32_t, count);
-    float(*albedos)[4][4] = tl_resize(NULL, count, sizeof *albedos);
+    float(*albedos)[5][4] = tl_resize(NULL, count, sizeof *albedos);
     struct tl_bounce_material *bounced = tl_bounce_materials_read(ranges);
     bool fine = true;
     for (size_t s = 0; s < materials->surface_count; s++)

@@ -49,7 +49,7 @@ static void make_vertex_array(tl_graphics_card *card)
     }
     glVertexArrayVertexBuffer(card->vertex_array, 0, card->points.positions.id, 0, sizeof(vec3s));
     glVertexArrayElementBuffer(card->vertex_array, card->points.corners.id);
-    glNamedFramebufferTexture(card->ids_framebuffer, GL_COLOR_ATTACHMENT0, card->ids.id, 0);
+    glNamedFramebufferTexture(card->ids_framebuffer, GL_COLOR_ATTACHMENT0, card->ids[0].id, 0);
     glNamedFramebufferTexture(card->ids_framebuffer, GL_DEPTH_ATTACHMENT, card->depth.id, 0);
 }
 
@@ -62,14 +62,14 @@ static void draw_ids(tl_graphics_card *card)
     const size_t triangles = sees_ground ? card->points.triangle_count : card->traced_triangles;
     make_vertex_array(card);
     glBindFramebuffer(GL_FRAMEBUFFER, card->ids_framebuffer);
-    glViewport(0, 0, card->ids.width, card->ids.height);
+    glViewport(0, 0, card->ids[0].width, card->ids[0].height);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glClearNamedFramebufferuiv(card->ids_framebuffer, GL_COLOR, 0, none);
     glClearNamedFramebufferfv(card->ids_framebuffer, GL_DEPTH, 0, &farthest);
-    glUseProgram(card->draw_ids.id);
+    glUseProgram(card->draw_ids[card->points.has_holes ? 1 : 0].id);
     glBindVertexArray(card->vertex_array);
     glDrawElements(GL_TRIANGLES, (GLsizei)(3 * triangles), GL_UNSIGNED_INT, NULL);
     glBindVertexArray(0);
@@ -78,25 +78,45 @@ static void draw_ids(tl_graphics_card *card)
     tl_gpu_barrier();
 }
 
+/* The triangles behind open ones. */
+static void find_behind(tl_graphics_card *card)
+{
+    glUseProgram(card->behind.id);
+    for (int layer = 1; layer < card->layers; layer++) {
+        glBindTextureUnit(0, card->ids[layer - 1].id);
+        glBindImageTexture(0, card->ids[layer].id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32UI);
+        tl_gpu_dispatch((unsigned)card->frame.size[2], (unsigned)card->frame.size[3], 1);
+        tl_gpu_barrier();
+    }
+}
+
+/* Lists the tiles of a layer. */
+static void list_tiles(tl_graphics_card *card, int layer)
+{
+    clear_work(card);
+    glBindTextureUnit(0, card->ids[layer].id);
+    glUseProgram(card->list_tiles.id);
+    tl_gpu_dispatch((unsigned)card->frame.size[2], (unsigned)card->frame.size[3], 1);
+    tl_gpu_barrier();
+}
+
 bool tl_card_see(tl_graphics_card *card, const struct tl_card_view *request, tl_error *error)
 {
     set_view(card, request);
     const int32_t *size = card->frame.size;
-    tl_card_fit_texture(card, &card->ids, GL_R32UI, size[0], size[1]);
+    for (int i = 0; i < card->layers; i++)
+        tl_card_fit_texture(card, &card->ids[i], GL_R32UI, size[0], size[1]);
     tl_card_fit_texture(card, &card->depth, GL_DEPTH_COMPONENT32F, size[0], size[1]);
     const size_t tiles = (size_t)size[2] * (size_t)size[3] * CARD_CLASSES_MAX;
     if (!tl_buffer_reserve(&card->buffers[CARD_TILES], card->gpu, sizeof(uint32_t) * tiles, error) ||
         !tl_card_send_frame(card, error))
         return false;
     draw_ids(card);
-    tl_card_points_list(&card->points, &card->ids);
-    clear_work(card);
+    find_behind(card);
+    tl_card_points_list(&card->points, card->ids, card->layers);
     if (!tl_card_send_frame(card, error))
         return false;
-    glBindTextureUnit(0, card->ids.id);
-    glUseProgram(card->list_tiles.id);
-    tl_gpu_dispatch((unsigned)size[2], (unsigned)size[3], 1);
-    tl_gpu_barrier();
+    list_tiles(card, 0);
     return true;
 }
 
@@ -143,7 +163,7 @@ bool tl_card_trace_bounce(tl_graphics_card *card, const struct tl_card_bounce *r
     } needed[] = {{CARD_FOUND, 17 * 16 * probes},
                   {CARD_BOUNCED, 17 * 16 * probes},
                   {CARD_SENT, 16 * probes},
-                  {CARD_SENT_NOW, 16 * probes}};
+                  {CARD_SENT_NOW, 2 * 16 * probes}};
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
         if (!tl_buffer_reserve(&card->buffers[needed[i].binding], card->gpu, needed[i].bytes, error))
             return false;
@@ -198,11 +218,12 @@ bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error)
               rows = (size[1] + 2) / 4 + 1; /* every fourth pixel, and the last */
     if (!tl_card_send_frame(card, error))
         return false;
-    glBindTextureUnit(0, card->ids.id);
     tl_card_fit_texture(card, &card->coarse, GL_R8UI, columns, rows);
-    fit_layers(card, &card->sun_seen, card->frame.counts[1]);
-    for (int sun = 0; sun < card->frame.counts[1]; sun++) {
+    for (int i = 0; i < card->layers * card->frame.counts[1]; i++) {
+        const int layer = i / card->frame.counts[1], sun = i % card->frame.counts[1];
         const bool is_lamp = card->frame.suns[sun][3] < 0;
+        fit_layers(card, &card->sun_seen[layer], card->frame.counts[1]);
+        glBindTextureUnit(0, card->ids[layer].id);
         glUseProgram(card->sun_coarse.id);
         glUniform1i(0, sun);
         glBindImageTexture(0, card->coarse.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R8UI);
@@ -212,7 +233,7 @@ bool tl_card_trace_suns(tl_graphics_card *card, tl_error *error)
         glUniform1i(0, sun);
         glUniform2ui(1, is_lamp ? 1 : PLACES_FIRST, is_lamp ? 1 : PLACES);
         glBindTextureUnit(1, card->coarse.id);
-        glBindImageTexture(0, card->sun_seen.id, 0, GL_FALSE, sun, GL_WRITE_ONLY, GL_R8);
+        glBindImageTexture(0, card->sun_seen[layer].id, 0, GL_FALSE, sun, GL_WRITE_ONLY, GL_R8);
         tl_gpu_dispatch((unsigned)size[2], (unsigned)size[3], 1);
         tl_gpu_barrier();
     }
@@ -244,25 +265,34 @@ void tl_card_resolve(tl_graphics_card *card, const tl_texture *samples, const tl
     tl_gpu_barrier();
 }
 
-bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, tl_error *error)
+/* Layers behind the first add to what it leaves. */
+static void shade_layer(tl_graphics_card *card, int layer)
 {
     const int tiles = card->frame.size[2] * card->frame.size[3];
-    if (!tl_card_send_frame(card, error))
-        return false;
-    glBindTextureUnit(0, card->ids.id);
-    glBindTextureUnit(4, card->lobe_atlas.id);
-    tl_card_fit_texture(card, &card->no_map, GL_RGBA16F, 1, 1);
-    glBindTextureUnit(6, card->sun_seen.id);
-    tl_card_fit_texture(card, &card->light, GL_RGBA16F, card->frame.size[0], card->frame.size[1]);
-    glBindImageTexture(0, card->light.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA16F);
-    for (int i = 0; i < card->class_count; i++) {
+    if (card->layers > 1)
+        list_tiles(card, layer);
+    glBindTextureUnit(0, card->ids[layer].id);
+    glBindTextureUnit(6, card->sun_seen[layer].id);
+    for (int i = layer > 0 ? 1 : 0; i < card->class_count; i++) {
         glUseProgram(i == 0 ? card->shade_nothing.id : i == 1 ? card->shade_plain.id : card->shade_rich.id);
         if (i > 1)
             tl_card_bind_class(card, &card->classes[i]);
-        glUniform2i(0, i, i * tiles);
+        glUniform3i(0, i, i * tiles, layer);
         tl_gpu_dispatch_indirect(&card->buffers[CARD_WORK], sizeof(uint32_t) * 4 * (size_t)i);
     }
     tl_gpu_barrier();
+}
+
+bool tl_card_shade(tl_graphics_card *card, const tl_texture *image, int before, tl_error *error)
+{
+    if (!tl_card_send_frame(card, error))
+        return false;
+    glBindTextureUnit(4, card->lobe_atlas.id);
+    tl_card_fit_texture(card, &card->no_map, GL_RGBA16F, 1, 1);
+    tl_card_fit_texture(card, &card->light, GL_RGBA16F, card->frame.size[0], card->frame.size[1]);
+    glBindImageTexture(0, card->light.id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA16F);
+    for (int layer = 0; layer < card->layers; layer++)
+        shade_layer(card, layer);
     tl_card_resolve(card, &card->light, image, before);
     return true;
 }

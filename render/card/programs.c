@@ -7,7 +7,8 @@ void tl_card_release_programs(tl_graphics_card *card)
 #define DESTROY(name, file, defines) tl_program_destroy(&card->name);
     TL_CARD_PROGRAMS(DESTROY)
 #undef DESTROY
-    tl_program_destroy(&card->draw_ids);
+    for (int i = 0; i < 2; i++)
+        tl_program_destroy(&card->draw_ids[i]);
     card->have_programs = false;
 }
 
@@ -19,7 +20,8 @@ bool tl_card_reload(tl_graphics_card *card, tl_error *error)
 #define RELOAD(name, file, defines) fine = fine && tl_program_reload(&card->name, error);
     TL_CARD_PROGRAMS(RELOAD)
 #undef RELOAD
-    return fine && tl_program_reload(&card->draw_ids, error) && tl_card_points_reload(&card->points, error);
+    return fine && tl_program_reload(&card->draw_ids[0], error) &&
+           tl_program_reload(&card->draw_ids[1], error) && tl_card_points_reload(&card->points, error);
 }
 
 const char *tl_card_gl_refusal(const tl_gpu *gpu)
@@ -39,8 +41,11 @@ bool tl_card_make_programs(tl_graphics_card *card, tl_error *error)
         return false;
     TL_CARD_PROGRAMS(CREATE)
 #undef CREATE
-    card->have_programs = tl_program_create(card->gpu, tl_embedded_shaders, "card_ids.vert", "card_ids.frag",
-                                            &card->draw_ids, error);
+    for (int i = 0; i < 2; i++)
+        if (!tl_program_create_variant(card->gpu, tl_embedded_shaders, "card_ids.vert", "card_ids.frag",
+                                       i == 0 ? NULL : "#define HOLES\n", &card->draw_ids[i], error))
+            return false;
+    card->have_programs = true;
     return card->have_programs;
 }
 
@@ -68,6 +73,7 @@ bool tl_card_send_frame(tl_graphics_card *card, tl_error *error)
         if (buffer->id != 0)
             tl_buffer_bind(buffer, i);
     }
+    tl_buffer_bind(&points->holes, CARD_HOLES);
     tl_tree_buffers_bind(&points->tree, CARD_NODES);
     return true;
 }

@@ -69,7 +69,7 @@ bool tl_card_draw_round(tl_graphics_card *card, const struct tl_card_rest *reque
         return false;
     send_sky(card, request);
     tl_card_fit_texture(card, &card->round, GL_RGBA32F, size[0], size[1]);
-    glBindTextureUnit(0, card->ids.id);
+    glBindTextureUnit(0, card->ids[0].id);
     glBindTextureUnit(6, card->sky_texels.id);
     glBindTextureUnit(7, card->sky_curve.id);
     glBindImageTexture(0, card->round.id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);

@@ -57,7 +57,8 @@ static bool send_origins(tl_graphics_card *card, const struct layout *layout, tl
         const struct tl_cache_probe *probe = &card->points.items[p];
         const tl_surface *surface = layout->ranges->surfaces[probe->surface];
         const bool is_own = tl_has_own_light(surface, probe->vertex);
-        from[4 * p + 3] = is_own;
+        const size_t other = 2 * (layout->first[probe->surface] + (size_t)probe->vertex) + !probe->back;
+        from[4 * p + 3] = (is_own ? 1u : 0u) | layout->probe_of[other] << 1;
         for (size_t k = 0; k < 3; k++) {
             const uint32_t vertex = is_own ? probe->vertex : surface->light_mesh->from[probe->vertex][k];
             from[4 * p + k] = layout->probe_of[2 * (layout->first[probe->surface] + vertex) + probe->back];
@@ -162,6 +163,7 @@ bool tl_card_send_surfaces(tl_graphics_card *card, const struct tl_card_surfaces
     frame->counts[2] = (int32_t)card->points.probe_count;
     frame->counts[3] = (int32_t)card->points.triangle_count;
     frame->numbers[0] = (uint32_t)card->own_count;
+    frame->numbers[2] = (uint32_t)card->traced_triangles;
     tl_card_put(frame->disc, request->ground ? request->ground->centre : glms_vec3_zero(),
                 request->ground ? request->ground->radius : 0);
     return card->have_shapes;

@@ -1,9 +1,13 @@
 // Rays through a tree of boxes (tree.h) that refit.comp has fitted. Both sides of every triangle are hit. What includes
-// this may #define TREE_BINDING; two storage buffers are bound from there on (tl_tree_buffers_bind).
+// this may #define TREE_BINDING; two storage buffers are bound from there on (tl_tree_buffers_bind). With HOLES_BINDING
+// rays pass through holes.
 //
 // Edges are those of Embree [Wald et al. 2014]: two triangles compute the same number for the edge that they share, with
 // other signs, so that no ray passes between them.
 #include "tree_terms.glsl"
+#ifdef HOLES_BINDING
+#include "holes.glsl"
+#endif
 #ifndef TREE_BINDING
 #define TREE_BINDING 0
 #endif
@@ -41,6 +45,10 @@ bool tree_hits_triangle(uint place, vec3 origin, vec3 direction, float from, ino
     const bool is_inside = max(u, max(v, w)) <= slack || min(u, min(v, w)) >= -slack;
     if (!is_inside || facing == 0.0 || !(distance >= from && distance <= hit.distance))
         return false;
+#ifdef HOLES_BINDING
+    if (is_hole(floatBitsToUint(first.w), vec3(w, u, v) / sum))
+        return false;
+#endif
     hit.distance = distance;
     hit.triangle = floatBitsToUint(first.w);
     hit.u = u / sum;

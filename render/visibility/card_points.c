@@ -2,6 +2,7 @@
 
 #include "config/base/memory.h"
 #include "render/gpu/shaders.h"
+#include "render/trace/holes.h"
 #include "render/trace/trace.h"
 #include "render/visibility/cache_probes.h"
 #include "render/visibility/card_points.glsl"
@@ -104,6 +105,17 @@ static void number_probes(const struct tl_card_points *points, const struct tl_t
     free(order);
 }
 
+static bool send_holes(struct tl_card_points *points, const struct tl_triangle_ranges *ranges,
+                       tl_error *error)
+{
+    size_t count;
+    uint32_t *words = tl_holes_make(ranges->surfaces, ranges->surface_count, &count);
+    points->has_holes = count > 1;
+    const bool done = tl_buffer_fill(&points->holes, points->gpu, words, count * sizeof *words, error);
+    free(words);
+    return done;
+}
+
 static bool send_shapes(struct tl_card_points *points, const struct tl_triangle_ranges *ranges,
                         tl_error *error)
 {
@@ -121,6 +133,7 @@ static bool send_shapes(struct tl_card_points *points, const struct tl_triangle_
                 corners[3 * (2 * t + back) + k] =
                     probe_of[2 * (size_t)points->scratch.corners[3 * t + k] + back];
     const bool done =
+        send_holes(points, ranges, error) &&
         tl_buffer_fill(&points->corners, gpu, points->scratch.corners, 3 * triangles * sizeof(uint32_t),
                        error) &&
         tl_buffer_fill(&points->triangle_facts, gpu, facts, triangles * sizeof *facts, error) &&
@@ -216,9 +229,10 @@ static void use(const struct tl_card_points *points, int program)
         tl_buffer_bind(&points->values, CARD_VALUES);
     }
     tl_tree_buffers_bind(&points->tree, CARD_TREE);
+    tl_buffer_bind(&points->holes, CARD_HOLES);
 }
 
-void tl_card_points_list(struct tl_card_points *points, const tl_texture *ids)
+void tl_card_points_list(struct tl_card_points *points, const tl_texture *ids, int count)
 {
     uint32_t work[CARD_WORK_WORDS] = {0};
     for (int i = 1; i < 3; i++)
@@ -226,9 +240,11 @@ void tl_card_points_list(struct tl_card_points *points, const tl_texture *ids)
     tl_buffer_write(&points->work, 0, work, sizeof work);
     points->frame++;
     use(points, TL_CARD_MARK);
-    glBindTextureUnit(0, ids->id);
     glUniform1ui(0, points->frame);
-    tl_gpu_dispatch(tl_gpu_groups((size_t)ids->width, 8), tl_gpu_groups((size_t)ids->height, 8), 1);
+    for (int i = 0; i < count; i++) {
+        glBindTextureUnit(0, ids[i].id);
+        tl_gpu_dispatch(tl_gpu_groups((size_t)ids->width, 8), tl_gpu_groups((size_t)ids->height, 8), 1);
+    }
     tl_gpu_barrier();
     glUseProgram(points->programs[TL_CARD_SEEN].id);
     glUniform1ui(0, points->frame);
@@ -292,8 +308,9 @@ bool tl_card_points_reload(struct tl_card_points *points, tl_error *error)
 #define BUFFERS(points)                                                                                      \
     {                                                                                                        \
         &(points)->positions, &(points)->normals, &(points)->corners, &(points)->triangle_facts,             \
-            &(points)->probes, &(points)->triangle_probes, &(points)->side_marks, &(points)->probe_marks,    \
-            &(points)->list, &(points)->work, &(points)->origins, &(points)->directions, &(points)->values   \
+            &(points)->probes, &(points)->triangle_probes, &(points)->holes, &(points)->side_marks,          \
+            &(points)->probe_marks, &(points)->list, &(points)->work, &(points)->origins,                    \
+            &(points)->directions, &(points)->values                                                         \
     }
 
 void tl_card_points_release(struct tl_card_points *points)

@@ -1,4 +1,4 @@
-// Buffers of card_points.h, by binding. Those of the tree are last.
+// Buffers of card_points.h, by binding.
 #define CARD_BACK       0x80000000u
 #define CARD_TRANSMITS  0x80000000u // of a triangle: light comes through it
 #define CARD_POSITIONS  0
@@ -14,6 +14,7 @@
 #define CARD_DIRECTIONS 10
 #define CARD_VALUES     11
 #define CARD_TREE       12
+#define CARD_HOLES      14
 
 // Words of the work buffer: how many probes are listed; dispatches of 64 a group, and of as many by four regions.
 #define CARD_LISTED      0

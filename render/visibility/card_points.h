@@ -44,6 +44,8 @@ struct tl_card_points {
     tl_buffer probes;             /* [probe_count][2]: vertex and its back << 31, surface */
     tl_buffer triangle_probes;    /* [triangle_count][front, back][3] */
     struct tl_tree_buffers tree;  /* the ground casts no shadow */
+    tl_buffer holes;              /* see trace/holes.h */
+    bool has_holes;
 
     tl_buffer side_marks;  /* [triangle_count][front, back]: frame in which it was seen last */
     tl_buffer probe_marks; /* [probe_count]: ... */
@@ -60,9 +62,9 @@ struct tl_card_points {
 bool tl_card_points_follow(struct tl_card_points *points, tl_gpu *gpu,
                            const struct tl_triangle_ranges *ranges, const struct tl_ground *ground,
                            uint64_t shapes_revision, tl_error *error);
-/* Lists the probes at the corners of triangles whose IDs are in an R32UI image; of those that light comes
- * through, on both sides. */
-void tl_card_points_list(struct tl_card_points *points, const tl_texture *ids);
+/* Lists the probes at the corners of triangles whose IDs are in R32UI images of one size; of those that light
+ * comes through, on both sides. */
+void tl_card_points_list(struct tl_card_points *points, const tl_texture *ids, int count);
 
 struct tl_card_points_light {
     const vec3s *directions; /* [rays][regions], world */

@@ -4,6 +4,7 @@
 #include "card_points.glsl"
 #include "visibility_terms.glsl"
 #define TREE_BINDING CARD_TREE
+#define HOLES_BINDING CARD_HOLES
 #include "trace.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = CARD_POSITIONS) restrict readonly buffer Positions { float positions[]; };

@@ -5,6 +5,7 @@
 #include "visibility_terms.glsl"
 #include "ground.glsl"
 #define TREE_BINDING CARD_TREE
+#define HOLES_BINDING CARD_HOLES
 #include "trace.glsl"
 layout(local_size_x = 64, local_size_y = 4) in;
 layout(std430, binding = CARD_WORK) restrict readonly buffer Work { uint work[]; };

@@ -196,6 +196,41 @@ static void look_up_at_maps(struct drawn_scene *drawn)
     look_up(drawn);
 }
 
+/* So large that the CPU's picture, too, reads their map as it is. */
+static void have_holes(struct drawn_scene *drawn)
+{
+    struct tl_map *map = &drawn_scene_cloth(drawn)->diffuse_map;
+    *map = drawn_scene_map(&drawn->maps[MAP_HOLES]);
+    map->transform.scale[0] = 0.9f;
+    map->transform.scale[1] = 0.6f;
+    drawn_scene_cloth(drawn)->alpha_cutoff = 0.5f;
+}
+
+/* Holes that show the ball and the backs of the sheet. */
+static void have_clamped_holes(struct drawn_scene *drawn)
+{
+    have_holes(drawn);
+    drawn_scene_cloth(drawn)->diffuse_map.clamp_v = true;
+    look_up(drawn);
+}
+
+static void be_open(struct drawn_scene *drawn)
+{
+    drawn_scene_cloth(drawn)->openness = 0.3f;
+}
+
+static void transmit(struct drawn_scene *drawn)
+{
+    drawn_scene_cloth(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
+}
+
+static void look_up_at_voile(struct drawn_scene *drawn)
+{
+    be_voile(drawn);
+    drawn_scene_cloth(drawn)->fuzz = (struct tl_fuzz){{{0.2f, 0.2f, 0.2f}}, 0.5f, 0};
+    look_up(drawn);
+}
+
 static void supersample(struct drawn_scene *drawn)
 {
     be_satin(drawn);
@@ -316,45 +351,52 @@ struct picture_case {
     const char *name;
     editor *edit;
     double rmse, most; /* relative RMSE of all pixels; without those at the edges of the sun's shadows */
+    int covers;        /* pixels at the edges of holes and layers, at most */
     editor *without;   /* what the CPU lights at vertices, of what it lights at samples; NULL: all */
 };
 
 static const struct picture_case pictures[] = {
-    {"matt", be_matt, 0.035, 0.0015, NULL},
-    {"glossy", be_glossy, 0.035, 0.0015, NULL},
-    {"no sun", have_no_sun, 0.035, 0.0015, NULL},
-    {"Ward", be_satin, 0.035, 0.0015, NULL},
-    {"Ward, bounded", be_faceted, 0.035, 0.0015, NULL},
-    {"threads of one system", have_warp_threads, 0.035, 0.0015, NULL},
-    {"threads of two", have_threads, 0.035, 0.0015, NULL},
-    {"threads, light turned", turn, 0.035, 0.0015, NULL},
-    {"weave, LEAN", be_woven, 0.035, 0.0015, NULL},
-    {"weave, Toksvig", have_toksvig, 0.035, 0.0015, NULL},
-    {"streaks", be_streaked, 0.035, 0.0015, NULL},
-    {"maps", be_mapped, 0.035, 0.0015, NULL},
-    {"occlusion", have_occlusion, 0.035, 0.0015, NULL},
-    {"fuzz", be_fuzzy, 0.035, 0.0015, NULL},
-    {"fuzz that leans", lean, 0.035, 0.0015, NULL},
-    {"a back of its own", be_lined, 0.035, 0.0015, NULL},
-    {"seams", be_sewn, 0.035, 0.0015, NULL},
-    {"ground", have_a_ground, 0.035, 0.014, NULL},
-    {"from below the ground", look_from_below_ground, 0.035, 0.0015, NULL},
-    {"Beckmann's facets", have_beckmann_facets, 0.035, 0.0015, NULL},
-    {"GGX facets, threads", have_ggx_facets, 0.035, 0.0015, NULL},
-    {"glass", be_glass, 0.035, 0.0015, NULL},
-    {"metal, from below", be_metal, 0.035, 0.0015, NULL},
-    {"facets of metal", have_metal_facets, 0.035, 0.004, NULL},
-    {"Blinn and Phong", blinn_phong, 0.035, 0.0015, NULL},
-    {"Lewis's lobe", cosine_lobe, 0.035, 0.0015, NULL},
-    {"Banks's threads", banks, 0.035, 0.0015, NULL},
-    {"coat", have_a_coat, 0.035, 0.015, lean},
-    {"coat alone", be_lacquered, 0.25, 0.18, be_black},
-    {"emission", emit, 0.035, 0.004, lean},
-    {"lamp", have_a_lamp, 0.035, 0.0015, have_threads},
-    {"three lamps", have_lamps, 0.035, 0.005, lean},
-    {"lamps, from below", have_a_lamp_below, 0.035, 0.005, look_up_at_maps},
-    {"four samples a pixel", supersample, 0.035, 0.0015, NULL},
-    {"two classes", be_different, 0.035, 0.0015, NULL},
+    {"matt", be_matt, 0.035, 0.0015, 0, NULL},
+    {"glossy", be_glossy, 0.035, 0.0015, 0, NULL},
+    {"no sun", have_no_sun, 0.035, 0.0015, 0, NULL},
+    {"Ward", be_satin, 0.035, 0.0015, 0, NULL},
+    {"Ward, bounded", be_faceted, 0.035, 0.0015, 0, NULL},
+    {"threads of one system", have_warp_threads, 0.035, 0.0015, 0, NULL},
+    {"threads of two", have_threads, 0.035, 0.0015, 0, NULL},
+    {"threads, light turned", turn, 0.035, 0.0015, 0, NULL},
+    {"weave, LEAN", be_woven, 0.035, 0.0015, 0, NULL},
+    {"weave, Toksvig", have_toksvig, 0.035, 0.0015, 0, NULL},
+    {"streaks", be_streaked, 0.035, 0.0015, 0, NULL},
+    {"maps", be_mapped, 0.035, 0.0015, 0, NULL},
+    {"occlusion", have_occlusion, 0.035, 0.0015, 0, NULL},
+    {"fuzz", be_fuzzy, 0.035, 0.0015, 0, NULL},
+    {"fuzz that leans", lean, 0.035, 0.0015, 0, NULL},
+    {"a back of its own", be_lined, 0.035, 0.0015, 0, NULL},
+    {"seams", be_sewn, 0.035, 0.0015, 0, NULL},
+    {"ground", have_a_ground, 0.035, 0.014, 0, NULL},
+    {"from below the ground", look_from_below_ground, 0.035, 0.0015, 0, NULL},
+    {"Beckmann's facets", have_beckmann_facets, 0.035, 0.0015, 0, NULL},
+    {"GGX facets, threads", have_ggx_facets, 0.035, 0.0015, 0, NULL},
+    {"glass", be_glass, 0.035, 0.0015, 0, NULL},
+    {"metal, from below", be_metal, 0.035, 0.0015, 0, NULL},
+    {"facets of metal", have_metal_facets, 0.035, 0.004, 0, NULL},
+    {"Blinn and Phong", blinn_phong, 0.035, 0.0015, 0, NULL},
+    {"Lewis's lobe", cosine_lobe, 0.035, 0.0015, 0, NULL},
+    {"Banks's threads", banks, 0.035, 0.0015, 0, NULL},
+    {"coat", have_a_coat, 0.035, 0.015, 0, lean},
+    {"coat alone", be_lacquered, 0.25, 0.18, 0, be_black},
+    {"emission", emit, 0.035, 0.004, 0, lean},
+    {"lamp", have_a_lamp, 0.035, 0.0015, 0, have_threads},
+    {"three lamps", have_lamps, 0.035, 0.005, 0, lean},
+    {"lamps, from below", have_a_lamp_below, 0.035, 0.005, 0, look_up_at_maps},
+    {"holes", have_holes, 0.06, 0.0015, 10, NULL},
+    {"holes, from below", have_clamped_holes, 0.08, 0.0015, 10, NULL},
+    {"transmission", transmit, 0.035, 0.0015, 0, NULL},
+    {"open", be_open, 0.035, 0.006, 10, NULL},
+    {"voile", be_voile, 0.035, 0.006, 10, NULL},
+    {"voile, from below", look_up_at_voile, 0.035, 0.006, 10, NULL},
+    {"four samples a pixel", supersample, 0.035, 0.0015, 0, NULL},
+    {"two classes", be_different, 0.035, 0.0015, 0, NULL},
 };
 
 static int compare_doubles(const void *a, const void *b)
@@ -433,6 +475,15 @@ static tl_image draw_expected(tl_renderer *renderer, struct drawn_scene *drawn, 
     return image;
 }
 
+/* Pixels whose cover differs by more than GL's fading of the ground does. */
+static int count_other_covers(const tl_image *made, const tl_image *expected)
+{
+    int count = 0;
+    for (size_t i = 0; i < (size_t)made->width * (size_t)made->height; i++)
+        count += fabsf(tl_image_floats(made)[4 * i + 3] - tl_image_floats(expected)[4 * i + 3]) > 6e-4f;
+    return count;
+}
+
 static bool check_picture(tl_renderer *renderer, struct drawn_scene *drawn, const tl_borders *borders,
                           const struct picture_case *item)
 {
@@ -441,13 +492,14 @@ static bool check_picture(tl_renderer *renderer, struct drawn_scene *drawn, cons
     tl_image made = draw_anew(renderer, drawn, TL_DEVICE_CARD);
     expect_device(renderer, drawn, "the graphics card, by");
     const struct test_difference difference = test_compare(&made, &expected);
-    const double cover = drawn_scene_cover_difference(&made, &expected);
+    const int covers = count_other_covers(&made, &expected);
     const double most = most_of_difference(&made, &expected);
-    printf("%-22s rel. RMSE %.5f, of most %.5f, cover %.1e\n", item->name, difference.rel_rmse, most, cover);
+    printf("%-22s rel. RMSE %.5f, of most %.5f, cover of %d\n", item->name, difference.rel_rmse, most,
+           covers);
     tl_image_release(&expected);
     tl_image_release(&made);
-    return difference.pixels > WIDTH * HEIGHT / 8 && cover < 6e-4 && difference.rel_rmse < item->rmse &&
-           most < item->most;
+    return difference.pixels > WIDTH * HEIGHT / (item->covers > 0 ? 64 : 8) && covers <= item->covers &&
+           difference.rel_rmse < item->rmse && most < item->most;
 }
 
 static void test_pictures(void **state)
@@ -512,6 +564,7 @@ static void test_bounces(void **state)
     check_bounces(device->renderer, &drawn, be_satin, 0.05, 0.006);
     check_bounces(device->renderer, &drawn, glow, 0.03, 0.05); /* the CPU's is lit at samples */
     check_bounces(device->renderer, &drawn, have_lamps, 0.05, 0.08);
+    check_bounces(device->renderer, &drawn, be_voile, 0.05, 0.02);
     drawn_scene_close(&drawn);
 }
 
@@ -560,6 +613,7 @@ static void test_changes(void **state)
                   {be_matt, 20, 48, 2, false},
                   {be_different, 48, 20, 2, true},
                   {have_lamps, SMALL_WIDTH, SMALL_HEIGHT, 3, true},
+                  {be_voile, SMALL_WIDTH, SMALL_HEIGHT, 3, true},
                   {have_a_lamp, SMALL_WIDTH, SMALL_HEIGHT, 3, true},
                   {lean, SMALL_WIDTH, SMALL_HEIGHT, 3, false}};
     const struct test_device *device = *state;
@@ -591,22 +645,6 @@ static void test_changes(void **state)
 
 /* ---- What the card does not draw ---- */
 
-static void be_open(struct drawn_scene *drawn)
-{
-    drawn_scene_cloth(drawn)->openness = 0.3f;
-}
-
-static void have_cut_outs(struct drawn_scene *drawn)
-{
-    drawn_scene_cloth(drawn)->diffuse_map = drawn_scene_map(&drawn->maps[MAP_HOLES]);
-    drawn_scene_cloth(drawn)->alpha_cutoff = 0.5f;
-}
-
-static void transmit(struct drawn_scene *drawn)
-{
-    drawn_scene_cloth(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
-}
-
 static void bounce_once(struct drawn_scene *drawn)
 {
     drawn->scene.settings.light.bounce = TL_BOUNCE_ONE;
@@ -623,10 +661,7 @@ static void test_refusals(void **state)
     static const struct {
         editor *edit;
         const char *text;
-    } refused[] = {{be_open, "cloth with holes"},
-                   {have_cut_outs, "cloth with holes"},
-                   {transmit, "light that shines through cloth"},
-                   {bounce_once, "light that bounces once"},
+    } refused[] = {{bounce_once, "light that bounces once"},
                    {have_steps, "lamps whose shading is not exact"}};
     const struct test_device *device = *state;
     struct drawn_scene drawn;

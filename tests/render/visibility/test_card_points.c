@@ -104,7 +104,7 @@ static struct compared compare(struct stage *stage, struct tl_card_points *card,
     assert_ok(tl_card_points_follow(card, gpu, &stage->ranges, stage->request.ground,
                                     stage->request.shapes_revision, &error),
               error);
-    tl_card_points_list(card, &ids);
+    tl_card_points_list(card, &ids, 1);
     assert_ok(tl_card_points_trace(card, &light, &error), error);
     assert_near(card->offset_m, tl_trace_offset(stage->trace), 0);
 
