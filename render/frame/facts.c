@@ -309,6 +309,8 @@ const char *tl_frame_rest_refusal(const tl_frame *frame, const struct tl_render_
 {
     struct tl_lamp lamps[TL_LAMPS_MAX];
     struct tl_render_settings followed = *settings;
+    if (!frame->still && !frame->smooth) /* noisy */
+        return "images of one round";
     if (settings->light.bounce == TL_BOUNCE_OFF && has_mirrors(frame, &settings->light))
         return "near mirrors of a scene whose light does not bounce (light.bounce)";
     if (tl_lamps_lit(frame, lamps) > 0)

@@ -246,10 +246,12 @@ static tl_image draw_rounds(tl_renderer *renderer, struct drawn_scene *drawn, in
 {
     tl_image image = {0};
     drawn->scene.frame.still = false;
+    drawn->scene.frame.smooth = true;
     for (int i = from; i < to; i++) {
         tl_image_release(&image);
         image = test_scene_draw(&drawn->scene, renderer);
     }
+    drawn->scene.frame.smooth = false;
     return image;
 }
 
@@ -356,6 +358,12 @@ static void have_dark_mirrors(struct drawn_scene *drawn)
     drawn->scene.settings.light.bounce = TL_BOUNCE_OFF;
 }
 
+/* A frame of a flight: the camera moves on, and no round follows. */
+static void be_moving(struct drawn_scene *drawn)
+{
+    drawn->scene.frame.still = false;
+}
+
 static void test_refusals(void **state)
 {
     static const struct {
@@ -363,7 +371,8 @@ static void test_refusals(void **state)
         const char *text;
     } refused[] = {{be_open, "cloth with holes at rest"},
                    {have_a_lamp, "lamps at rest"},
-                   {have_dark_mirrors, "near mirrors of a scene whose light does not bounce"}};
+                   {have_dark_mirrors, "near mirrors of a scene whose light does not bounce"},
+                   {be_moving, "images of one round"}};
     const struct test_device *device = *state;
     struct drawn_scene drawn;
     open_small(&drawn);
