@@ -85,6 +85,13 @@ static void be_half_as_fine(struct drawn_scene *drawn)
     drawn->scene.settings.image.scale = 0.5f;
 }
 
+static void be_lit(struct drawn_scene *drawn)
+{
+    be_satin(drawn);
+    drawn->scene.lamps[0] = test_lamp_at((vec3s){{0.6f, 1.5f, 0.8f}}, 4);
+    drawn->scene.frame.lamp_count = 1;
+}
+
 static tl_image draw(const struct test_device *device, struct drawn_scene *drawn, int ratio_at)
 {
     tl_error error = {0};
@@ -125,6 +132,7 @@ static const struct picture_case pictures[] = {
     {"voile from below", be_voile_from_below, 0.0062, 0.0062, 0.0314, COVER_TOLERANCE},
     {"voile with fuzz", be_fuzzy_voile, 0.0058, 0.009, 0.032, COVER_TOLERANCE},
     {"open, all of it", be_open_all, 0.0068, 0.0107, 0.0374, COVER_TOLERANCE},
+    {"satin, a near lamp", be_lit, 0.0042, 0.0069, 0.0277, COVER_TOLERANCE},
     {"voile, scale 0.5", be_half_as_fine_voile, 0.0088, 0.0155, 0.076, 0.411},
 };
 
@@ -192,6 +200,12 @@ static void have_a_lamp(struct drawn_scene *drawn)
 {
     drawn->scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, 1, 0.3f}}, 2);
     drawn->scene.frame.lamp_count = 1;
+}
+
+static void have_a_step(struct drawn_scene *drawn)
+{
+    have_a_lamp(drawn);
+    drawn->scene.settings.shading.self_shadow = TL_SELF_SHADOW_STEP;
 }
 
 static void have_a_coat(struct drawn_scene *drawn)
@@ -277,7 +291,8 @@ static const struct {
 } needs[] = {
     {"nothing", have_nothing, false},
     {"matt", be_matt, false},
-    {"a lamp", have_a_lamp, true},
+    {"a lamp", have_a_lamp, false},
+    {"a lamp, shaded otherwise", have_a_step, true},
     {"a coat", have_a_coat, true},
     {"openness", have_openness, false},
     {"transmission", have_transmission, false},
