@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define MEBIBYTE (1024.0 * 1024.0)
 
@@ -254,6 +255,11 @@ static void describe_device(const struct tl_headless *headless, char *out, size_
     const tl_frame frame = tl_session_frame(headless->session);
     const struct tl_render_settings settings = tl_settings_render(&headless->settings);
     tl_renderer_describe_device(headless->renderer, &frame, &settings, out, size);
+    const size_t length = strlen(out);
+    if (tl_session_steps_beside(headless->session,
+                                tl_renderer_is_on_card(headless->renderer, &frame, &settings)))
+        snprintf(out + length, size - length,
+                 "; a window steps the cloth beside it, and shows it one frame later");
 }
 
 static void print_report(const struct tl_headless *headless, const tl_plan *plan, const struct savings *saved,

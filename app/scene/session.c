@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void pose_avatar(tl_session *session, double time_s)
 {
@@ -295,6 +296,8 @@ void tl_session_destroy(tl_session **handle)
     tl_session *session = *handle;
     if (!session)
         return;
+    if (session->ahead)
+        tl_ahead_take(&session->ahead, NULL);
     tl_smoothed_release(&session->smoothed);
     tl_moving_release(&session->dress);
     tl_moving_release(&session->board);
@@ -335,12 +338,36 @@ static bool pose_at(tl_session *session, int number, tl_error *error)
     return !session->playback || play_back(session, number, error);
 }
 
+bool tl_session_steps_beside(const tl_session *session, bool card_draws)
+{
+    return card_draws && session->cloth && session->clip < 0 && sysconf(_SC_NPROCESSORS_ONLN) > 1;
+}
+
+bool tl_session_begin_step(tl_session *session)
+{
+    if (!session->cloth || session->clip >= 0 || session->ahead)
+        return false;
+    session->ahead = tl_ahead_begin(session->cloth, session->collider);
+    return session->ahead != NULL;
+}
+
+void tl_session_end_step(tl_session *session)
+{
+    tl_ahead_wait(session->ahead);
+}
+
+static bool step_cloth(tl_session *session, tl_error *error)
+{
+    return session->ahead ? tl_ahead_take(&session->ahead, error)
+                          : tl_cloth_step(session->cloth, session->collider, error);
+}
+
 bool tl_session_advance(tl_session *session, tl_error *error)
 {
     if (!pose_at(session, session->frame + 1, error))
         return false;
     if (session->cloth) {
-        if (!tl_cloth_step(session->cloth, session->collider, error))
+        if (!step_cloth(session, error))
             return false;
         read_back_cloth(session);
     }
@@ -348,8 +375,15 @@ bool tl_session_advance(tl_session *session, tl_error *error)
     return true;
 }
 
+bool tl_session_take_step(tl_session *session, tl_error *error)
+{
+    return !session->ahead || tl_session_advance(session, error);
+}
+
 bool tl_session_reset(tl_session *session, tl_error *error)
 {
+    if (session->ahead)
+        tl_ahead_take(&session->ahead, NULL);
     if (!tl_moving_light_follow(&session->light, 0, error))
         return false;
     if (session->garment)

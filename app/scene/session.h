@@ -47,6 +47,20 @@ void tl_session_destroy(tl_session **handle);
  * last tl_session_frame. Threads: the session's. */
 bool tl_session_advance(tl_session *session, tl_error *error);
 
+/* Whether a window steps the cloth beside the drawing: where a graphics card draws, the processor has nothing
+ * else to do, if there is a core to spare. Pure. */
+bool tl_session_steps_beside(const tl_session *session, bool card_draws);
+/* Begins the cloth's step of the next frame on a thread of its own; the second function waits for it, and the
+ * next tl_session_advance takes it, with its error, so that every frame is as without them. What the last
+ * tl_session_frame holds may be read in between, and tl_session_apply, _advance, _reset and _destroy wait
+ * themselves; other functions of this session must not be called. False, and nothing was begun: there is no
+ * simulated cloth, a clip moves what is drawn, or a step has been begun and not taken. Errors: none. Threads:
+ * the session's. */
+bool tl_session_begin_step(tl_session *session);
+void tl_session_end_step(tl_session *session);
+/* Advances where a step has been begun and not taken. Errors and lifetime: as tl_session_advance. */
+bool tl_session_take_step(tl_session *session, tl_error *error);
+
 /* Advances to frame `number` (0: the start, settled or as authored); an earlier frame is reached from the
  * start, because cloth cannot be stepped backwards. Without cloth a frame is reached at once. Errors: as
  * tl_session_advance, and TL_INTERRUPTED at the frame that was reached. Lifetime: ends the last

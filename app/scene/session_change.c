@@ -125,6 +125,7 @@ void tl_session_keep_appearance(tl_session *session, const struct tl_settings *m
 bool tl_session_apply(tl_session *session, const struct tl_settings *settings, tl_error *error)
 {
     const uint64_t changes = tl_settings_changes(&session->settings, settings);
+    tl_session_end_step(session);
     if (changes & TL_AFFECTS_SCENE)
         return tl_session_restart(session, settings, error);
     struct tl_appearance appearance = {0};

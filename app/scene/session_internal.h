@@ -4,6 +4,7 @@
 
 #include "app/display/moving.h"
 #include "app/display/smoothed.h"
+#include "app/scene/ahead_internal.h"
 #include "app/scene/camera.h"
 #include "app/scene/load.h"
 #include "app/scene/playback.h"
@@ -30,7 +31,8 @@ struct tl_session {
     bool only_sewn;  /* it starts as it is when its seams have closed */
     struct tl_scene_standing standing;
     tl_collider *collider;
-    tl_playback *playback; /* NULL: the garment is simulated */
+    struct tl_ahead *ahead; /* the next frame's step of the cloth, begun and not yet taken; or NULL */
+    tl_playback *playback;  /* NULL: the garment is simulated */
     struct tl_moving dress;
     struct tl_placing shown_placed; /* tl_session_show_placed; a scale of 0: as loaded */
     struct tl_moving board;         /* made when first asked for; empty: not yet, or there is no pattern */

@@ -81,7 +81,8 @@ static size_t list_measures(struct tl_review *review, struct tl_panel_line *line
     tl_review_size(review, &width, &height);
     add_line(lines, &count, "frame", "%d, %.0f ms", tl_session_frame_number(review->session),
              review->image.times.frame);
-    add_line(lines, &count, "cloth", "%.1f ms", review->image.times.cloth);
+    add_line(lines, &count, "cloth", "%.1f ms%s", review->image.times.cloth,
+             review->play.is_beside ? ", and beside drawing: a frame late" : "");
     add_line(lines, &count, "drawing", "%.0f ms", review->image.times.draw);
     int samples_x, samples_y;
     const struct tl_render_settings full = tl_settings_render(&review->good);

@@ -95,7 +95,12 @@ bool tl_review_moves_itself(const struct tl_review *review)
 
 void tl_review_set_playing(struct tl_review *review, bool plays)
 {
+    tl_error error;
+    if (!plays && !tl_session_take_step(review->session, &error))
+        tl_review_report_error(review, &error);
+    review->due.image_is_old |= review->play.is_beside;
     review->play.is_on = plays;
+    review->play.is_beside = false;
     review->play.next_step_s = tl_clock_s();
     review->play.speed = 1;
     tl_info("view: %s at frame %d", plays ? "plays" : "paused", tl_session_frame_number(review->session));

@@ -64,6 +64,7 @@ struct tl_review_due {
 struct tl_review_play {
     bool is_on;
     double next_step_s; /* while it is on: time of the next simulated frame */
+    bool is_beside;     /* since it is on, cloth was stepped while an image was drawn */
     double speed;       /* of the last frames, as a share of real time; 1 when playing begins */
 };
 

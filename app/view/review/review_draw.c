@@ -178,18 +178,21 @@ static void choose_levels(struct tl_review *review, const struct tl_settings *se
 
 /* The levels of an image at rest, and the samples that it needs so that edges have no steps: more a pixel
  * than a preset for motion asks for, or, where these would hold a gesture up, images that are shifted by
- * parts of a pixel one after the other. The choice stands until something changes: another one would begin
- * again. */
+ * parts of a pixel one after the other; these are what the graphics card's rounds are. The choice stands
+ * until something changes: another one would begin again. */
 static void choose_rest(struct tl_review *review, struct tl_render_settings *settings, bool goes_on)
 {
     struct tl_review_rest *rest = &review->image.rest;
     const int requested = settings->image.supersample;
     const tl_frame coming = tl_session_frame(review->session);
     if (!goes_on) {
-        settings->image.supersample = requested > REST_SIDE ? requested : REST_SIDE;
+        tl_frame shifted = coming;
+        shifted.smooth = true;
+        const bool has_rounds = tl_renderer_is_on_card(review->renderer, &shifted, settings);
+        settings->image.supersample = requested > REST_SIDE || has_rounds ? requested : REST_SIDE;
         struct tl_quality_rest chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
-        *rest = (struct tl_review_rest){.samples = settings->image.supersample};
-        if (chosen.is_slow && settings->light.visibility == TL_VISIBILITY_RAYS) {
+        *rest = (struct tl_review_rest){.samples = settings->image.supersample, .is_shifted = has_rounds};
+        if (chosen.is_slow && !has_rounds && settings->light.visibility == TL_VISIBILITY_RAYS) {
             *rest = (struct tl_review_rest){.samples = requested, .is_shifted = true};
             settings->image.supersample = requested;
             chosen = tl_quality_governor_rest(review->renderer, &coming, settings);
@@ -215,12 +218,25 @@ static void choose_quality(struct tl_review *review, const struct tl_settings *w
         settings->image.supersample = REST_SIDE;
 }
 
+/* Begins the cloth's next step beside the drawing. Cloth is then shown one frame after the hand that pulls
+ * it.
+ */
+static bool begin_step(struct tl_review *review, const tl_frame *frame,
+                       const struct tl_render_settings *render)
+{
+    return review->play.is_on && !review->wipe.renderer &&
+           tl_session_steps_beside(review->session,
+                                   tl_renderer_is_on_card(review->renderer, frame, render)) &&
+           tl_session_begin_step(review->session);
+}
+
 static bool draw_b(struct tl_review *review, const struct tl_render_settings *full, bool smooth,
                    tl_error *error)
 {
     const struct tl_render_settings render = tl_quality_at(&review->image.choice.levels, full);
     tl_frame frame = tl_session_frame(review->session);
     frame.smooth = smooth;
+    review->play.is_beside |= begin_step(review, &frame, &render);
     return tl_renderer_draw(review->renderer, &frame, &render, error);
 }
 
@@ -245,9 +261,13 @@ static bool draw_image(struct tl_review *review, const struct tl_settings *setti
         review->image.times.began_s +=
             tl_clock_s() - started_s; /* the governor learns from one renderer, B's */
     }
-    if (!draw_b(review, &full, is_shifted, error))
+    const bool is_drawn = draw_b(review, &full, is_shifted, error);
+    const double drawn_s = tl_clock_s();
+    tl_session_end_step(review->session); /* nothing else runs beside a step */
+    if (!is_drawn)
         return false;
-    review->image.times.draw = 1e3 * (tl_clock_s() - started_s);
+    review->image.times.draw = 1e3 * (drawn_s - started_s);
+    review->image.times.cloth += 1e3 * (tl_clock_s() - drawn_s);
     review->image.drawn_count++;
     review->image.is_new = true;
     review->image.is_budgeted = use == IMAGE_IN_MOTION;
