@@ -61,11 +61,13 @@ const char *tl_card_refusal(const tl_surface *surfaces, size_t count)
 
 static bool same_yarns(const struct tl_yarns *a, const struct tl_yarns *b)
 {
+    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bytes that were sent */
     return a == b || (a && b && memcmp(a, b, sizeof *a) == 0);
 }
 
 static bool same_profiles(const struct tl_construction_tables *a, const struct tl_construction_tables *b)
 {
+    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bytes that were sent */
     return a == b || (a && b && memcmp(a->profiles, b->profiles, sizeof a->profiles) == 0);
 }
 
@@ -243,7 +245,7 @@ static void fill_maps(const struct tl_shade_materials *materials, const struct t
         const float *rows = map->rows;
         to->flags[2] |= map->texels ? 1u << use : 0;
         for (int k = 0; k < 2; k++)
-            memcpy(to->map_rows[use][k], rows + 3 * k, 3 * sizeof *rows);
+            memcpy(to->map_rows[use][k], rows + (ptrdiff_t)3 * k, 3 * sizeof *rows);
     }
     to->weave[0] = part->weave_scale[0];
     to->weave[1] = part->weave_scale[1];
@@ -383,8 +385,8 @@ static void fill_part(const struct tl_shade_materials *materials, const struct t
 static void fill_albedos(const struct tl_bounce_material *material, float to[5][4])
 {
     for (int side = 0; side < 2; side++) {
-        tl_card_put(to[2 * side], material->albedo[side], 0);
-        tl_card_put(to[2 * side + 1], material->whole[side], 0);
+        tl_card_put(to[(ptrdiff_t)2 * side], material->albedo[side], 0);
+        tl_card_put(to[(ptrdiff_t)2 * side + 1], material->whole[side], 0);
     }
     tl_card_put(to[4], material->transmission, 0);
     for (int c = 0; c < 3; c++)
@@ -407,7 +409,7 @@ static bool send_triangle_parts(tl_graphics_card *card, const struct tl_card_sur
                                                 (of->material->openness > 0 ? CARD_IS_OPEN : 0) |
                                                 (of->transmits ? CARD_TRANSMITS : 0);
             for (size_t k = 0; k < 3; k++)
-                of_vertex[first + surface->indices[3 * t + k]] = part;
+                of_vertex[first + surface->indices[(size_t)3 * t + k]] = part;
         }
         first += surface->vertex_count;
     }

@@ -160,10 +160,10 @@ bool tl_card_trace_bounce(tl_graphics_card *card, const struct tl_card_bounce *r
     const struct {
         int binding;
         size_t bytes;
-    } needed[] = {{CARD_FOUND, 17 * 16 * probes},
-                  {CARD_BOUNCED, 17 * 16 * probes},
+    } needed[] = {{CARD_FOUND, (size_t)17 * 16 * probes},
+                  {CARD_BOUNCED, (size_t)17 * 16 * probes},
                   {CARD_SENT, 16 * probes},
-                  {CARD_SENT_NOW, 2 * 16 * probes}};
+                  {CARD_SENT_NOW, (size_t)2 * 16 * probes}};
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
         if (!tl_buffer_reserve(&card->buffers[needed[i].binding], card->gpu, needed[i].bytes, error))
             return false;

@@ -30,8 +30,9 @@ bool tl_run_card_ids(const struct tl_card_ids_job *job, tl_error *error)
 
 bool tl_run_card_points(const struct tl_card_points_job *job, tl_error *error)
 {
-    const uint64_t parts[] = {*job->regions_revision, job->shapes->revision, job->environment->revision};
-    const uint64_t hash = tl_hash(TL_HASH_START, parts, sizeof parts);
+    uint64_t hash = tl_hash(TL_HASH_START, job->regions_revision, sizeof *job->regions_revision);
+    hash = tl_hash(hash, &job->shapes->revision, sizeof job->shapes->revision);
+    hash = tl_hash(hash, &job->environment->revision, sizeof job->environment->revision);
     const struct tl_card_light request = {.regions = job->regions,
                                           .suns = job->suns,
                                           .lights = *job->lights,

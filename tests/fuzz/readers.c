@@ -69,7 +69,7 @@ static void use_model(tl_model *model)
     free(posed);
     tl_garment garment = {.model = *model};
     tl_stitches_sew(&garment);
-    if (garment.model.mesh.index_count <= 3 * AUDITED_TRIANGLES)
+    if (garment.model.mesh.index_count <= (size_t)3 * AUDITED_TRIANGLES)
         tl_audit_garment(&audit, &garment);
     tl_audit_release(&audit);
     *model = garment.model;
@@ -113,8 +113,8 @@ static bool read_motion(const char *path)
         return refused(&error);
     const struct tl_point_cache_facts *facts = tl_point_cache_facts(cache);
     vec3s *points = TL_NEW_ARRAY(vec3s, facts->point_count);
-    for (double share = 0; share <= 1; share += 0.5)
-        if (!tl_point_cache_read(cache, share * (double)(facts->sample_count - 1), points, &error))
+    for (int half = 0; half <= 2; half++)
+        if (!tl_point_cache_read(cache, half * 0.5 * (double)(facts->sample_count - 1), points, &error))
             refused(&error);
     free(points);
     tl_point_cache_destroy(&cache);

@@ -31,7 +31,7 @@ static void make_light(float brightest, int regions, uint64_t hashes[COUNT])
     float *texels = tl_image_floats(&environment.image);
     for (size_t i = 0; i < (size_t)3 * WIDTH * WIDTH / 2; i++)
         texels[i] = 0.1f + (float)(i * 2654435761u % 1000) / 1000;
-    texels[3 * (10 * WIDTH + 20)] = brightest;
+    texels[(size_t)3 * (10 * WIDTH + 20)] = brightest;
     tl_cube cube = tl_cube_from_environment(&environment, SIZE);
     struct tl_regions cut = {0};
     struct tl_lobes lobes = {0};

@@ -284,7 +284,8 @@ static void test_lanes_match_the_fit(void **state)
             struct tl_fitted_lobe fitted[TL_LOBE_FIT_MAX], found[TL_LOBE_FIT_MAX];
             struct tl_brdf brdf = tl_brdf_of(&material, reflectances[i % 4], query.glossiness);
             int count = tl_lobe_fit_make(&brdf, &query.frame, query.viewer, 1, LOBES, fitted);
-            struct fetched want = fetch(fitted, count), is = fetch(found, fit_lanes(&brdf, &query, found));
+            const int found_count = fit_lanes(&brdf, &query, found);
+            struct fetched want = fetch(fitted, count), is = fetch(found, found_count);
             for (int c = 0; c < CHANNELS; c++)
                 add_error(query.cosine < GRAZING ? &grazing : &light, is.light[c], want.light[c]);
         }

@@ -178,7 +178,7 @@ static float let_through(const struct sunny *scene, vec3s start, vec3s direction
 static float traced(const struct sunny *scene, int light, float yaw, const struct tl_trace_hit *hit)
 {
     const struct tl_sun *sun = light < scene->suns.count ? &scene->suns.items[light] : NULL;
-    const struct tl_lamp *lamp = sun ? NULL : &scene->lamps[light - scene->suns.count];
+    const struct tl_lamp *lamp = &scene->lamps[sun ? 0 : light - scene->suns.count];
     const tl_surface *surface = scene->listed[hit->surface];
     const float weights[3] = {1 - hit->u - hit->v, hit->u, hit->v};
     vec3s corners[3], normals[3], point = {{0, 0, 0}}, smooth = {{0, 0, 0}};
@@ -203,7 +203,7 @@ static float traced(const struct sunny *scene, int light, float yaw, const struc
     vec3s start = glms_vec3_add(tl_smooth_point(point, corners, normals, weights),
                                 glms_vec3_scale(smooth, tl_trace_offset(scene->trace)));
     float seen = 0;
-    if (lamp) {
+    if (!sun) {
         const vec3s way = glms_vec3_sub(lamp->position, start);
         const vec3s direction = glms_vec3_normalize(way);
         return let_through(scene, start, direction, glms_vec3_norm(way)) *
