@@ -25,6 +25,12 @@ layout(std430, binding = CARD_RATIOS) restrict readonly buffer Ratios
 layout(binding = 6) uniform sampler2DArray sun_seen;
 #include "card_fuzz.glsl"
 
+// The share of a light above the plane of the smooth normal, on the side to which `facing` is its cosine.
+float above_plane(Sun sun, float facing)
+{
+    return sun.is_lamp ? self_shadow_ramp(facing) : disc_share(facing / max(sun.radius, 1e-3));
+}
+
 // The light that the pixel sends to the viewer.
 vec3 light_of(Seen s, ivec2 pixel)
 {
@@ -64,12 +70,10 @@ vec3 light_of(Seen s, ivec2 pixel)
     for (int i = 0; i < counts.y; i++) {
         Sun sun = sun_at(i, point, s.surface.shown);
         float facing = s.side * dot(sun.towards, s.surface.smooth_normal);
-        float above = sun.is_lamp ? self_shadow_ramp(facing) : disc_share(facing / max(sun.radius, 1e-3));
-        float seen = above * texelFetch(sun_seen, ivec3(pixel, i), 0).r;
+        float shown = texelFetch(sun_seen, ivec3(pixel, i), 0).r, seen = shown * above_plane(sun, facing);
 #ifdef RICH
         if ((s.part.flags.x & TRANSMITS) != 0u && facing < 0.0) {
-            float through = sun.is_lamp ? 1.0 : disc_share(-facing / max(sun.radius, 1e-3));
-            through *= texelFetch(sun_seen, ivec3(pixel, i), 0).r * max(-dot(sun.towards, s.surface.shown), 0.0) / PI;
+            float through = shown * above_plane(sun, -facing) * max(-dot(sun.towards, s.surface.shown), 0.0) / PI;
             light += through * sun.power * s.part.transmission.rgb;
         }
 #endif

@@ -190,9 +190,10 @@ static void have_a_lamp_below(struct drawn_scene *drawn)
     look_up(drawn);
 }
 
-static void look_up_at_maps(struct drawn_scene *drawn)
+static void have_lamps_and_voile(struct drawn_scene *drawn)
 {
-    lean(drawn);
+    have_lamps(drawn);
+    be_voile(drawn);
     look_up(drawn);
 }
 
@@ -343,7 +344,7 @@ static double mean_of(const tl_image *image)
 
 /* Maps, lobe maps and the image are rounded to halves, which is 0.0005 of a value and of cover, and gloss
  * maps and bumps steepen that; visibility to bytes. The ground's normals are alike: the CPU's ratios there
- * are means of neighbours; its ratios of facets are of lobes that are fitted anew, the card's of those of a
+ * are means of neighbours; its ratios of facets are of lobes that are fitted, the card's of those of a
  * table, and a metal has nothing else. What a coat reflects the CPU compares at samples, between vertices,
  * too. That, and what lies at the edges of the sun's shadows, is bounded by what came out, and a half of it.
  */
@@ -386,9 +387,10 @@ static const struct picture_case pictures[] = {
     {"coat", have_a_coat, 0.035, 0.015, 0, lean},
     {"coat alone", be_lacquered, 0.25, 0.18, 0, be_black},
     {"emission", emit, 0.035, 0.004, 0, lean},
-    {"lamp", have_a_lamp, 0.035, 0.0015, 0, have_threads},
-    {"three lamps", have_lamps, 0.035, 0.005, 0, lean},
-    {"lamps, from below", have_a_lamp_below, 0.035, 0.005, 0, look_up_at_maps},
+    {"lamp", have_a_lamp, 0.035, 0.0015, 0, NULL},
+    {"three lamps", have_lamps, 0.035, 0.0015, 0, NULL},
+    {"lamps, from below", have_a_lamp_below, 0.035, 0.0015, 0, NULL},
+    {"lamps through voile", have_lamps_and_voile, 0.035, 0.006, 10, NULL},
     {"holes", have_holes, 0.06, 0.0015, 10, NULL},
     {"holes, from below", have_clamped_holes, 0.08, 0.0015, 10, NULL},
     {"transmission", transmit, 0.035, 0.0015, 0, NULL},
