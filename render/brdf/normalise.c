@@ -7,8 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *const tl_normalisation_names[] = {"none",  "cube8",        "cube16", "newton",
-                                              "exact", "newton_fixed", NULL};
+const char *const tl_normalisation_names[] = {"none", "cube8", "cube16", "newton", "newton8", "exact", NULL};
 
 struct tl_normal_cube tl_normal_cube_make(int size, int bits)
 {
@@ -50,26 +49,6 @@ vec3s tl_normal_cube_at(const struct tl_normal_cube *cube, vec3s v)
     return sum;
 }
 
-/* Rounds to a register of 8 bits and a sign. */
-static float rounded(float x)
-{
-    return roundf(fminf(fmaxf(x, -1), 1) * 255) / 255;
-}
-
-static vec3s rounded_vector(vec3s v)
-{
-    return (vec3s){{rounded(v.x), rounded(v.y), rounded(v.z)}};
-}
-
-/* v + v/2 (1 - v.v), evaluated by two register combiner stages [Schroecker 2002, eq. 6]. */
-static vec3s newton_fixed(vec3s v)
-{
-    vec3s start = rounded_vector(v);
-    float missing = rounded(1 - rounded(glms_vec3_norm2(start)));
-    vec3s more = rounded_vector(glms_vec3_scale(start, missing / 2));
-    return rounded_vector(glms_vec3_add(start, more));
-}
-
 vec3s tl_normalise(int method, const struct tl_normal_cube *cube, vec3s v)
 {
     float square = glms_vec3_norm2(v);
@@ -81,8 +60,8 @@ vec3s tl_normalise(int method, const struct tl_normal_cube *cube, vec3s v)
         return tl_normal_cube_at(cube, v);
     case TL_NORMALISE_NEWTON:
         return glms_vec3_scale(v, (3 - square) / 2);
-    case TL_NORMALISE_NEWTON_FIXED:
-        return newton_fixed(v);
+    case TL_NORMALISE_NEWTON8:
+        return register_newton_vector(v);
     case TL_NORMALISE_EXACT:
         return glms_vec3_scale(v, 1 / sqrtf(square));
     default:

@@ -1,27 +1,31 @@
-/* Renormalisation of interpolated vectors by five methods [Schroecker 2002, 4.2 and figure 9].
+/* Renormalisation of interpolated vectors by six methods [Schroecker 2002, 4.2 and figure 9].
  *
  * Linear interpolation between two unit vectors leaves the sphere and slows down towards the middle of the
  * arc; slerp is the exact interpolation that it approximates. The cube maps hold directions in n bits a
  * channel, range compressed from [-1, 1], and are looked up as GL does. Newton's step is v/2 (3 - v.v), which
- * needs v to be nearly unit; register combiners compute it in 8 bits and a sign, with each product and sum
- * rounded. Pure; results are the same on every machine. */
+ * needs v to be nearly unit; NEWTON8 is that step of register combiners (normalise_terms.glsl). Pure; results
+ * are the same on every machine. */
 #ifndef TOILE_RENDER_BRDF_NORMALISE_H
 #define TOILE_RENDER_BRDF_NORMALISE_H
 
-#include <cglm/struct.h>
+#include "render/gpu/vectors.h"
 
-#include <stdint.h>
+#include "render/gpu/terms_begin.h"
+
+#include "render/brdf/normalise_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 enum tl_normalisation {
     TL_NORMALISE_NONE,
     TL_NORMALISE_CUBE8,
     TL_NORMALISE_CUBE16,
     TL_NORMALISE_NEWTON,
+    TL_NORMALISE_NEWTON8,
     TL_NORMALISE_EXACT,
-    TL_NORMALISE_NEWTON_FIXED, /* measured only, not offered as an option */
     TL_NORMALISE_COUNT
 };
-extern const char *const tl_normalisation_names[]; /* none cube8 cube16 newton exact newton_fixed, NULL */
+extern const char *const tl_normalisation_names[]; /* ends with NULL */
 
 /* A cube map of unit vectors: round((n + 1)/2 * (2^bits - 1)) in three channels, faces and rows as in GL.
  * Released by tl_normal_cube_release. */

@@ -14,14 +14,6 @@ static float clamp01(float x)
     return x > 0 ? fminf(x, 1) : 0;
 }
 
-float tl_power_fixed8(float cosine, int squarings)
-{
-    float level = roundf(clamp01(cosine) * 255);
-    for (int i = 0; i < squarings; i++)
-        level = roundf(level * level / 255);
-    return level / 255;
-}
-
 void tl_power_table_make(float exponent, int size, uint8_t *out)
 {
     for (int i = 0; i < size; i++)
@@ -58,7 +50,7 @@ struct tl_power_error tl_power_error(int method, int exponent, int table_size)
     for (int i = 0; i < STEPS; i++) {
         double cosine = cos(end * i / STEPS), exact = pow(cosine, exponent), value = exact;
         if (method == TL_POWER_FIXED8)
-            value = (double)tl_power_fixed8((float)cosine, squarings_of(exponent));
+            value = (double)register_power((float)cosine, squarings_of(exponent));
         else if (method == TL_POWER_TABLE)
             value = (double)tl_power_table_at(table, table_size, (float)cosine);
         double difference = fabs(value - exact), level = round(value * 255) / 255;

@@ -4,13 +4,10 @@
 #ifndef TOILE_RENDER_BRDF_POWER_H
 #define TOILE_RENDER_BRDF_POWER_H
 
-#include <stdint.h>
+#include "render/brdf/normalise.h" /* register_power, of FIXED8 */
 
 enum tl_power { TL_POWER_POW, TL_POWER_FIXED8, TL_POWER_TABLE, TL_POWER_COUNT };
 extern const char *const tl_power_names[]; /* pow fixed8 table, NULL */
-
-/* cosine^(2^squarings), rounded to 1/255 at first and after each squaring. */
-float tl_power_fixed8(float cosine, int squarings);
 
 /* `size` values of x^exponent in 8 bits, at x = i / (size - 1), from 0 up. */
 void tl_power_table_make(float exponent, int size, uint8_t *out);

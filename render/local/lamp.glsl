@@ -19,6 +19,16 @@ Frame frame_of(vec3 n, vec3 tangent, float side)
     return Frame(n, t, cross(n, t));
 }
 
+// A cosine as precise as the way of making vectors unit.
+float held(float cosine)
+{
+#ifdef NORMALISE_NEWTON8
+    return register_value(cosine);
+#else
+    return cosine;
+#endif
+}
+
 // The cosines of vectors that are nearly unit: everything is derived from dot products.
 Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, vec2 across, float l_dot_v)
 {
@@ -28,7 +38,7 @@ Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, vec2 across, float
     c.half_normal = min(a_b_half_t.z, 1.0);
     c.t = a_b_half_t.w;
     c.half_sine2 = 1.0 - c.half_normal * c.half_normal;
-    c.mirror = min(2.0 * c.a * c.b - l_dot_v, 1.0);
+    c.mirror = min(held(2.0 * c.a * c.b - l_dot_v), 1.0);
     c.mirror_sine2 = 1.0 - c.mirror * c.mirror;
     c.half_plane = half_plane_thread.xy;
     c.thread = half_plane_thread.zw;
@@ -40,7 +50,8 @@ Cosines cosines_from(vec4 a_b_half_t, vec4 half_plane_thread, vec2 across, float
 // Calls cosines_from with the dot products.
 Cosines cosines_near(Frame frame, vec3 l, vec3 v, vec3 h)
 {
-    return cosines_from(vec4(dot(frame.n, l), dot(frame.n, v), dot(frame.n, h), dot(h, l)),
-                        vec4(dot(frame.t, h), dot(frame.b, h), dot(frame.t, l), dot(frame.t, v)),
-                        vec2(dot(frame.b, l), dot(frame.b, v)), dot(l, v));
+    return cosines_from(
+        vec4(held(dot(frame.n, l)), held(dot(frame.n, v)), held(dot(frame.n, h)), held(dot(h, l))),
+        vec4(held(dot(frame.t, h)), held(dot(frame.b, h)), held(dot(frame.t, l)), held(dot(frame.t, v))),
+        vec2(held(dot(frame.b, l)), held(dot(frame.b, v))), held(dot(l, v)));
 }

@@ -106,11 +106,10 @@ static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
 /* Defines the origin of the vectors and their normalisation. */
 static void define_vectors(const struct tl_shading_params *params, char defines[TL_LOCAL_DEFINES_SIZE])
 {
-    static const char *const ways[] = {[TL_NORMALISE_NONE] = "NORMALISE_NONE",
-                                       [TL_NORMALISE_CUBE8] = "NORMALISE_CUBE",
-                                       [TL_NORMALISE_CUBE16] = "NORMALISE_CUBE",
-                                       [TL_NORMALISE_NEWTON] = "NORMALISE_NEWTON",
-                                       [TL_NORMALISE_EXACT] = "NORMALISE_EXACT"};
+    static const char *const ways[] = {
+        [TL_NORMALISE_NONE] = "NORMALISE_NONE",       [TL_NORMALISE_CUBE8] = "NORMALISE_CUBE",
+        [TL_NORMALISE_CUBE16] = "NORMALISE_CUBE",     [TL_NORMALISE_NEWTON] = "NORMALISE_NEWTON",
+        [TL_NORMALISE_NEWTON8] = "NORMALISE_NEWTON8", [TL_NORMALISE_EXACT] = "NORMALISE_EXACT"};
     bool is_fast = params->frequency == TL_FREQUENCY_FAST_PHONG;
     int way = is_fast ? TL_NORMALISE_NONE : params->normalisation;
     bool is_tangent = params->space == TL_SPACE_TANGENT;

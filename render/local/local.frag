@@ -90,6 +90,8 @@ vec3 made_unit(vec3 v, vec3 fallback)
     return 2.0 * texture(normalising, v).xyz - 1.0;
 #elif defined(NORMALISE_NEWTON)
     return v * (1.5 - 0.5 * dot(v, v));
+#elif defined(NORMALISE_NEWTON8)
+    return register_newton_vector(v);
 #else
     return direction_or(v, fallback);
 #endif
@@ -208,7 +210,7 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
 #else
     vec3 l = made_unit(to_lamp, n), v = made_unit(to_eye, n), h = made_unit(halfway, n);
 #endif
-    facing = side * dot(smooth_normal, l);
+    facing = held(side * dot(smooth_normal, l));
     return cosines_near(frame_of(n, tangent.xyz, side), l, v, h);
 #else
     vec3 n = side * direction_or(bumped_normal(smooth_normal), smooth_normal);

@@ -8,7 +8,6 @@ static const char *const reflectance_names[] = {"direct", "table", "factored", N
 static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL};
 static const char *const range_names[] = {"clamped", "scaled", NULL};
 const char *const tl_pass_target_names[] = {"fixed8", "float", NULL};
-static const char *const normalisation_names[] = {"none", "cube8", "cube16", "newton", "exact", NULL};
 static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
 static const char *const space_names[] = {"world", "tangent", "texture", NULL};
 static const char *const self_shadow_names[] = {"step", "ramp", NULL};
@@ -37,8 +36,9 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(params, pass_target, AFFECTS, tl_pass_target_names,
                    "precision of the target in which passes are multiplied, and of textures that are lit"),
     TL_OPTION_ENUM(
-        params, normalisation, AFFECTS, normalisation_names,
-        "phong: renormalisation of vectors; all methods but exact start from interpolated vectors"),
+        params, normalisation, AFFECTS, tl_normalisation_names,
+        "phong: renormalisation of vectors; all methods but exact start from interpolated vectors; newton8: "
+        "in 8 bits and a sign, dot products too"),
     TL_OPTION_ENUM(params, power, AFFECTS, power_names,
                    "evaluation of powers of cosines in the direct formula"),
     TL_OPTION_ENUM(

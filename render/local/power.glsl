@@ -1,4 +1,5 @@
 // Powers of cosines.
+#include "normalise_terms.glsl"
 
 // log(1 - x) by its series where x is small, so that no digits are lost.
 float log_of_rest(float x)
@@ -21,10 +22,7 @@ layout(binding = 23) uniform sampler2D power_table; // of the material's exponen
 float power(float cosine, float sine2, float exponent)
 {
 #if defined(POWER_FIXED8)
-    float value = floor(255.0 * clamp(cosine, 0.0, 1.0) + 0.5) / 255.0;
-    for (int left = int(log2(exponent) + 0.5); left > 0; left--)
-        value = floor(255.0 * value * value + 0.5) / 255.0;
-    return value;
+    return register_power(cosine, int(log2(exponent) + 0.5));
 #elif defined(POWER_TABLE)
     float count = float(textureSize(power_table, 0).x);
     return textureLod(power_table, vec2((clamp(cosine, 0.0, 1.0) * (count - 1.0) + 0.5) / count, 0.5), 0.0).r;

@@ -66,6 +66,14 @@ static const struct tl_technique techniques[] = {
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=newton")},
+    {.page = "Newton step, 8+1 bit",
+     .picture = "one Newton step, 8+1 bit",
+     .group = "normalisation",
+     .id = "A9",
+     SET("shading.normalisation=newton8")},
+    {.picture = "8+1 bit, and the power",
+     .id = "A9",
+     SET("shading.normalisation=newton8", "shading.power=fixed8")},
     {.page = "16-bit cube",
      .picture = "16-bit cube map",
      .group = "normalisation",
@@ -348,8 +356,9 @@ static const struct tl_experiment experiments[] = {
      .title = "A9  Normalisation of interpolated vectors",
      .source = "[Schroecker 2002, 4.2, 5.1 and figure 9]",
      .text = "Interpolated vectors are made unit by a cube map of 8 or 16 bits, by one step of Newton's "
-             "method, or not at all, as in figure 9 of [Schroecker 2002]. Edges are 8 mm long. The plot "
-             "below has the same "
+             "method, or not at all, as in figure 9 of [Schroecker 2002]. Its register combiners take that "
+             "step, and dot products, in 8 bits and a sign; with the power squared there, too, light has "
+             "bands. Edges are 8 mm long. The plot below has the same "
              "errors over the angle between two neighbouring vertices.",
      .exact_text = "normalised in float",
      .claims = {{"one Newton step", "8-bit cube map", "[Schroecker 2002, figure 9]"},

@@ -123,19 +123,19 @@ static void add_folded(cJSON *figures)
     }
 }
 
-/* ---- A9: five normalisations over the angle between vertices ---- */
+/* ---- A9: normalisations over the angle between vertices ---- */
 
 static void add_normalise(cJSON *figures)
 {
     static const int angles[] = {5, 10, 15, 20, 25, 30, 35, 40, 45, 60, 75, 90};
     static const int methods[] = {TL_NORMALISE_NONE, TL_NORMALISE_CUBE8, TL_NORMALISE_CUBE16,
-                                  TL_NORMALISE_NEWTON, TL_NORMALISE_NEWTON_FIXED};
+                                  TL_NORMALISE_NEWTON, TL_NORMALISE_NEWTON8};
     const double degree = M_PI / 180;
     char *caption = tl_format("Newton's one step beats the cube map of 8 bits up to %.0f degrees between "
                               "vertices, and in 8 bits and a "
                               "sign, as register combiners have them, up to %.0f.",
                               tl_normalise_limit(TL_NORMALISE_NEWTON, TL_NORMALISE_CUBE8) / degree,
-                              tl_normalise_limit(TL_NORMALISE_NEWTON_FIXED, TL_NORMALISE_CUBE8) / degree);
+                              tl_normalise_limit(TL_NORMALISE_NEWTON8, TL_NORMALISE_CUBE8) / degree);
     cJSON *series = tl_report_add_plot(
         figures, &(const struct tl_report_plot){"degrees between the vectors at two vertices",
                                                 "rms distance from unit vectors", false, true, caption});
@@ -152,7 +152,7 @@ static void add_normalise(cJSON *figures)
 static double shown_by(int method, int exponent, const uint8_t *table, double cosine)
 {
     if (method == TL_POWER_FIXED8)
-        return (double)tl_power_fixed8((float)cosine, ilogb(exponent));
+        return (double)register_power((float)cosine, ilogb(exponent));
     if (method == TL_POWER_TABLE)
         return (double)tl_power_table_at(table, TL_POWER_TABLE_SIZE, (float)cosine);
     return pow(cosine, exponent);

@@ -50,7 +50,7 @@ static void newton_beats_eight_bits_up_to_an_angle(void **state)
 {
     (void)state;
     double single = tl_normalise_limit(TL_NORMALISE_NEWTON, TL_NORMALISE_CUBE8) / DEG;
-    double fixed = tl_normalise_limit(TL_NORMALISE_NEWTON_FIXED, TL_NORMALISE_CUBE8) / DEG;
+    double fixed = tl_normalise_limit(TL_NORMALISE_NEWTON8, TL_NORMALISE_CUBE8) / DEG;
     printf("Newton's step beats the 8-bit cube map up to %.1f degrees between vertices, in 8+1 bits up to "
            "%.1f\n",
            single, fixed);

@@ -5,6 +5,7 @@
 #include "fuzz_terms.glsl"
 #include "ground.glsl"
 #include "lobes_terms.glsl"
+#include "normalise_terms.glsl"
 #include "spread_terms.glsl"
 #include "surface_terms.glsl"
 #include "terms.glsl"

@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 81
+#define ONE_TEXT_NUMBERS 84
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -138,6 +138,9 @@ TERM float one_text(int number, uint trial)
                : number == 78 ? facet_masking(1, int(3.0f * a.x), 0.05f + e.x, 0.01f + e.y, 0.01f + b.x, 0.5f + 0.5f * b.y, d.x)
                : number == 79 ? thread_scale(s)
                : number == 80 ? arc_tangent(2.0f * e.x)
+               : number == 81 ? register_value(d.x)
+               : number == 82 ? register_newton_vector(vec3_scale(n, 0.8f + 0.2f * d.x)).y
+               : number == 83 ? register_power(cosine, int(9.0f * d.y))
                               : texel_level(4.0f * d.x, 30.0f * e.y);
     return number == 58   ? seen.diffuse.x
            : number == 59 ? seen.diffuse.y

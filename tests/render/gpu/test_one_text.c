@@ -4,6 +4,7 @@
 #include "render/bounce/bounced.h"
 #include "render/brdf/facets.h"
 #include "render/brdf/fuzz.h"
+#include "render/brdf/normalise.h"
 #include "render/env/lobes_fetch.h"
 #include "render/gpu/gpu.h"
 #include "render/gpu/shaders.h"
