@@ -7,7 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-const char *const tl_normalisation_names[] = {"none", "cube8", "cube16", "newton", "newton8", "exact", NULL};
+const char *const tl_normalisation_names[] = {"none",    "cube8",   "cube16", "newton", "taylor2",
+                                              "taylor3", "newton8", "slerp",  "exact",  NULL};
 
 struct tl_normal_cube tl_normal_cube_make(int size, int bits)
 {
@@ -59,9 +60,12 @@ vec3s tl_normalise(int method, const struct tl_normal_cube *cube, vec3s v)
     case TL_NORMALISE_CUBE16:
         return tl_normal_cube_at(cube, v);
     case TL_NORMALISE_NEWTON:
-        return glms_vec3_scale(v, (3 - square) / 2);
+    case TL_NORMALISE_TAYLOR2:
+    case TL_NORMALISE_TAYLOR3:
+        return glms_vec3_scale(v, unit_series(square, 1 + method - TL_NORMALISE_NEWTON));
     case TL_NORMALISE_NEWTON8:
         return register_newton_vector(v);
+    case TL_NORMALISE_SLERP:
     case TL_NORMALISE_EXACT:
         return glms_vec3_scale(v, 1 / sqrtf(square));
     default:

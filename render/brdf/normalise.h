@@ -1,4 +1,4 @@
-/* Renormalisation of interpolated vectors by six methods [Schroecker 2002, 4.2 and figure 9].
+/* Renormalisation of interpolated vectors by several methods [Schroecker 2002, 4.2 and figure 9].
  *
  * Linear interpolation between two unit vectors leaves the sphere and slows down towards the middle of the
  * arc; slerp is the exact interpolation that it approximates. The cube maps hold directions in n bits a
@@ -21,7 +21,10 @@ enum tl_normalisation {
     TL_NORMALISE_CUBE8,
     TL_NORMALISE_CUBE16,
     TL_NORMALISE_NEWTON,
+    TL_NORMALISE_TAYLOR2, /* Newton's step is the series' linear term */
+    TL_NORMALISE_TAYLOR3,
     TL_NORMALISE_NEWTON8,
+    TL_NORMALISE_SLERP, /* of corners (render/local/slerp.glsl); EXACT of one vector */
     TL_NORMALISE_EXACT,
     TL_NORMALISE_COUNT
 };

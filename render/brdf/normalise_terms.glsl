@@ -1,11 +1,20 @@
-// Newton's step, dot products and powers as register combiners compute them, in 8 bits and a sign [Schroecker 2002, 4.2.3
-// and 5.2], written once for GLSL and C (normalise.h).
+// The series of a reciprocal root; and Newton's step, dot products and powers as register combiners compute them, in 8 bits
+// and a sign [Schroecker 2002, 4.2.3 and 5.2]. Written once for GLSL and C (normalise.h).
 #ifdef GL_core_profile
 #include "vectors.glsl"
 #endif
 #ifndef TERM
 #define TERM
 #endif
+
+// The factor that makes a vector unit whose square is nearly 1, with 1 to 3 terms after the first [op. cit., eq. 5]. One is
+// Newton's step.
+TERM float unit_series(float square, int terms)
+{
+    float x = square - 1.0f, sum = terms > 2 ? -0.3125f * x : 0.0f;
+    sum = terms > 1 ? (sum + 0.375f) * x : 0.0f;
+    return 1.0f + (sum - 0.5f) * x;
+}
 
 // The nearest whole number of steps; a register has 255 either way. Its products are whole numbers that a float holds, so
 // that only their quotients are rounded.

@@ -36,7 +36,8 @@ enum {
     MEASURED_DIFFUSE = 98,
     CHART,
     LIT_SCALE,
-    TEXEL_SIDE
+    TEXEL_SIDE,
+    FIRST_CORNER
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -107,16 +108,19 @@ static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
 static void define_vectors(const struct tl_shading_params *params, char defines[TL_LOCAL_DEFINES_SIZE])
 {
     static const char *const ways[] = {
-        [TL_NORMALISE_NONE] = "NORMALISE_NONE",       [TL_NORMALISE_CUBE8] = "NORMALISE_CUBE",
-        [TL_NORMALISE_CUBE16] = "NORMALISE_CUBE",     [TL_NORMALISE_NEWTON] = "NORMALISE_NEWTON",
-        [TL_NORMALISE_NEWTON8] = "NORMALISE_NEWTON8", [TL_NORMALISE_EXACT] = "NORMALISE_EXACT"};
+        [TL_NORMALISE_NONE] = "NORMALISE_NONE",        [TL_NORMALISE_CUBE8] = "NORMALISE_CUBE",
+        [TL_NORMALISE_CUBE16] = "NORMALISE_CUBE",      [TL_NORMALISE_NEWTON] = "NORMALISE_SERIES 1",
+        [TL_NORMALISE_TAYLOR2] = "NORMALISE_SERIES 2", [TL_NORMALISE_TAYLOR3] = "NORMALISE_SERIES 3",
+        [TL_NORMALISE_SLERP] = "NORMALISE_SLERP",      [TL_NORMALISE_NEWTON8] = "NORMALISE_NEWTON8",
+        [TL_NORMALISE_EXACT] = "NORMALISE_EXACT"};
     bool is_fast = params->frequency == TL_FREQUENCY_FAST_PHONG;
     int way = is_fast ? TL_NORMALISE_NONE : params->normalisation;
-    bool is_tangent = params->space == TL_SPACE_TANGENT;
+    bool is_slerp = way == TL_NORMALISE_SLERP;
+    bool is_tangent = params->space == TL_SPACE_TANGENT && !is_slerp;
     define(defines, ways[way]);
     if (params->coordinates == TL_COORDINATES_MATRIX)
         define(defines, "MATRIX");
-    else if (is_tangent || way != TL_NORMALISE_EXACT)
+    else if (is_tangent || (way != TL_NORMALISE_EXACT && !is_slerp))
         define(defines, is_tangent ? "VECTORS\n#define TANGENT_SPACE" : "VECTORS");
 }
 
@@ -305,6 +309,8 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
         set_chart(part);
         glUniform1f(TEXEL_SIDE, pass->texel_side);
     }
+    if (request->params->normalisation == TL_NORMALISE_SLERP)
+        glUniform1ui(FIRST_CORNER, tl_surfaces_bind_corners(request->surfaces, part->surface, part->part));
     tl_surfaces_draw_part(request->surfaces, part->surface, part->part);
     return true;
 }

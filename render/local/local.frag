@@ -14,6 +14,9 @@ layout(location = 101) uniform float texel_side; // TEXELS: -1 for the back
 #include "ground.glsl"
 #include "material.glsl"
 #include "terms.glsl"
+#ifdef NORMALISE_SLERP
+#include "slerp.glsl"
+#endif
 
 layout(location = 73) uniform mat4 lamp_view; // SHADOW_MAP: world to clip space of the lamp's map
 layout(location = 74) uniform float lamp_bias; // metres
@@ -88,8 +91,8 @@ vec3 made_unit(vec3 v, vec3 fallback)
     return v;
 #elif defined(NORMALISE_CUBE)
     return 2.0 * texture(normalising, v).xyz - 1.0;
-#elif defined(NORMALISE_NEWTON)
-    return v * (1.5 - 0.5 * dot(v, v));
+#elif defined(NORMALISE_SERIES)
+    return v * unit_series(dot(v, v), NORMALISE_SERIES);
 #elif defined(NORMALISE_NEWTON8)
     return register_newton_vector(v);
 #else
@@ -128,11 +131,10 @@ bool bumpy;
 Bumps bumps;
 DetailPlace place;
 vec3 view; // towards the eye, in tangent space
-vec3 base_normal; // the interpolated normal below the visible point
+vec3 base_normal; // the interpolated normal below the visible point; set before find_detail
 
 void find_detail(inout mat3 frame, float side, inout vec3 smooth_normal)
 {
-    base_normal = normal;
 #ifdef DETAIL_SHIFTED
     unmoved_across = dFdx(uv);
     unmoved_down = dFdy(uv);
@@ -203,10 +205,13 @@ Cosines cosines_here(float side, vec3 smooth_normal, out float facing)
     vec3 n = facing_normal(side * (bumpy ? made_unit(bumps.normal, up) : up), v);
     facing = side * l.z;
     return cosines_near(frame_of(n, vec3(1.0, 0.0, 0.0), side * (tangent.w < 0.0 ? -1.0 : 1.0)), l, v, h);
-#elif defined(VECTORS) || defined(MATRIX)
+#elif defined(VECTORS) || defined(MATRIX) || defined(NORMALISE_SLERP)
     vec3 n = side * made_unit(bumped_normal(smooth_normal), smooth_normal);
 #ifdef MATRIX
     vec3 l = constant_lamp, v = constant_eye, h = direction_or(l + v, l);
+#elif defined(NORMALISE_SLERP)
+    vec3 l, v, h;
+    slerped_vectors(point, l, v, h);
 #else
     vec3 l = made_unit(to_lamp, n), v = made_unit(to_eye, n), h = made_unit(halfway, n);
 #endif
@@ -353,7 +358,12 @@ void main()
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
     vec2 across = dFdx(uv), down = dFdy(uv);
     float side = SEES_FRONT ? 1.0 : -1.0;
-    vec3 smooth_normal = direction_or(normal, facet);
+#ifdef NORMALISE_SLERP
+    base_normal = slerped_normal(point);
+#else
+    base_normal = normal;
+#endif
+    vec3 smooth_normal = direction_or(base_normal, facet);
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
 #ifdef TEXELS

@@ -37,8 +37,9 @@ static const struct tl_option rows[] = {
                    "precision of the target in which passes are multiplied, and of textures that are lit"),
     TL_OPTION_ENUM(
         params, normalisation, AFFECTS, tl_normalisation_names,
-        "phong: renormalisation of vectors; all methods but exact start from interpolated vectors; newton8: "
-        "in 8 bits and a sign, dot products too"),
+        "phong: renormalisation of vectors; all methods but exact start from interpolated vectors; newton, "
+        "taylor2, taylor3: terms of a series; newton8: in 8 bits and a sign, dot products too; slerp: evenly "
+        "turning between corners, in world space"),
     TL_OPTION_ENUM(params, power, AFFECTS, power_names,
                    "evaluation of powers of cosines in the direct formula"),
     TL_OPTION_ENUM(

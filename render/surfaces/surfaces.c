@@ -490,6 +490,14 @@ static void draw_indices(const tl_surfaces *surfaces, size_t index, size_t part_
     glDrawElements(GL_TRIANGLES, (GLsizei)index_count, GL_UNSIGNED_INT, offset_of_index(first_index));
 }
 
+unsigned tl_surfaces_bind_corners(const tl_surfaces *surfaces, size_t index, size_t part)
+{
+    const struct surface_item *item = &surfaces->items[index];
+    const GLuint buffers[] = {item->indices, item->buffers[POSITION], item->buffers[NORMAL]};
+    glBindBuffersBase(GL_SHADER_STORAGE_BUFFER, TL_STORAGE_CORNERS, TL_COUNT(buffers), buffers);
+    return item->parts[part].first_index;
+}
+
 void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part_index)
 {
     const struct surface_item *item = &surfaces->items[index];

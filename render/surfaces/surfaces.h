@@ -44,13 +44,15 @@ enum tl_surface_uniform {
     TL_UNIFORM_YARN_ROWS,
     TL_UNIFORM_THREAD_GAIN /* tl_material_thread_gain */
 };
-/* Bindings of shader storage: the borders by triangle, the profiles of the part's material, and its yarns. */
+/* Bindings of shader storage: the borders by triangle, the profiles of the part's material, and its yarns;
+ * three of corners, only where they are asked for. */
 enum tl_surface_storage {
     TL_STORAGE_FIRSTS = 4,
     TL_STORAGE_NEAR,
     TL_STORAGE_BORDERS,
     TL_STORAGE_PROFILES,
-    TL_STORAGE_YARNS
+    TL_STORAGE_YARNS,
+    TL_STORAGE_CORNERS
 };
 
 /* Seams and hems are drawn; the back has colours of its own. */
@@ -83,6 +85,9 @@ size_t tl_surfaces_part_count(const tl_surfaces *surfaces, size_t index);
 const tl_material *tl_surfaces_part_material(const tl_surfaces *surfaces, size_t index, size_t part);
 /* Binds the emission map of a part to a unit of the pass; false where there is none. */
 bool tl_surfaces_bind_emission(const tl_surfaces *surfaces, size_t index, size_t part, unsigned unit);
+/* Binds what the corners of a part's triangles are, to storage from TL_STORAGE_CORNERS: numbers of vertices,
+ * positions, normals. Returns the place of the part's first number. */
+unsigned tl_surfaces_bind_corners(const tl_surfaces *surfaces, size_t index, size_t part);
 void tl_surfaces_draw_part(const tl_surfaces *surfaces, size_t index, size_t part);
 /* The same with triangles first .. first + count - 1 of a GL buffer of indices in place of its own; the
  * shader's `first_triangle` is then counted through that buffer. */

@@ -66,6 +66,17 @@ static const struct tl_technique techniques[] = {
      .group = "normalisation",
      .id = "A9",
      SET("shading.normalisation=newton")},
+    {.page = "quadratic term",
+     .picture = "the series to its quadratic term",
+     .group = "normalisation",
+     .id = "A9",
+     SET("shading.normalisation=taylor2")},
+    {.picture = "the series to its cubic term", .id = "A9", SET("shading.normalisation=taylor3")},
+    {.page = "slerp",
+     .picture = "slerp of corners",
+     .group = "normalisation",
+     .id = "A9",
+     SET("shading.normalisation=slerp")},
     {.page = "Newton step, 8+1 bit",
      .picture = "one Newton step, 8+1 bit",
      .group = "normalisation",
@@ -358,7 +369,9 @@ static const struct tl_experiment experiments[] = {
      .text = "Interpolated vectors are made unit by a cube map of 8 or 16 bits, by one step of Newton's "
              "method, or not at all, as in figure 9 of [Schroecker 2002]. Its register combiners take that "
              "step, and dot products, in 8 bits and a sign; with the power squared there, too, light has "
-             "bands. Edges are 8 mm long. The plot below has the same "
+             "bands. Newton's step is the first term of a series (equation 5), two more are drawn. Slerp "
+             "(equation 3) turns evenly between corners, where unit vectors hasten in the middle: its figure "
+             "is how far apart the two are. Edges are 8 mm long. The plot below has the same "
              "errors over the angle between two neighbouring vertices.",
      .exact_text = "normalised in float",
      .claims = {{"one Newton step", "8-bit cube map", "[Schroecker 2002, figure 9]"},

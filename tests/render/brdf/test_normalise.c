@@ -19,8 +19,9 @@ static void exact_is_unit_and_zero_stays_zero(void **state)
     assert_true(error.vector < 1e-6 && error.length < 1e-6);
 }
 
-/* In the middle of the arc linear interpolation has the length cos(angle/2); Newton's step makes it x/2 (3 -
- * x^2). Neither turns the vector. */
+/* In the middle of the arc linear interpolation has the length x = cos(angle/2); the series makes it x (1 -
+ * y/2 + 3/8 y^2 - 5/16 y^3), y = x^2 - 1 [Schroecker 2002, eq. 5], of which Newton's step is x/2 (3 - x^2).
+ * None turns the vector. */
 static void lengths_are_the_closed_forms(void **state)
 {
     (void)state;
@@ -30,6 +31,13 @@ static void lengths_are_the_closed_forms(void **state)
         struct tl_normalise_error newton = tl_normalise_error(TL_NORMALISE_NEWTON, degrees * DEG);
         assert_near(none.length, 1 - x, 1e-6);
         assert_near(newton.length, 1 - x / 2 * (3 - x * x), 1e-6);
+        double y = x * x - 1, length = x * (1 - y / 2);
+        for (int i = 0; i < 2; i++) {
+            length += x * (i ? -5.0 / 16 * y * y * y : 3.0 / 8 * y * y);
+            struct tl_normalise_error error = tl_normalise_error(TL_NORMALISE_TAYLOR2 + i, degrees * DEG);
+            assert_near(error.length, 1 - length, 1e-6);
+            assert_true(error.direction < 1e-6);
+        }
         assert_true(none.direction < 1e-6 && newton.direction < 1e-6);
     }
 }

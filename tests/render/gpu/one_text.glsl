@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 84
+#define ONE_TEXT_NUMBERS 85
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -140,6 +140,7 @@ TERM float one_text(int number, uint trial)
                : number == 80 ? arc_tangent(2.0f * e.x)
                : number == 81 ? register_value(d.x)
                : number == 82 ? register_newton_vector(vec3_scale(n, 0.8f + 0.2f * d.x)).y
+               : number == 84 ? unit_series(0.5f + d.x, 1 + int(2.99f * e.y))
                : number == 83 ? register_power(cosine, int(9.0f * d.y))
                               : texel_level(4.0f * d.x, 30.0f * e.y);
     return number == 58   ? seen.diffuse.x

@@ -162,9 +162,9 @@ static void backs_are_fronts_turned_inside_out(void **state)
 /* The hit of a pixel's ray and the vectors at the corners of its triangle. */
 struct hit {
     bool is_hit;
-    vec3s n, l, v, h; /* interpolated from unit vectors at the corners */
-    vec3s normals[3]; /* at the corners ... */
-    float shares[3];  /* ... and how much of each the point has */
+    vec3s n, l, v, h;    /* interpolated from unit vectors at the corners */
+    vec3s corners[4][3]; /* the same at the corners ... */
+    float shares[3];     /* ... and how much of each the point has */
 };
 
 static vec3s mixed(const vec3s corners[3], float u, float v)
@@ -193,7 +193,9 @@ static struct hit intersect(const struct test_scene *scene, const tl_trace *trac
         v[i] = glms_vec3_normalize(glms_vec3_sub(view->eye, scene->surfaces[0].positions[corner]));
         h[i] = glms_vec3_normalize(glms_vec3_add(l[i], v[i]));
     }
-    memcpy(hit.normals, n, sizeof n);
+    const vec3s *all[] = {n, l, v, h};
+    for (int i = 0; i < 4; i++)
+        memcpy(hit.corners[i], all[i], sizeof hit.corners[i]);
     hit.shares[0] = 1 - traced.u - traced.v, hit.shares[1] = traced.u, hit.shares[2] = traced.v;
     hit.n = mixed(n, traced.u, traced.v);
     hit.l = mixed(l, traced.u, traced.v);
@@ -223,9 +225,53 @@ static vec3s combined(vec3s v)
     return v;
 }
 
-static vec3s unit_by(int way, const struct tl_normal_cube *cube, vec3s v)
+/* 1 / sqrt(1 + x) by the binomial series, x = v.v - 1: equation 5 of [op. cit.] with so many terms. */
+static vec3s by_series(vec3s v, int terms)
 {
-    return way == TL_NORMALISE_NEWTON8 ? combined(v) : tl_normalise(way, cube, v);
+    double x = (double)glms_vec3_norm2(v) - 1, term = 1, sum = 1;
+    for (int k = 1; k <= terms; k++) {
+        term *= -(2 * k - 1) * x / (2 * k);
+        sum += term;
+    }
+    return glms_vec3_scale(v, (float)sum);
+}
+
+/* The unit vector at a share of the way from one unit vector to another, by turning the first: equation 3. */
+static void turn(const double from[3], const double to[3], double share, double out[3])
+{
+    double across[3], cosine = 0, sine = 0;
+    for (int c = 0; c < 3; c++)
+        cosine += from[c] * to[c];
+    for (int c = 0; c < 3; c++) {
+        across[c] = to[c] - cosine * from[c];
+        sine += across[c] * across[c];
+    }
+    sine = sqrt(sine);
+    double angle = share * atan2(sine, cosine);
+    for (int c = 0; c < 3; c++)
+        out[c] = cos(angle) * from[c] + (sine > 0 ? sin(angle) * across[c] / sine : 0);
+}
+
+static vec3s turned(const vec3s corners[3], const float shares[3])
+{
+    double at[3][3], edge[3], out[3], rest = (double)shares[1] + (double)shares[2];
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++)
+            at[i][c] = (double)corners[i].raw[c];
+    turn(at[1], at[2], (double)shares[2] / fmax(rest, 1e-9), edge);
+    turn(at[0], edge, rest, out);
+    return (vec3s){{(float)out[0], (float)out[1], (float)out[2]}};
+}
+
+/* The vector of a hit by its number: n, l, v, h. */
+static vec3s unit_by(int way, const struct tl_normal_cube *cube, const struct hit *hit, int number)
+{
+    const vec3s mean[] = {hit->n, hit->l, hit->v, hit->h};
+    if (way == TL_NORMALISE_SLERP)
+        return turned(hit->corners[number], hit->shares);
+    if (way >= TL_NORMALISE_NEWTON && way <= TL_NORMALISE_TAYLOR3)
+        return by_series(mean[number], 1 + way - TL_NORMALISE_NEWTON);
+    return way == TL_NORMALISE_NEWTON8 ? combined(mean[number]) : tl_normalise(way, cube, mean[number]);
 }
 
 static float dot_by(int way, vec3s a, vec3s b)
@@ -268,9 +314,9 @@ static tl_image evaluate_reduced(const struct test_scene *scene)
             pixel[3] = hit.is_hit;
             if (!hit.is_hit)
                 continue;
-            vec3s n = unit_by(way, &cube, hit.n), l = unit_by(way, &cube, hit.l);
-            vec3s v = unit_by(way, &cube, hit.v), h = unit_by(way, &cube, hit.h);
-            float facing = dot_by(way, glms_vec3_normalize(hit.n), l);
+            vec3s n = unit_by(way, &cube, &hit, 0), l = unit_by(way, &cube, &hit, 1);
+            vec3s v = unit_by(way, &cube, &hit, 2), h = unit_by(way, &cube, &hit, 3);
+            float facing = dot_by(way, way == TL_NORMALISE_SLERP ? n : glms_vec3_normalize(hit.n), l);
             float a = dot_by(way, n, l), b = dot_by(way, n, v), d = dot_by(way, n, h);
             float ramp = fminf(fmaxf(32 * facing, 0), 1);
             vec3s f = tl_brdf_fresnel(&brdf, fminf(fmaxf(dot_by(way, h, l), 0), 1));
@@ -297,7 +343,7 @@ static float coordinate(const struct tl_brdf_axis *axis, const struct hit *hit, 
     float last = axis->bias + (axis->input == TL_AXIS_H_DOT_L ? axis->scale * glms_vec3_dot(h, l) : 0),
           sum = 0;
     for (int i = 0; i < 3; i++)
-        sum += hit->shares[i] * (glms_vec3_dot(row, hit->normals[i]) + last);
+        sum += hit->shares[i] * (glms_vec3_dot(row, hit->corners[0][i]) + last);
     return sum;
 }
 
@@ -408,6 +454,39 @@ static void normalises_as_the_cpu_does(void **state)
     assert_true(errors[TL_NORMALISE_NONE] > 5 * errors[TL_NORMALISE_NEWTON]);
     assert_true(errors[TL_NORMALISE_CUBE8] > errors[TL_NORMALISE_NEWTON]);
     tl_image_release(&exact);
+    test_scene_close(&scene);
+}
+
+/* A9. On triangles whose corners turn by up to 45 degrees each term of the series can be told from the next,
+ * and slerp from unit vectors, in each of two parts. Sines of GL may err by 2^-11 [OpenGL 4.5, GLSL 4.7.1].
+ */
+static void interpolates_by_series_and_by_turning(void **state)
+{
+    struct test_device *device = *state;
+    struct test_scene scene;
+    test_scene_open_lamplit(&scene, shiny_sphere(6, 0.75f), 96, 96);
+    struct tl_mesh_part parts[2] = {scene.surfaces[0].parts[0], scene.surfaces[0].parts[0]};
+    parts[0].index_count = parts[1].first_index = 3 * (uint32_t)(scene.surfaces[0].index_count / 6);
+    parts[1].index_count -= parts[0].index_count;
+    scene.surfaces[0].parts = parts;
+    scene.surfaces[0].part_count = 2;
+    scene.surfaces[0].topology_revision += 1000;
+    for (int way = TL_NORMALISE_NEWTON; way <= TL_NORMALISE_SLERP; way++) {
+        if (way == TL_NORMALISE_NEWTON8)
+            continue;
+        scene.settings.shading.normalisation = way;
+        tl_image expected = evaluate_reduced(&scene);
+        double off = error_of(&scene, device->renderer, &expected);
+        scene.settings.shading.normalisation = way == TL_NORMALISE_SLERP     ? TL_NORMALISE_CUBE16
+                                               : way == TL_NORMALISE_TAYLOR3 ? way - 1
+                                                                             : way + 1;
+        double other = error_of(&scene, device->renderer, &expected);
+        print_message("%-7s: off the CPU by %.1e; %s: by %.1e\n", tl_normalisation_names[way], off,
+                      tl_normalisation_names[scene.settings.shading.normalisation], other);
+        assert_true(off < (way == TL_NORMALISE_SLERP ? 5e-4 : 2e-5));
+        assert_true(other > 10 * off);
+        tl_image_release(&expected);
+    }
     test_scene_close(&scene);
 }
 
@@ -584,6 +663,7 @@ int main(void)
         cmocka_unit_test(gouraud_loses_the_highlight_first),
         cmocka_unit_test(backs_are_fronts_turned_inside_out),
         cmocka_unit_test(normalises_as_the_cpu_does),
+        cmocka_unit_test(interpolates_by_series_and_by_turning),
         cmocka_unit_test(raises_as_the_cpu_does),
         cmocka_unit_test(tangent_space_differs_with_the_frames_turn),
         cmocka_unit_test(no_light_on_what_faces_away),
