@@ -14,8 +14,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* Path of a file or folder of the real test data: of the folder that the environment's TOILE_DATA names, or that
- * TOILE_DATA_DIR names, else of tests/data, which has the small ones. Skips the test, with the reason, when all lack it. */
+/* Path of a file or folder of the real test data: of the folder that the environment's TOILE_DATA names, or
+ * that TOILE_DATA_DIR names, else of tests/data, which has the small ones. Skips the test, with the reason,
+ * when all lack it. */
 static inline const char *test_data(const char *relative)
 {
     static char paths[8][1024]; /* a test may hold a few at once */
@@ -51,5 +52,12 @@ static inline const char *test_data(const char *relative)
             fail();                                                                                          \
         }                                                                                                    \
     } while (0)
+
+/* What GL leaves to a driver, as hardware does it: vertices are placed to 1/256 of a pixel (SUBPIXEL_BITS of
+ * 8), so that a sample shows what lies up to TEST_PLACE of a pixel beside it along each axis; weights of
+ * linear filters have steps of 1/256, so that each errs by up to TEST_WEIGHT of what two texels differ by;
+ * and a float may be cut to a half, not rounded. tests/render/hardware draws all but the last in software. */
+#define TEST_PLACE  (1.0 / 512)
+#define TEST_WEIGHT (1.0 / 512)
 
 #endif

@@ -422,9 +422,18 @@ static bool is_inside(const tl_image *image, int x, int y)
     return true;
 }
 
+/* The larger of the steps to the two neighbours of a pixel along an axis. */
+static double steepest(const tl_image *image, int x, int y, int along_x, int along_y, int channel)
+{
+    double here = (double)test_pixel(image, x, y)[channel];
+    double after = fabs((double)test_pixel(image, x + along_x, y + along_y)[channel] - here);
+    double before = fabs((double)test_pixel(image, x - along_x, y - along_y)[channel] - here);
+    return fmax(after, before);
+}
+
 struct test_difference test_compare(const tl_image *drawn, const tl_image *expected)
 {
-    double squares = 0, sum = 0, peak = 0, largest = 0;
+    double squares = 0, sum = 0, peak = 0, largest = 0, moved_squares = 0, moved_largest = 0;
     size_t pixels = 0;
     for (int y = 1; y + 1 < drawn->height; y++)
         for (int x = 1; x + 1 < drawn->width; x++) {
@@ -439,10 +448,16 @@ struct test_difference test_compare(const tl_image *drawn, const tl_image *expec
                 sum += want;
                 peak = fmax(peak, want);
                 largest = fmax(largest, fabs(is - want));
+                double moved =
+                    TEST_PLACE * (steepest(expected, x, y, 1, 0, c) + steepest(expected, x, y, 0, 1, c));
+                moved_squares += moved * moved;
+                moved_largest = fmax(moved_largest, moved);
             }
         }
     double count = 3 * (double)pixels;
-    return (struct test_difference){sqrt(squares / count) / (sum / count), largest / peak, pixels};
+    double mean = sum / count;
+    return (struct test_difference){sqrt(squares / count) / mean, largest / peak, pixels,
+                                    sqrt(moved_squares / count) / mean, moved_largest / peak};
 }
 
 struct test_difference test_scene_error(const struct test_scene *scene, tl_renderer *renderer,

@@ -103,6 +103,7 @@ struct test_difference {
     double rel_rmse; /* root mean square difference / mean of the expected */
     double largest;  /* largest difference / peak of the expected */
     size_t pixels;
+    double moved_rmse, moved_largest; /* of the expected and itself TEST_PLACE of a pixel aside, at most */
 };
 struct test_difference test_compare(const tl_image *drawn, const tl_image *expected);
 /* Draws the scene and compares it with `expected`. */

@@ -188,7 +188,9 @@ static void see_stretched(tl_renderer *renderer, enum test_path path, double sha
 }
 
 /* Cloth that is half as long again has slopes two thirds as steep along the pull, and the same across it: by
- * every path. The highlight, whose height is that of a lobe as wide as its slopes, tells. */
+ * every path. The highlight, whose height is that of a lobe as wide as its slopes, tells. Drivers choose
+ * levels of detail roughly, and a stretch changes them: 2 % of what differs by more than 5 without the
+ * stretch. */
 static void test_slopes_follow_the_stretch(void **state)
 {
     const struct test_device *device = *state;
@@ -198,8 +200,8 @@ static void test_slopes_follow_the_stretch(void **state)
         printf("%-12s at rest %.4f, two thirds as high %.4f; stretched along the slopes %.4f, across %.4f\n",
                test_path_names[path], shades[AT_REST], shades[LOWER], shades[ALONG], shades[ACROSS]);
         assert_true(fabs(shades[LOWER] / shades[AT_REST] - 1) > 0.05);
-        assert_near(shades[ALONG], shades[LOWER], 0.01 * shades[LOWER]);
-        assert_near(shades[ACROSS], shades[AT_REST], 0.01 * shades[AT_REST]);
+        assert_near(shades[ALONG], shades[LOWER], 0.02 * shades[LOWER]);
+        assert_near(shades[ACROSS], shades[AT_REST], 0.02 * shades[AT_REST]);
     }
 }
 

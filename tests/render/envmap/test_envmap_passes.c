@@ -215,11 +215,12 @@ static void white_clamps(void **state)
         draw(&scene, device->renderer, TL_MAPS_MIRROR, TL_MAPS_FRESNEL_OFF, TL_PASS_TARGET_FLOAT);
     tl_image bytes =
         draw(&scene, device->renderer, TL_MAPS_MIRROR, TL_MAPS_FRESNEL_OFF, TL_PASS_TARGET_FIXED8);
+    /* A byte is within .6 of a step, which is what Direct3D 11.3 asks of hardware; GL asks nothing. */
     for (size_t i = 0; i < (size_t)4 * SIDE * SIDE; i++) {
         float light = tl_image_floats(&exact)[i];
         if (i % 4 == 3 || tl_image_floats(&exact)[i / 4 * 4 + 3] < 1)
             continue;
-        assert_near(tl_image_floats(&bytes)[i], fminf(light, 0.5f), 0.51 * 0.5 / 255);
+        assert_near(tl_image_floats(&bytes)[i], fminf(light, 0.5f), 0.6 * 0.5 / 255);
         clamped += light > 0.5f;
         kept += light < 0.5f;
     }

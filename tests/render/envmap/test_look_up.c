@@ -368,7 +368,8 @@ static void the_matrix_is_the_direct_way(void **state)
         }
         print_message("%s: matrix against direct %.1e, within three texels of the rim %.3f\n",
                       soft_one ? "soft" : "noise", worst, at_rim);
-        assert_true(worst < 1e-4);
+        /* Both ways round the weights of filters, along two axes; texels of noise differ by up to one. */
+        assert_true(worst < 1e-4 + 2 * 2 * sqrt(3) * TEST_WEIGHT);
         /* A look-up reads a texel beside at most: of the soft room 1.2 a radian, sqrt 3 channels. */
         assert_true(!soft_one || at_rim < 1.2 * sqrt(3) * 2 / 32);
         free(seen[0]);

@@ -235,8 +235,8 @@ static void white_stays_white(void **state)
             }
         printf("white, g %.3f: rms %.5f, largest %.5f\n", (double)glosses[i], sqrt(squares / covered),
                largest);
-        /* Half floats: 2^-11 of each region's light, and of normals. */
-        assert_near(largest, 0, 5e-4);
+        /* Half floats that may be cut: 2^-10 of each region's light. */
+        assert_near(largest, 0, 1e-3);
         tl_image_release(&image);
     }
     reflectance = 0.8f;
@@ -280,7 +280,9 @@ static void no_level_begins_with_a_step(void **state)
     close_scene(&scene);
 }
 
-/* How regions are placed in textures does not matter but for the order of additions. */
+/* How regions are placed in textures does not matter but for the order of additions, and for weights of
+ * filters that hardware rounds to the one side or the other, along two axes, of texels that differ by up to
+ * the peak. */
 static void passes_add_up(void **state)
 {
     struct scene scene;
@@ -289,7 +291,7 @@ static void passes_add_up(void **state)
     tl_image whole = draw(*state, &scene, 0.98f);
     scene.settings.light.pems_per_pass = 5;
     tl_image other = draw(*state, &scene, 0.98f);
-    assert_near(compare(&other, &whole).largest, 0, 2 * 24 * 1.2e-7);
+    assert_near(compare(&other, &whole).largest, 0, 2 * 24 * 1.2e-7 + 2 * 2 * TEST_WEIGHT);
     tl_image_release(&whole);
     tl_image_release(&other);
     close_scene(&scene);

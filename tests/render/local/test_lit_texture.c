@@ -163,7 +163,8 @@ static const struct plane planes[] = {
 };
 
 /* Each texel is the formula at its normal. In bytes, rounded to 255 steps of each term: cosines up to 1,
- * gloss up to its largest value. What is left is GL's reading of texels not quite at their middles. */
+ * gloss up to its largest value. What is left is GL's reading of texels not quite at their middles:
+ * neighbours of noise differ by up to the peak, along two axes. */
 static void texels_are_lit_by_the_formula(void **state)
 {
     struct test_device *device = *state;
@@ -223,16 +224,19 @@ static void smaller_texels_come_near_pixels(void **state)
     tl_image_release(&map);
 }
 
-static double off_pixels(struct test_scene *scene, tl_renderer *renderer)
+/* `by_weights` is what filters of hardware may make of it: both ways weigh their own texels, along two axes.
+ */
+static double off_pixels(struct test_scene *scene, tl_renderer *renderer, double *by_weights)
 {
     tl_image drawn = test_scene_draw(scene, renderer);
     scene->settings.shading.space = TL_SPACE_WORLD;
     tl_image at_pixels = test_scene_draw(scene, renderer);
     scene->settings.shading.space = TL_SPACE_TEXTURE;
-    double off = test_compare(&drawn, &at_pixels).rel_rmse;
+    struct test_difference off = test_compare(&drawn, &at_pixels);
     tl_image_release(&at_pixels);
     tl_image_release(&drawn);
-    return off;
+    *by_weights = 2 * off.moved_rmse;
+    return off.rel_rmse;
 }
 
 /* The back of cloth has normals and colours of its own. UVs that change have another place in the texture;
@@ -249,12 +253,13 @@ static void every_point_has_its_texel(void **state)
     tl_material *material = &scene.shapes[0].material;
     material->back = (struct tl_back){true, {{0.1f, 0.5f, 0.9f}}, {{0.02f, 0.3f, 0.1f}}};
     test_scene_refresh(&scene);
-    double back = off_pixels(&scene, device->renderer);
+    double by_weights, plain_by_weights;
+    double back = off_pixels(&scene, device->renderer, &by_weights);
     material->back.is_given = false;
     test_scene_refresh(&scene);
-    double plain_back = off_pixels(&scene, device->renderer);
+    double plain_back = off_pixels(&scene, device->renderer, &plain_by_weights);
     print_message("back: off by %.4f, without colours of its own %.4f\n", back, plain_back);
-    assert_true(back < 1e-4 && plain_back < 1e-4);
+    assert_true(back < 1e-4 + by_weights && plain_back < 1e-4 + plain_by_weights);
     test_scene_close(&scene);
 
     static const char *const names[] = {"as they are", "moved", "mirrored", "overlapping"};
@@ -277,9 +282,9 @@ static void every_point_has_its_texel(void **state)
             mesh->tangents[i].w = k == 2 ? -1 : 1;
         }
         test_scene_refresh(&scene);
-        double off = off_pixels(&scene, device->renderer);
+        double off = off_pixels(&scene, device->renderer, &by_weights);
         print_message("UVs %s: off by %.4f\n", names[k], off);
-        assert_true(k == 3 ? off == 0 : off > 0 && off < 1e-4);
+        assert_true(k == 3 ? off == 0 : off > 0 && off < 1e-4 + by_weights);
     }
     free(own);
     test_scene_close(&scene);
@@ -369,9 +374,10 @@ static void parts_have_their_own(void **state)
     scene.surfaces[0].topology_revision += 1000;
     scene.settings.image.width = scene.settings.image.height = 4 * SIDE;
     scene.settings.shading.texture_size = 4 * SIDE;
-    double off = off_pixels(&scene, device->renderer);
+    double by_weights, off = off_pixels(&scene, device->renderer, &by_weights);
     print_message("two parts: off by %.4f\n", off);
-    assert_true(off > 0 && off < 0.02); /* their texels are half as wide as a pixel along one of two axes */
+    assert_true(off > 0 &&
+                off < 0.02 + by_weights); /* their texels are half as wide as a pixel along one of two axes */
     test_scene_close(&scene);
     tl_image_release(&map);
 }

@@ -411,7 +411,8 @@ static void a_texture_matrix_gives_the_coordinates(void **state)
         struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
         print_message("texture matrix, model %d: off by %.1e (largest %.1e); with unit normals %.4f\n",
                       models[i], off.rel_rmse, off.largest, unit);
-        assert_true(off.rel_rmse < 2e-5); /* of floats in another order, through the slope of a table */
+        /* floats in another order, through the slope of a table */
+        assert_true(off.rel_rmse < 2e-5 + off.moved_rmse);
         assert_true(unit > 0.02);
         tl_image_release(&expected);
         test_scene_close(&scene);
@@ -513,8 +514,12 @@ static void raises_as_the_cpu_does(void **state)
             print_message("exponent %3.0f, %-6s: off the CPU by %.1e (largest %.1e), off exact by %.4f\n",
                           4 / (1 - (double)glossinesses[g]), tl_power_names[power], off.rel_rmse, off.largest,
                           errors[power]);
-            /* Software GL weighs texels of eight bits with eight bits: a level of the table's 255. */
-            assert_true(off.largest < (power == TL_POWER_TABLE ? 1.0 / 255 : 2e-4));
+            /* Texels of eight bits are weighed with eight bits: a level of the table's 255. Where samples lie
+             * moves the step of a fixed-point power, to a pixel beside. */
+            if (power == TL_POWER_FIXED8)
+                assert_true(off.rel_rmse < 0.3 * errors[power]);
+            else
+                assert_true(off.largest < (power == TL_POWER_TABLE ? 1.0 / 255 : 2e-4) + off.moved_largest);
         }
         assert_true(errors[TL_POWER_POW] < 1e-6);
         assert_true(errors[TL_POWER_FIXED8] > errors[TL_POWER_TABLE]);

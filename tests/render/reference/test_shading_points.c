@@ -152,13 +152,13 @@ static void compare(struct tally *tally, const struct tl_shading_point *found, c
                     int i)
 {
     tally->samples++;
-    if (fabsf(found->cover - layers->point[i][3]) > 1e-4f) {
+    if (fabsf(found->cover - layers->point[i][3]) > 1e-3f) {
         tally->cover++;
         return;
     }
     if (!(found->cover > 0))
         return;
-    tally->point += largest_difference(found->point.raw, layers->point[i]) > 2e-4f;
+    tally->point += largest_difference(found->point.raw, layers->point[i]) > 5e-4f;
     tally->normal += largest_difference(found->normal.raw, layers->normal[i]) > 0.03f;
     tally->gloss += fabsf(1 / found->exponent - layers->normal[i][3]) > 0.01f;
     tally->diffuse += largest_difference(found->diffuse.raw, layers->diffuse[i]) > 0.01f;
@@ -167,9 +167,10 @@ static void compare(struct tally *tally, const struct tl_shading_point *found, c
     tally->specular += !grazing && largest_difference(found->glossy.raw, layers->specular[i]) > 0.01f;
 }
 
-/* Edges may fall to either side, and software GL chooses mip levels and mixes them roughly: one sample in a
- * hundred may be beyond the tolerances, which are a few steps of what the maps' bytes hold. A transform, wrap
- * or factor that is wrong moves hundreds. */
+/* Edges may fall to either side, samples lie where GL places vertices (TEST_PLACE of a pixel that is some 5
+ * cm of the ground), and software GL chooses mip levels and mixes them roughly: one sample in a hundred may
+ * be beyond the tolerances, which are a few steps of what the maps' bytes hold. A transform, wrap or factor
+ * that is wrong moves hundreds. */
 static void check(const struct tally *tally)
 {
     printf("%d samples; beyond tolerance: cover %d, point %d, normal %d, gloss %d, diffuse %d, specular %d\n",
