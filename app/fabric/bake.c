@@ -83,7 +83,7 @@ static bool save_normals(const struct baking *baking, tl_error *error)
 {
     static const char *const moment_names[] = {"x", "y", "xx", "yy"};
     tl_image slopes = tl_bake_slopes(&baking->field), normals = tl_bake_normals(&slopes, 1);
-    tl_image bytes = tl_bake_encoded(&normals), moments = tl_bake_moments(&normals),
+    tl_image bytes = tl_bake_encoded(&normals), moments = tl_bake_moments(&normals, false),
              gloss = tl_bake_gloss(&moments, DEFAULT_GLOSS, GLOSS_WINDOW);
     bool saved = save_png(baking, "normal", &bytes, error);
     saved = saved && save_exr(baking, "moments", moment_names, &moments, error);

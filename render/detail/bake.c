@@ -180,9 +180,11 @@ void tl_horizon_maps_release(struct tl_horizon_maps *maps)
 
 /* ---- The spread of normals ---- */
 
-/* The normal of a texel, renormalised, because bytes are rounded and a length below 1 would count as spread.
- * +Z where the texel has no direction. */
-static vec3s unit_normal(const tl_image *normals, size_t texel)
+#define STEEPEST 16.0f
+
+/* The normal of a texel, renormalised, because bytes are rounded and a length below 1 would count as spread;
+ * `offset`: as (-h_u, -h_v, 1). +Z where the texel has no direction. */
+static vec3s normal_of(const tl_image *normals, size_t texel, bool offset)
 {
     float n[3];
     for (int c = 0; c < 3; c++)
@@ -190,27 +192,29 @@ static vec3s unit_normal(const tl_image *normals, size_t texel)
             normals->type == TL_IMAGE_F32 ? value_of(normals, texel, c) : 2 * value_of(normals, texel, c) - 1;
     float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     float scale = square > 1e-12f && isfinite(square) ? 1 / sqrtf(square) : 0;
+    if (offset)
+        scale /= fmaxf(scale * n[2], 1 / STEEPEST);
     return scale > 0 ? (vec3s){{scale * n[0], scale * n[1], scale * n[2]}} : (vec3s){{0, 0, 1}};
 }
 
-tl_image tl_bake_moments(const tl_image *normals)
+tl_image tl_bake_moments(const tl_image *normals, bool offsets)
 {
     tl_image moments = tl_image_create(normals->width, normals->height, 4, TL_IMAGE_F32);
     assert(normals->channels >= 3);
     for (size_t i = 0; i < texel_count(normals); i++) {
-        vec3s n = unit_normal(normals, i);
+        vec3s n = normal_of(normals, i, offsets);
         const float texel[4] = {n.x, n.y, n.x * n.x, n.y * n.y};
         memcpy(tl_image_floats(&moments) + 4 * i, texel, sizeof texel);
     }
     return moments;
 }
 
-tl_image tl_bake_cross_moments(const tl_image *normals)
+tl_image tl_bake_cross_moments(const tl_image *normals, bool offsets)
 {
     tl_image moments = tl_image_create(normals->width, normals->height, 1, TL_IMAGE_F32);
     assert(normals->channels >= 3);
     for (size_t i = 0; i < texel_count(normals); i++) {
-        vec3s n = unit_normal(normals, i);
+        vec3s n = normal_of(normals, i, offsets);
         tl_image_floats(&moments)[i] = n.x * n.y;
     }
     return moments;

@@ -36,11 +36,12 @@ struct tl_horizon_maps tl_bake_horizons(const struct tl_height_field *field, int
 void tl_horizon_maps_release(struct tl_horizon_maps *maps);
 
 /* The moments (x, y, x^2, y^2) of unit normals, F32 x4, from normals in F32 x3 or bytes. Averages of the
- * moments give the mean normal and its spread. */
-tl_image tl_bake_moments(const tl_image *normals);
+ * moments give the mean normal and its spread. `offsets`: those of (-h_u, -h_v), at most 16, in place of x
+ * and y [Wimmer n.d., Offset Bump Maps]. */
+tl_image tl_bake_moments(const tl_image *normals, bool offsets);
 /* The mixed moment x y of unit normals, F32 x1: with the others it gives the covariance of slopes along u and
  * v [Olano and Baker 2010]. */
-tl_image tl_bake_cross_moments(const tl_image *normals);
+tl_image tl_bake_cross_moments(const tl_image *normals, bool offsets);
 /* The length of the mean normal, from averaged moments. */
 float tl_moments_length(vec4s moments);
 

@@ -1,8 +1,11 @@
 #include "render/detail/bumps.h"
 
+#include "config/base/memory.h"
 #include "render/detail/detail_terms.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v)
 {
@@ -25,6 +28,35 @@ bool tl_uv_derivatives(const vec3s positions[3], const vec2s uvs[3], vec3s *p_u,
     *p_u = glms_vec3_divs(glms_vec3_sub(glms_vec3_scale(p, b.y), glms_vec3_scale(q, a.y)), determinant);
     *p_v = glms_vec3_divs(glms_vec3_sub(glms_vec3_scale(q, a.x), glms_vec3_scale(p, b.x)), determinant);
     return true;
+}
+
+void tl_vertex_derivatives(const tl_surface *surface, vec3s *p_u, vec3s *p_v)
+{
+    float *areas = TL_NEW_ARRAY(float, surface->vertex_count);
+    memset(p_u, 0, surface->vertex_count * sizeof *p_u);
+    memset(p_v, 0, surface->vertex_count * sizeof *p_v);
+    for (size_t i = 0; i + 2 < surface->index_count; i += 3) {
+        const uint32_t *corners = surface->indices + i;
+        vec3s p[3], u, v;
+        vec2s uvs[3];
+        for (int c = 0; c < 3; c++) {
+            p[c] = surface->positions[corners[c]];
+            uvs[c] = surface->uvs[corners[c]];
+        }
+        if (!tl_uv_derivatives(p, uvs, &u, &v))
+            continue;
+        float area = glms_vec3_norm(glms_vec3_cross(glms_vec3_sub(p[1], p[0]), glms_vec3_sub(p[2], p[0])));
+        for (int c = 0; c < 3; c++) {
+            p_u[corners[c]] = glms_vec3_muladds(u, area, p_u[corners[c]]);
+            p_v[corners[c]] = glms_vec3_muladds(v, area, p_v[corners[c]]);
+            areas[corners[c]] += area;
+        }
+    }
+    for (size_t i = 0; i < surface->vertex_count; i++) {
+        p_u[i] = glms_vec3_scale(p_u[i], areas[i] > 0 ? 1 / areas[i] : 0);
+        p_v[i] = glms_vec3_scale(p_v[i], areas[i] > 0 ? 1 / areas[i] : 0);
+    }
+    free(areas);
 }
 
 void tl_slope_factors(const vec3s positions[3], const vec2s uvs[3], float nominal, float out[2])

@@ -3,6 +3,8 @@
 #ifndef TOILE_RENDER_DETAIL_BUMPS_H
 #define TOILE_RENDER_DETAIL_BUMPS_H
 
+#include "assets/base/surface.h"
+
 #include <cglm/struct.h>
 
 /* Blinn's bumped normal: N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), N = P_u x P_v, normalised [Blinn 1978].
@@ -15,6 +17,10 @@ vec3s tl_blinn_normal(vec3s normal, vec3s p_u, vec3s p_v, float h_u, float h_v);
 /* The change of a point with its UV within a triangle: the derivatives of the point by u and by v,
  * metres per UV unit. False, and zeros, where the UVs span no area. */
 bool tl_uv_derivatives(const vec3s positions[3], const vec2s uvs[3], vec3s *p_u, vec3s *p_v);
+
+/* The same at vertices: sums over the triangles around each, by their areas, over these areas. `p_u` and
+ * `p_v` have room for all vertices [Wimmer n.d., Creating Tangent Space]. */
+void tl_vertex_derivatives(const tl_surface *surface, vec3s *p_u, vec3s *p_v);
 
 /* The factors on a weave's slopes along u and v where the triangle is stretched (detail_slope_factor), as in
  * detail.glsl. `nominal`: metres of the UV unit to which the bumps are made. 1 where the UVs span no area. */

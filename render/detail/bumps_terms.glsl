@@ -52,6 +52,14 @@ TERM Bumps bumps_of_moments(float x, float y, float xx, float yy, float xy, floa
     return bumps;
 }
 
+// The same averages of offsets (-h_u, -h_v) in place of x and y.
+TERM Bumps bumps_of_offsets(float x, float y, float xx, float yy, float xy, float scale_u, float scale_v)
+{
+    Bumps bumps = bumps_of_moments(x, y, xx, yy, xy, scale_u, scale_v);
+    bumps.normal.z = 1.0f;
+    return bumps;
+}
+
 // Mean slopes and the spread about them: of what is sewn.
 TERM Bumps bumps_of_slopes(float slope_x, float slope_y, vec3 spread)
 {

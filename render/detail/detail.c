@@ -75,6 +75,16 @@ bool tl_detail_wants_moments(const struct tl_detail_params *params)
     return params->minify != TL_DETAIL_MINIFY_NONE;
 }
 
+bool tl_detail_has_offsets(const struct tl_detail_params *params)
+{
+    return params->mode == TL_DETAIL_OFFSET || params->mode == TL_DETAIL_EYE_SPACE;
+}
+
+bool tl_detail_has_derivatives(const struct tl_detail_params *params)
+{
+    return params->mode == TL_DETAIL_BLINN || params->mode == TL_DETAIL_EYE_SPACE;
+}
+
 int tl_detail_angle_count(const struct tl_detail_params *params)
 {
     return 8 << params->angles;
@@ -90,7 +100,9 @@ bool tl_detail_wants_maps(const struct tl_detail_params *params, const tl_materi
     bool has_heights = material->height_map.image || has_weave(material);
     bool has_normals = material->normal_map.image || has_heights;
     return (has_heights && (tl_detail_wants_heights(params) || tl_detail_wants_horizons(params))) ||
-           (has_normals && tl_detail_wants_moments(params)) || tl_detail_has_own_normals(material);
+           (has_normals && (tl_detail_wants_moments(params) || tl_detail_has_offsets(params) ||
+                            tl_detail_has_derivatives(params))) ||
+           tl_detail_has_own_normals(material);
 }
 
 void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t size)
@@ -103,8 +115,10 @@ void tl_detail_defines(const struct tl_detail_params *params, char *out, size_t 
          curves = params->mode == TL_DETAIL_RELIEF && params->curved;
     snprintf(out, size,
              "#define DETAIL_MODE %d\n#define DETAIL_SHADOW %d\n#define DETAIL_ANGLES %d\n"
-             "#define DETAIL_MINIFY %d\n%s%s%s",
+             "#define DETAIL_MINIFY %d\n%s%s%s%s%s",
              params->mode, params->shadow, tl_detail_angle_count(params), params->minify,
              shifts ? "#define DETAIL_SHIFTED\n" : "", clips ? "#define DETAIL_CLIPPED\n" : "",
-             curves ? "#define DETAIL_CURVED\n" : "");
+             curves ? "#define DETAIL_CURVED\n" : "",
+             tl_detail_has_offsets(params) ? "#define DETAIL_OFFSETS\n" : "",
+             params->mode == TL_DETAIL_EYE_SPACE ? "#define DETAIL_EYE_SPACE\n" : "");
 }

@@ -11,9 +11,12 @@
 #define DETAIL_MINIFY 0
 #endif
 #define DETAIL_BLINN 1
-#define DETAIL_PARALLAX 2
-#define DETAIL_PARALLAX_LIMITED 3
-#define DETAIL_RELIEF 4
+#define DETAIL_EYE 3
+#define DETAIL_PARALLAX 4
+#define DETAIL_PARALLAX_LIMITED 5
+#define DETAIL_RELIEF 6
+// Normals follow the derivatives of the surface, which slopes then need not.
+#define DETAIL_DERIVED (DETAIL_MODE == DETAIL_BLINN || DETAIL_MODE == DETAIL_EYE)
 #define DETAIL_SHADOW_HORIZON 1
 #define DETAIL_SHADOW_RELIEF 2
 
@@ -425,19 +428,24 @@ vec2 detail_slope_factors(vec3 point, vec2 uv)
     return vec2(detail_slope_factor(length(p_u), detail_range.z), detail_slope_factor(length(p_v), detail_range.z));
 }
 
-// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), with screen-space derivatives of the triangle. `mapped` has
-// slopes per metre of the nominal size of a UV unit.
-vec3 detail_blinn(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
+#if DETAIL_DERIVED
+#include "detail_vertex.glsl"
+
+// Blinn's N' = N + h_u (N_n x P_v) + h_v (P_u x N_n), with screen-space derivatives of the triangle or those of its
+// vertices. `mapped` has slopes per metre of the nominal size of a UV unit.
+vec3 detail_derived(vec3 mapped, vec3 normal, vec3 point, vec2 uv)
 {
-    vec3 p_u, p_v;
-    if (!detail_derivatives(point, uv, p_u, p_v))
-        return normal;
-    vec2 slopes = -mapped.xy / max(mapped.z, 1e-3);
-    float h_u = slopes.x * detail_range.z, h_v = -slopes.y * detail_range.z; // v runs down
-    float area = dot(normal, cross(p_u, p_v));
-    vec3 offset = h_u * cross(normal, p_v) + h_v * cross(p_u, normal);
-    vec3 sum = abs(area) * normal + (area < 0.0 ? -1.0 : 1.0) * offset;
+    vec2 h = mapped.xy / max(mapped.z, 1e-3) * detail_range.z * vec2(-1.0, 1.0); // v runs down
+#if DETAIL_MODE == DETAIL_EYE
+    vec3 sum = (area_normal + h.x * offset_u + h.y * offset_v) * into_eye_space; // back into the world, where light is
+#else
+    vec3 p_u, p_v, offset_u, offset_v, area_normal;
+    detail_derivatives(point, uv, p_u, p_v);
+    detail_offsets(normal, p_u, p_v, offset_u, offset_v, area_normal);
+    vec3 sum = area_normal + h.x * offset_u + h.y * offset_v;
+#endif
     float square = dot(sum, sum);
-    return area != 0.0 && square > 1e-30 && square < 1e30 ? sum * inversesqrt(square) : normal;
+    return square > 1e-30 && square < 1e30 ? sum * inversesqrt(square) : normal;
 }
+#endif
 #endif

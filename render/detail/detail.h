@@ -24,6 +24,10 @@ bool tl_detail_wants_heights(const struct tl_detail_params *params);
 bool tl_detail_wants_cones(const struct tl_detail_params *params);
 bool tl_detail_wants_horizons(const struct tl_detail_params *params);
 bool tl_detail_wants_moments(const struct tl_detail_params *params);
+/* True if maps hold slopes in place of normals. */
+bool tl_detail_has_offsets(const struct tl_detail_params *params);
+/* True if normals follow the derivatives of the surface, which slopes then need not. */
+bool tl_detail_has_derivatives(const struct tl_detail_params *params);
 
 /* Number of horizon angles of the full circle. */
 int tl_detail_angle_count(const struct tl_detail_params *params);

@@ -90,16 +90,22 @@ static void fill_channels(const tl_texture *texture, int layer, const tl_image *
 static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals, const struct tl_detail_params *params)
 {
     const bool is_lean = params->minify == TL_DETAIL_MINIFY_LEAN;
-    tl_image moments = tl_bake_moments(normals);
+    const bool is_offset = tl_detail_has_offsets(params) && params->minify == TL_DETAIL_MINIFY_NONE;
+    const bool offsets = tl_detail_has_offsets(params);
+    tl_image moments = tl_bake_moments(normals, offsets);
     int width = moments.width, height = moments.height;
     GLenum format = width <= FLOAT_MOMENTS_SIDE && height <= FLOAT_MOMENTS_SIDE ? GL_RG32F : GL_RG16F;
-    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, format, width, height, is_lean ? 3 : 2,
+    tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, format, width, height,
+                                           is_lean     ? 3
+                                           : is_offset ? 1
+                                                       : 2,
                                            tl_texture_full_levels(width, height));
     fill_channels(&texture, 0, &moments, 0, 2);
-    fill_channels(&texture, 1, &moments, 2, 2);
+    if (!is_offset)
+        fill_channels(&texture, 1, &moments, 2, 2);
     tl_image_release(&moments);
     if (is_lean) {
-        moments = tl_bake_cross_moments(normals);
+        moments = tl_bake_cross_moments(normals, offsets);
         tl_texture_fill(&texture, 2, &moments, false);
         tl_image_release(&moments);
     }
@@ -209,7 +215,7 @@ static struct tl_detail_entry make_entry(tl_gpu *gpu, const tl_material *materia
 {
     struct tl_detail_entry entry = {.material = material, .uv_metres = uv_metres};
     add_heights(&entry, gpu, params);
-    if (tl_detail_wants_moments(params))
+    if (tl_detail_wants_moments(params) || tl_detail_has_offsets(params))
         add_moments(&entry, gpu, params);
     for (int i = 0; i < TL_DETAIL_UNITS; i++)
         entry.flags |= entry.textures[i].id ? unit_flags[i] : 0;

@@ -2,16 +2,19 @@
 
 #include "render/plan/affects.h"
 
-static const char *const mode_names[] = {"normal", "blinn", "parallax", "parallax_limited", "relief", NULL};
+static const char *const mode_names[] = {"normal",           "blinn",  "offset", "eye_space", "parallax",
+                                         "parallax_limited", "relief", NULL};
 static const char *const shadow_names[] = {"none", "horizon", "relief", NULL};
 static const char *const angle_names[] = {"8", "16", "32", NULL};
 static const char *const minify_names[] = {"none", "toksvig", "lean", NULL};
 
 typedef struct tl_detail_params params;
 static const struct tl_option rows[] = {
-    TL_OPTION_ENUM(params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, mode_names,
-                   "rendering of bumps: normal and blinn change the normal, parallax and relief also "
-                   "displace the texture"),
+    TL_OPTION_ENUM(
+        params, mode, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL_MAPS, mode_names,
+        "rendering of bumps: the first four change the normal (blinn by the surface's derivatives, "
+        "offset by maps of slopes, eye_space by both, at vertices), parallax and relief also "
+        "displace the texture"),
     TL_OPTION_INT(params, steps, TL_AFFECTS_APPEARANCE | TL_AFFECTS_DETAIL, 1, 1024, "",
                   "relief: maximum number of cone steps through the heights; with too few, crests are missed "
                   "at grazing views"),

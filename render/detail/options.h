@@ -4,11 +4,15 @@
 
 #include "config/options.h"
 
-/* NORMAL: normals by the square patch. BLINN: Blinn's form, with the derivatives of the surface. The others
- * read all maps where the height field is visible and bend the normal as NORMAL does. */
+/* NORMAL: normals by the square patch. BLINN: Blinn's form, with the derivatives of the surface. OFFSET: as
+ * NORMAL, of maps that hold (-h_u, -h_v), whose averages are mean slopes. EYE_SPACE: Blinn's form of these
+ * maps, with derivatives of vertices, interpolated. The others read all maps where the height field is
+ * visible and bend the normal as NORMAL does. The reference draws OFFSET as NORMAL and EYE_SPACE as BLINN. */
 enum tl_detail_mode {
     TL_DETAIL_NORMAL,
     TL_DETAIL_BLINN,
+    TL_DETAIL_OFFSET,
+    TL_DETAIL_EYE_SPACE,
     TL_DETAIL_PARALLAX,
     TL_DETAIL_PARALLAX_LIMITED,
     TL_DETAIL_RELIEF

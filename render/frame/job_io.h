@@ -122,8 +122,8 @@
     IO(WRITES, lights) IO(USES, light_cache)
 
 #define TL_JOB_surfaces(IO)                                                                                  \
-    IO(READS, shapes) IO(READS, motion) IO(READS, ground_input) IO(WRITES, surfaces)                         \
-    IO(WRITES, casters) IO(WRITES, ground)
+    IO(READS, shapes) IO(READS, motion) IO(READS, ground_input) IO(READS, detail_options)                    \
+    IO(WRITES, surfaces) IO(WRITES, casters) IO(WRITES, ground)
 
 #define TL_JOB_detail(IO)                                                                                    \
     IO(READS, shapes) IO(READS, detail_options) IO(READS, ground_input) IO(SEES, detail_steps)               \

@@ -8,6 +8,7 @@ bool tl_run_surfaces(const struct tl_surfaces_job *job, tl_error *error)
         return false;
     tl_ground_make(job->casters, job->ground_input->colour,
                    job->ground); /* the last of what is drawn, when it is drawn */
+    tl_surfaces_use_derivatives(job->surfaces, job->detail_options->mode == TL_DETAIL_EYE_SPACE);
     return tl_surfaces_update(job->surfaces, job->shapes->drawn, job->shapes->drawn_count, error);
 }
 

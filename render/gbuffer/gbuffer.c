@@ -146,6 +146,7 @@ static void use_program(const struct tl_gbuffer_request *request, const tl_progr
     glUseProgram(program->id);
     glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, request->view->view_projection.raw[0]);
     glUniform3fv(EYE, 1, request->view->eye.raw);
+    glUniformMatrix3fv(TL_UNIFORM_INTO_EYE_SPACE, 1, GL_FALSE, tl_view_turn(request->view).raw[0]);
     glUniform1i(BLENDS_LOBES, request->blends_lobes);
 }
 

@@ -89,7 +89,7 @@ void main()
     unmoved_across *= detail_shortened(dFdx(point), to_eye);
     unmoved_down *= detail_shortened(dFdy(point), to_eye);
 #endif
-#if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
+#if !DETAIL_DERIVED
     if (has_map(MAP_WEAVE))
         weave_slopes = detail_slope_factors(point, uv);
 #endif
@@ -122,9 +122,9 @@ void main()
         Bumps bumps = bumps_at(place.uv);
         shape = surface_shape(DETAIL_MINIFY, bumps, base_normal, smooth_normal, tangent.xyz, tangent.w, side,
                               direction_or(eye - point, smooth_normal), material_scalars.x, colours.glossiness);
-#if DETAIL_MODE == DETAIL_BLINN
+#if DETAIL_DERIVED
         if (detail_range.z > 0.0)
-            shape.normal = side * detail_blinn(bumps.normal, smooth_normal, point, uv);
+            shape.normal = side * detail_derived(bumps.normal, smooth_normal, point, uv);
 #endif
         kd *= shape.open;
     }

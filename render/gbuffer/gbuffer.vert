@@ -12,6 +12,10 @@ out vec2 uv;
 out vec3 point;
 out vec3 normal;
 out vec4 tangent;
+#ifdef DETAIL_EYE_SPACE
+#define DETAIL_VERTICES
+#include "detail_vertex.glsl"
+#endif
 #endif
 
 void main()
@@ -21,6 +25,9 @@ void main()
     point = position;
     normal = vertex_normal;
     tangent = vertex_tangent;
+#ifdef DETAIL_EYE_SPACE
+    set_offsets(vertex_normal);
+#endif
 #endif
     gl_Position = view_projection * vec4(position, 1.0);
 }

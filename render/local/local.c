@@ -204,6 +204,7 @@ static void set_view(const struct tl_view *view)
 {
     glUniformMatrix4fv(VIEW_PROJECTION, 1, GL_FALSE, view->view_projection.raw[0]);
     glUniform3fv(EYE, 1, view->eye.raw);
+    glUniformMatrix3fv(TL_UNIFORM_INTO_EYE_SPACE, 1, GL_FALSE, tl_view_turn(view).raw[0]);
 }
 
 static vec3s constant_eye(const struct tl_local_request *request)

@@ -144,7 +144,7 @@ void find_detail(inout mat3 frame, float side, inout vec3 smooth_normal)
     unmoved_across *= detail_shortened(dFdx(point), eyewards);
     unmoved_down *= detail_shortened(dFdy(point), eyewards);
 #endif
-#if DETAIL_MODE != DETAIL_BLINN // whose form has the derivatives itself
+#if !DETAIL_DERIVED
     if (has_map(MAP_WEAVE))
         weave_slopes = detail_slope_factors(point, uv);
 #endif
@@ -185,9 +185,9 @@ vec3 bumped_normal(vec3 smooth_normal)
 {
     if (!bumpy)
         return base_normal;
-#if DETAIL_MODE == DETAIL_BLINN
+#if DETAIL_DERIVED
     if (detail_range.z > 0.0)
-        return detail_blinn(bumps.normal, smooth_normal, point, uv);
+        return detail_derived(bumps.normal, smooth_normal, point, uv);
 #endif
     vec3 mapped = bumps.normal;
     return mapped.x * tangent.xyz + mapped.y * tangent.w * cross(base_normal, tangent.xyz) + mapped.z * base_normal;

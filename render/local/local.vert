@@ -34,6 +34,10 @@ out float cosine_lamp;   // l.v
 #elif defined(VECTORS)
 out vec3 to_lamp, to_eye, halfway;
 #endif
+#ifdef DETAIL_EYE_SPACE
+#define DETAIL_VERTICES
+#include "detail_vertex.glsl"
+#endif
 
 #if defined(GOURAUD) || defined(COSINES) || defined(VECTORS)
 const vec3 UP = vec3(0.0, 1.0, 0.0);
@@ -72,6 +76,9 @@ void main()
     point = position;
     normal = vertex_normal;
     tangent = vertex_tangent;
+#ifdef DETAIL_EYE_SPACE
+    set_offsets(vertex_normal);
+#endif
     uv = vertex_uv;
 #ifdef TEXELS
     gl_Position = vec4(2.0 * (chart.xy + uv * chart.zw) - 1.0, 0.0, 1.0);

@@ -16,9 +16,9 @@ const struct tl_moment_map *tl_reference_moments(struct tl_reference_detail *det
             return detail->items[i];
     struct tl_moment_map *made = TL_NEW(struct tl_moment_map);
     made->of = normals;
-    made->image = tl_bake_moments(normals);
+    made->image = tl_bake_moments(normals, false);
     made->texture = tl_map_texture_make(&made->image, false);
-    made->cross_image = tl_bake_cross_moments(normals);
+    made->cross_image = tl_bake_cross_moments(normals, false);
     made->cross_texture = tl_map_texture_make(&made->cross_image, false);
     detail->items = tl_resize(detail->items, detail->count + 1, sizeof(struct tl_moment_map *));
     detail->items[detail->count++] = made;

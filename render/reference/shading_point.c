@@ -147,7 +147,7 @@ static bool has_bumps(const struct sample_place *place)
 /* Blinn's form needs no tangents, but heights, which slopes give with the nominal size of a UV unit. */
 static bool has_blinn_normals(const struct sample_place *place)
 {
-    return place->detail->mode == TL_DETAIL_BLINN && place->uv_metres > 0;
+    return tl_detail_has_derivatives(place->detail) && place->uv_metres > 0;
 }
 
 static vec3s blinn_normal(const struct sample_place *place, vec3s mapped, vec3s smooth)
@@ -412,7 +412,7 @@ static struct tl_shading_point surface_point(const struct tl_reference_scene *sc
     place.slopes[0] = place.slopes[1] = 1;
     if (has_blinn_normals(&place))
         tl_uv_derivatives(corners.positions, corners.uvs, &place.p_u, &place.p_v); /* zeros: `smooth` */
-    else if (place.detail->mode != TL_DETAIL_BLINN)
+    else if (!tl_detail_has_derivatives(place.detail))
         tl_slope_factors(corners.positions, corners.uvs, place.uv_metres, place.slopes);
     place.footprint = footprint_of(&corners, weights, ray, hit->distance_m, place.facet);
     vec3s outside = direction_or(place.normal, glms_vec3_scale(place.facet, place.side));

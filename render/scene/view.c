@@ -49,3 +49,10 @@ struct tl_view tl_view_shift(const struct tl_view *view, float right, float up)
     shifted.forward = glms_vec3_sub(shifted.forward, glms_vec3_scale(view->up, up));
     return shifted;
 }
+
+mat3s tl_view_turn(const struct tl_view *view)
+{
+    vec3s right = glms_vec3_normalize(view->right), up = glms_vec3_normalize(view->up);
+    const mat3s columns = {.col = {right, up, glms_vec3_cross(right, up)}};
+    return glms_mat3_transpose(columns);
+}

@@ -18,6 +18,9 @@ struct tl_view {
 
 struct tl_view tl_view_make(const struct tl_camera *camera, int width, int height);
 
+/* The turn from the world into eye space: x right, y up, z backwards. */
+mat3s tl_view_turn(const struct tl_view *view);
+
 /* The same eye behind an image plane that is moved: what was seen at x, y in [-1, 1] is seen at x + right,
  * y + up. `forward` then leads to the plane's new middle and is no unit vector any more. */
 struct tl_view tl_view_shift(const struct tl_view *view, float right, float up);

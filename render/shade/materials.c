@@ -63,7 +63,7 @@ static struct tl_texels pack(const tl_image *image, enum packed kind, const tl_w
         return pack_weave(weave);
     if (kind != PACKED_MOMENTS && kind != PACKED_CROSS)
         return tl_texels_make(image, kind == PACKED_COLOUR);
-    tl_image moments = kind == PACKED_CROSS ? tl_bake_cross_moments(image) : tl_bake_moments(image);
+    tl_image moments = kind == PACKED_CROSS ? tl_bake_cross_moments(image, false) : tl_bake_moments(image, false);
     struct tl_texels texels = tl_texels_make(&moments, false);
     tl_image_release(&moments);
     return texels;

@@ -14,6 +14,14 @@
 // has derivatives.
 vec2 weave_slopes = vec2(1.0);
 
+#ifdef DETAIL_OFFSETS
+#define bumps_of_means bumps_of_offsets
+const bool HAS_SPREAD = DETAIL_MINIFY > 0; // else a map has the two offsets only
+#else
+#define bumps_of_means bumps_of_moments
+const bool HAS_SPREAD = true;
+#endif
+
 // Moments of the normal map, or where there is none of the height map's slopes.
 vec2 own_moments(vec2 uv, float layer)
 {
@@ -25,9 +33,9 @@ Bumps own_bumps(vec2 uv)
 {
     if (has_detail(DETAIL_OWN_MOMENTS)) {
         float scale = has_map(MAP_NORMAL) ? material_scalars.y : 1.0;
-        vec2 first = own_moments(uv, 0.0), squares = own_moments(uv, 1.0);
+        vec2 first = own_moments(uv, 0.0), squares = HAS_SPREAD ? own_moments(uv, 1.0) : first * first;
         float product = DETAIL_MINIFY == MINIFY_LEAN ? own_moments(uv, 2.0).x : 0.0;
-        return bumps_of_moments(first.x, first.y, squares.x, squares.y, product, scale, scale);
+        return bumps_of_means(first.x, first.y, squares.x, squares.y, product, scale, scale);
     }
     if (has_map(MAP_NORMAL))
         return bumps_of_texel(map_texel(normal_map, MAP_NORMAL, uv).xyz, material_scalars.y, material_scalars.y);
@@ -38,9 +46,10 @@ Bumps weave_bumps(vec2 uv)
 {
     vec2 scale = detail_range.w * weave_slopes; // of slopes
     if (has_detail(DETAIL_WEAVE_MOMENTS)) {
-        vec2 first = weave_layer(detail_weave_moments, uv, 0.0), squares = weave_layer(detail_weave_moments, uv, 1.0);
+        vec2 first = weave_layer(detail_weave_moments, uv, 0.0),
+             squares = HAS_SPREAD ? weave_layer(detail_weave_moments, uv, 1.0) : first * first;
         float product = DETAIL_MINIFY == MINIFY_LEAN ? weave_layer(detail_weave_moments, uv, 2.0).x : 0.0;
-        return bumps_of_moments(first.x, first.y, squares.x, squares.y, product, scale.x, scale.y);
+        return bumps_of_means(first.x, first.y, squares.x, squares.y, product, scale.x, scale.y);
     }
     return bumps_of_texel(weave_texel(weave_normal, uv).xyz, scale.x, scale.y);
 }

@@ -14,6 +14,7 @@ layout(location = 20) uniform int detail_flags;
 layout(location = 21) uniform vec4 detail_range;   // lowest, highest (m), metres of a UV unit, factor on heights
 layout(location = 22) uniform vec3 detail_rows[2]; // from UV to repeats of the height field
 layout(location = 24) uniform ivec2 detail_steps;  // of relief: steps, halvings
+layout(location = 25) uniform mat3 into_eye_space; // a turn
 // Of construction.glsl.
 layout(location = 110) uniform uint sewn_first; // number of the surface's first triangle
 layout(location = 111) uniform vec4 construction_sizes;

@@ -3,6 +3,7 @@
 #include "assets/topology/borders.h"
 #include "config/base/memory.h"
 #include "render/construction/tables.h"
+#include "render/detail/bumps.h"
 
 #include <epoxy/gl.h>
 
@@ -10,7 +11,7 @@
 #include <string.h>
 
 enum storage { FIRSTS, NEAR, BORDERS, STORAGES };
-enum attribute { POSITION, NORMAL, TANGENT, UV, ATTRIBUTES };
+enum attribute { POSITION, NORMAL, TANGENT, UV, P_U, P_V, ATTRIBUTES };
 
 /* A texture and the image it was made of: materials share images. */
 struct uploaded {
@@ -25,7 +26,7 @@ struct yarn_table {
 };
 
 struct surface_item {
-    bool hidden;
+    bool hidden, has_derivatives;
     GLuint vertex_array, buffers[ATTRIBUTES], indices;
     size_t vertex_count, index_count;
     size_t attribute_counts[ATTRIBUTES]; /* vertices sent; 0 for what the surface does not have */
@@ -47,10 +48,11 @@ struct tl_surfaces {
     size_t count;
     struct surface_item *items;
     const struct tl_detail_maps *detail; /* NULL: none */
+    bool has_derivatives;
 };
 
 static const size_t attribute_bytes[ATTRIBUTES] = {sizeof(vec3s), sizeof(vec3s), sizeof(vec4s),
-                                                   sizeof(vec2s)};
+                                                   sizeof(vec2s), sizeof(vec3s), sizeof(vec3s)};
 
 static void item_release(struct surface_item *item)
 {
@@ -86,6 +88,11 @@ tl_surfaces *tl_surfaces_create(tl_gpu *gpu)
 void tl_surfaces_use_detail(tl_surfaces *surfaces, const struct tl_detail_maps *detail)
 {
     surfaces->detail = detail;
+}
+
+void tl_surfaces_use_derivatives(tl_surfaces *surfaces, bool wanted)
+{
+    surfaces->has_derivatives = wanted;
 }
 
 static void resize(tl_surfaces *surfaces, size_t count)
@@ -213,7 +220,7 @@ static bool upload_material(tl_gpu *gpu, struct surface_item *item, const char *
 
 static void attach_buffer(struct surface_item *item, enum attribute attribute, const void *data, size_t count)
 {
-    static const GLint components[ATTRIBUTES] = {3, 3, 4, 2};
+    static const GLint components[ATTRIBUTES] = {3, 3, 4, 2, 3, 3};
     item->attribute_counts[attribute] = data ? count : 0;
     if (!data) { /* the attribute then reads GL's constant, zero */
         glDisableVertexArrayAttrib(item->vertex_array, attribute);
@@ -226,6 +233,18 @@ static void attach_buffer(struct surface_item *item, enum attribute attribute, c
     glVertexArrayAttribFormat(item->vertex_array, attribute, components[attribute], GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(item->vertex_array, attribute, attribute);
     glEnableVertexArrayAttrib(item->vertex_array, attribute);
+}
+
+static void send_derivatives(struct surface_item *item, const tl_surface *surface, bool wanted)
+{
+    const size_t count = surface->vertex_count;
+    vec3s *both = wanted && surface->uvs ? TL_NEW_ARRAY(vec3s, 2 * count) : NULL;
+    if (both)
+        tl_vertex_derivatives(surface, both, both + count);
+    attach_buffer(item, P_U, both, count);
+    attach_buffer(item, P_V, both ? both + count : NULL, count);
+    free(both);
+    item->has_derivatives = wanted;
 }
 
 static void send_motion(struct surface_item *item, const tl_surface *surface)
@@ -314,16 +333,20 @@ static bool send_topology(tl_gpu *gpu, struct surface_item *item, const tl_surfa
     return true;
 }
 
-static bool update_item(tl_gpu *gpu, struct surface_item *item, const tl_surface *surface, tl_error *error)
+static bool update_item(const tl_surfaces *surfaces, struct surface_item *item, const tl_surface *surface,
+                        tl_error *error)
 {
     bool fresh = item->vertex_array == 0 || item->topology_revision != surface->topology_revision ||
                  item->vertex_count != surface->vertex_count || item->index_count != surface->index_count;
-    if (fresh && !send_topology(gpu, item, surface, error)) {
+    if (fresh && !send_topology(surfaces->gpu, item, surface, error)) {
         item_release(item);
         return false;
     }
-    if (fresh || item->motion_revision != surface->motion_revision)
+    const bool moved = fresh || item->motion_revision != surface->motion_revision;
+    if (moved)
         send_motion(item, surface);
+    if (moved || item->has_derivatives != surfaces->has_derivatives)
+        send_derivatives(item, surface, surfaces->has_derivatives);
     return true;
 }
 
@@ -331,7 +354,7 @@ bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, s
 {
     resize(surfaces, count);
     for (size_t i = 0; i < count; i++)
-        if (!update_item(surfaces->gpu, &surfaces->items[i], items[i], error))
+        if (!update_item(surfaces, &surfaces->items[i], items[i], error))
             return false;
     return true;
 }

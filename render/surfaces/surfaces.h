@@ -34,7 +34,8 @@ enum tl_surface_uniform {
     TL_UNIFORM_FIRST_TRIANGLE =
         TL_UNIFORM_UV_ROWS + 2 * TL_MAP_USES, /* number of the draw's first triangle */
     TL_UNIFORM_SURFACE_END,
-    TL_UNIFORM_DETAIL = 20,      /* as render/detail/maps.h has them */
+    TL_UNIFORM_DETAIL = 20, /* as render/detail/maps.h has them */
+    TL_UNIFORM_INTO_EYE_SPACE = 25,
     TL_UNIFORM_SEWN_FIRST = 110, /* as in construction.glsl */
     TL_UNIFORM_SEWN_SIZES,
     TL_UNIFORM_SEWN_ROWS,
@@ -70,6 +71,9 @@ void tl_surfaces_destroy(tl_surfaces **surfaces);
 
 /* Sets the detail maps that are bound together with the surfaces' own from now on; borrowed. */
 void tl_surfaces_use_detail(tl_surfaces *surfaces, const struct tl_detail_maps *detail);
+
+/* Whether the next updates send the derivatives of points by u and v at vertices (detail_vertex.glsl). */
+void tl_surfaces_use_derivatives(tl_surfaces *surfaces, bool wanted);
 
 /* Brings the GPU's copies up to date. Fails when a map is larger than GL can hold. */
 bool tl_surfaces_update(tl_surfaces *surfaces, const tl_surface *const *items, size_t count, tl_error *error);

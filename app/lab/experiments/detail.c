@@ -20,6 +20,12 @@ static const struct tl_technique techniques[] = {
      .quick = true,
      .shown = true},
     {.page = "Blinn", .group = "mode", SET("detail.mode=blinn")},
+    {.page = "offset map", .picture = "offset map", .group = "mode", .id = "C1", SET("detail.mode=offset")},
+    {.page = "Blinn, at vertices",
+     .picture = "Blinn's form with vectors of vertices",
+     .group = "mode",
+     .id = "C1",
+     SET("detail.mode=eye_space")},
     {.page = "parallax", .picture = "parallax", .group = "mode", .id = "C4", SET("detail.mode=parallax")},
     {.page = "parallax, limited",
      .picture = "offset-limited parallax",
@@ -172,8 +178,11 @@ static const struct tl_experiment experiments[] = {
      .name = "c1",
      .scene = "gallery",
      .title = "C1, C2  Heights as normals",
-     .source = "[Wimmer n.d., Mathematics, Cylinder Example, Square Patch Assumption]",
-     .text = "A weave of yarns 8 mm apart. A normal map by finite differences assumes square patches.",
+     .source =
+         "[Wimmer n.d., Mathematics, Basic Algorithm (Eye Space), Square Patch Assumption, Offset Bump Maps]",
+     .text =
+         "A weave of yarns 8 mm apart. Maps of normals and of offsets assume square patches; vectors B1, B2 "
+         "and N of vertices, interpolated in eye space, follow the stretch of the parametrisation.",
      .exact_text = "Blinn's perturbed normal at every sample (C2), which follows the stretch of the "
                    "parametrisation; its own oracle is a cylinder in closed form (test cylinder)",
      .solid = "torus",

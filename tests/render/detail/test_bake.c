@@ -292,7 +292,7 @@ static void test_gloss(void **state)
         const float n[] = {x, 0, sqrtf(1 - x * x)};
         memcpy(tl_image_floats(&normals) + 3 * (size_t)i, n, sizeof n);
     }
-    tl_image moments = tl_bake_moments(&normals), sharp = tl_bake_gloss(&moments, 0.9f, 1),
+    tl_image moments = tl_bake_moments(&normals, false), sharp = tl_bake_gloss(&moments, 0.9f, 1),
              wide = tl_bake_gloss(&moments, 0.9f, 2);
     double length = sqrt(0.99), variance = (1 - length) / length;
     for (int i = 0; i < 64; i++) {
@@ -320,7 +320,7 @@ static void test_degenerate(void **state)
         tl_image_release(&slopes);
     }
     tl_image_bytes(&normals)[0] = tl_image_bytes(&normals)[1] = tl_image_bytes(&normals)[2] = 128;
-    tl_image moments = tl_bake_moments(&normals);
+    tl_image moments = tl_bake_moments(&normals, false);
     assert_near(tl_image_floats(&moments)[3], 1 / 3.0, 1e-6); /* 128 is a little over 0 in every channel */
     const vec3s up = {{0, 0, 1}}, none = {{0, 0, 0}};
     assert_near(tl_blinn_normal(up, none, none, 1, 1).z, 1, 0);

@@ -218,10 +218,11 @@ static void test_extremes(void **state)
     tl_image one = tl_image_create(1, 1, 1, TL_IMAGE_U8);
     const float scales[] = {0, 1, 100};
     const int steps[] = {1, 256};
-    for (int mode = TL_DETAIL_NORMAL; mode <= TL_DETAIL_RELIEF; mode += 2)
+    const int modes[] = {TL_DETAIL_NORMAL, TL_DETAIL_PARALLAX, TL_DETAIL_RELIEF, TL_DETAIL_EYE_SPACE};
+    for (int m = 0; m < 4; m++)
         for (int c = 0; c < 12; c++) {
-            const int kind = mode == TL_DETAIL_RELIEF && c % 2 ? 1 : mode / 2;
-            stage->settings.detail.mode = mode;
+            const int kind = modes[m] == TL_DETAIL_RELIEF && c % 2 ? 1 : m % 3;
+            stage->settings.detail.mode = modes[m];
             stage->settings.detail.shadow = kind;
             stage->settings.detail.minify = kind;
             stage->settings.detail.height_scale = scales[c % 3];
@@ -271,14 +272,14 @@ static void stretched_open(struct test_scene *scene, const tl_image *normal, boo
     test_scene_refresh(scene);
 }
 
-/* One normal in floats, encoded as in a picture. */
-static tl_image normal_picture(float slope_x, float slope_y)
+/* One normal in floats, encoded as in a picture, or as maps that keep moments read it. */
+static tl_image normal_picture(float slope_x, float slope_y, bool encoded)
 {
     vec3s n = glms_vec3_normalize((vec3s){{-slope_x, -slope_y, 1}});
     tl_image image = tl_image_create(4, 4, 3, TL_IMAGE_F32);
     image.linear = true;
     for (int i = 0; i < 3 * 16; i++)
-        tl_image_floats(&image)[i] = 0.5f + 0.5f * n.raw[i % 3];
+        tl_image_floats(&image)[i] = encoded ? 0.5f + 0.5f * n.raw[i % 3] : n.raw[i % 3];
     return image;
 }
 
@@ -289,8 +290,10 @@ static void test_blinn(void **state)
 {
     struct test_device *device = *state;
     const float slope_x = 0.5f, slope_y = -0.3f;
-    tl_image bumped = normal_picture(slope_x, slope_y), plain = normal_picture(slope_x / STRETCH, slope_y);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 8; i++) {
+        const int mode = i < 4 ? TL_DETAIL_BLINN : TL_DETAIL_EYE_SPACE;
+        tl_image bumped = normal_picture(slope_x, slope_y, i < 4),
+                 plain = normal_picture(slope_x / STRETCH, slope_y, true);
         bool lamplit = i & 1, behind = i & 2;
         struct test_scene scene, expected;
         stretched_open(&scene, &bumped, lamplit);
@@ -299,20 +302,22 @@ static void test_blinn(void **state)
             scene.frame.camera.eye.z = expected.frame.camera.eye.z *= -1;
             scene.lamps[0].direction.z = expected.lamps[0].direction.z *= -1;
         }
-        scene.settings.detail.mode = TL_DETAIL_BLINN;
+        scene.settings.detail.mode = mode;
+        scene.settings.detail.minify = i < 4 ? TL_DETAIL_MINIFY_NONE : TL_DETAIL_MINIFY_LEAN;
         tl_image image = test_scene_draw(&expected, device->renderer);
         struct test_difference off = test_scene_error(&scene, device->renderer, &image);
         scene.settings.detail.mode = TL_DETAIL_NORMAL;
         struct test_difference flat = test_scene_error(&scene, device->renderer, &image);
-        scene.settings.detail.mode = TL_DETAIL_BLINN;
+        scene.settings.detail.mode = mode;
         tl_image traced = test_scene_evaluate(&scene);
         struct test_difference reference =
             lamplit ? test_compare(&traced, &image) : (struct test_difference){0};
-        print_message("Blinn's normal on a stretched square, %s, %s: off by %.3f %% of the peak, the "
+        print_message("Blinn's normal on a stretched square, %s, %s, %s: off by %.3f %% of the peak, the "
                       "reference %.3f %%, the "
                       "square patch %.1f %%\n",
-                      lamplit ? "lamp" : "environment", behind ? "behind" : "front", 100 * off.largest,
-                      100 * reference.largest, 100 * flat.largest);
+                      i < 4 ? "of samples" : "of vertices", lamplit ? "lamp" : "environment",
+                      behind ? "behind" : "front", 100 * off.largest, 100 * reference.largest,
+                      100 * flat.largest);
         assert_true(off.pixels > 200);
         assert_true(off.largest < 0.001 && reference.largest < 0.001);
         assert_true(flat.largest > 0.005); /* one side of the environment is nearly even */
@@ -320,9 +325,9 @@ static void test_blinn(void **state)
         tl_image_release(&image);
         test_scene_close(&scene);
         test_scene_close(&expected);
+        tl_image_release(&bumped);
+        tl_image_release(&plain);
     }
-    tl_image_release(&bumped);
-    tl_image_release(&plain);
 }
 
 int main(void)

@@ -61,7 +61,7 @@ static float lean_gloss(const tl_material *cloth, vec3s l, vec3s v, float handed
         vec3s n = glms_vec3_normalize((vec3s){{-slope, -slope * handedness, 1}}); /* along the bitangent */
         memcpy(tl_image_floats(&normals) + 3 * (size_t)i, n.raw, sizeof n.raw);
     }
-    tl_image squares = tl_bake_moments(&normals), products = tl_bake_cross_moments(&normals);
+    tl_image squares = tl_bake_moments(&normals, false), products = tl_bake_cross_moments(&normals, false);
     for (int i = 0; i < NORMALS; i++) {
         for (int c = 0; c < 4; c++)
             moments.raw[c] += tl_image_floats(&squares)[4 * i + c] / NORMALS;
@@ -261,7 +261,7 @@ static void test_built_in_slopes_are_hardly_correlated(void **state)
         tl_weave weave;
         params.pattern = pattern;
         assert_true(tl_weave_create(&params, &weave));
-        tl_image moments = tl_bake_moments(&weave.normal), cross = tl_bake_cross_moments(&weave.normal);
+        tl_image moments = tl_bake_moments(&weave.normal, false), cross = tl_bake_cross_moments(&weave.normal, false);
         const size_t count = (size_t)moments.width * (size_t)moments.height;
         double sums[5] = {0};
         for (size_t i = 0; i < count; i++)
