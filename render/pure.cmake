@@ -7,7 +7,6 @@ add_library(toile_light STATIC
   bounce/bounce_smooth.c
   brdf/angles.c
   brdf/brdf.c
-  brdf/fuzz.c
   brdf/ggx/ggx_lobes.c
   brdf/sample.c
   brdf/lobe_fit.c

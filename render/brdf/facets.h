@@ -5,12 +5,16 @@
 #include "render/gpu/vectors.h"
 
 typedef struct FacetAxes FacetAxes;
+typedef struct FacetReflected FacetReflected;
 typedef struct FacetWidening FacetWidening;
 typedef struct LobeSet LobeSet;
 typedef struct SlopeAxes SlopeAxes;
 typedef struct SlopeLobe SlopeLobe;
 typedef struct SlopeQuadrature SlopeQuadrature;
+typedef struct WardFacets WardFacets;
+typedef struct WardLobe WardLobe;
 typedef struct WardSlope WardSlope;
+typedef struct WardValues WardValues;
 
 #include "render/gpu/terms_begin.h"
 

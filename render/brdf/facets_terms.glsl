@@ -44,6 +44,60 @@ TERM float fresnel_dielectric(float index, float cosine)
     return inside_squared > 0.0f && cosine > 0.0f ? clamp((s * s + p * p) / 2.0f, 0.0f, 1.0f) : 1.0f;
 }
 
+// The same of a metal, of complex index n + ik: (p + iq)^2 = (n + ik)^2 - sin^2 in its real form [Born and Wolf 1999, 14.4].
+TERM float fresnel_conductor(float n, float k, float cosine)
+{
+    float c = cosine, s2 = 1.0f - c * c, real = n * n - k * k - s2, cross2 = 4.0f * n * n * k * k;
+    float size = sqrt(real * real + cross2);
+    // Whichever of two forms does not cancel.
+    float p = sqrt(max(real < 0.0f ? 0.5f * cross2 / max(size - real, 1e-30f) : 0.5f * (size + real), 0.0f));
+    float across = (size - 2.0f * p * c + c * c) / max(size + 2.0f * p * c + c * c, 1e-12f);
+    float along = (c * c * size - 2.0f * p * c * s2 + s2 * s2) / max(c * c * size + 2.0f * p * c * s2 + s2 * s2, 1e-12f);
+    float reflected = clamp(0.5f * across * (1.0f + along), 0.0f, 1.0f);
+    return k == 0.0f ? fresnel_dielectric(n, c) : c > 0.0f ? reflected : 1.0f;
+}
+
+// The factor of Fresnel's equations on F0; 1: Schlick's term has no such. Enum tl_fresnel.
+#define FRESNEL_SCHLICK 0
+#define FRESNEL_DIELECTRIC 1
+#define FRESNEL_CONDUCTOR 2
+TERM float fresnel_by_index(int kind, float index, float extinction, float cosine)
+{
+    if (kind == FRESNEL_SCHLICK)
+        return 1.0f;
+    return kind == FRESNEL_DIELECTRIC ? fresnel_dielectric(index, cosine) : fresnel_conductor(index, extinction, cosine);
+}
+
+// Reflectance by Schlick's term: `plain`, and `away` times schlick_share.
+struct FacetReflected {
+    vec3 plain, away;
+};
+
+TERM FacetReflected facet_reflected(vec3 f0)
+{
+    FacetReflected r;
+    r.plain = f0;
+    r.away = vec3_subtract(schlick_colour(f0, 0.0f), f0);
+    return r;
+}
+
+// Light that has been inside threads: their colour, `ratio` times the diffuse one, times what their surface lets in.
+TERM FacetReflected thread_reflected(vec3 f0, vec3 diffuse, vec3 ratio)
+{
+    FacetReflected f = facet_reflected(f0), r;
+    vec3 colour = vec3_multiply(diffuse, ratio);
+    colour = vec3(clamp(colour.x, 0.0f, 1.0f), clamp(colour.y, 0.0f, 1.0f), clamp(colour.z, 0.0f, 1.0f));
+    r.plain = vec3_multiply(colour, vec3_subtract(vec3(1.0f, 1.0f, 1.0f), f.plain));
+    r.away = vec3_subtract(vec3(0.0f, 0.0f, 0.0f), vec3_multiply(colour, f.away));
+    return r;
+}
+
+// The share of light that a clear coat takes from what is below it, by the cosine of viewer and smooth normal.
+TERM float coat_share(float coat, float cosine)
+{
+    return coat > 0.0f ? coat * fresnel_dielectric(COAT_INDEX, max(min(cosine, 1.0f), 0.0f)) : 0.0f;
+}
+
 // ---- Widths ----
 
 // The squared width of facets by that without maps and bumps, and what these add to it.
@@ -428,4 +482,77 @@ TERM float ward_lobe(bool is_bounded, float slope_x, float slope_y, float steep,
     float value = exp2(-1.44269504f * squares / determinant) * (is_bounded ? bounded : published) /
                   (4.0f * 3.14159265f * sqrt(determinant));
     return cos_a > 0.0f && cos_b > 0.0f ? value : 0.0f;
+}
+
+// ... for light from a disc of angular radius `radius`, rad. (x, y, z): the sum of the unit directions to light and viewer;
+// `square`: of its length, which is twice the cosine of facet and light.
+TERM float ward_under_disc(bool is_bounded, float x, float y, float z, float square, float cos_a, float cos_b, float weft,
+                           float warp, float product, float radius)
+{
+    float wider = radius * radius / 8.0f, over = 1.0f / z;
+    return ward_lobe(is_bounded, x * over, y * over, z * z * z * z / (4.0f * square), cos_a, cos_b, weft + wider,
+                     warp + wider, product);
+}
+
+// ---- The lobes that stand for Ward's facets ----
+
+// The facets towards a viewer, in the axes of their widths, and their Fresnel term by an index.
+struct WardFacets {
+    bool is_bounded;
+    int fresnel;
+    float index, extinction;
+    float x, y, z;
+};
+
+// Contributions of slopes, without F0: `plain`, and `away` times schlick_share. `share`: of all slopes.
+struct WardValues {
+    float share, plain, away;
+};
+
+TERM WardValues ward_values(WardFacets facets, WardSlope slope)
+{
+    WardValues values;
+    values.share = 1.0f;
+    values.plain =
+        slope.value * fresnel_by_index(facets.fresnel, facets.index, facets.extinction, min(slope.cosine, 1.0f));
+    values.away = values.plain * schlick_share(slope.cosine);
+    return values;
+}
+
+// The two nodes at a point of the quadrature.
+TERM WardValues ward_node(WardFacets f, SlopeQuadrature nodes, int point)
+{
+    float at = nodes.middle + nodes.half_width * slope_points[point];
+    float x = at * nodes.along_x, y = at * nodes.along_y;
+    WardValues one = ward_values(f, ward_slope(f.is_bounded, f.x, f.y, f.z, x + nodes.across_x, y + nodes.across_y));
+    WardValues other = ward_values(f, ward_slope(f.is_bounded, f.x, f.y, f.z, x - nodes.across_x, y - nodes.across_y));
+    WardValues mean;
+    mean.share = slope_weight(point, at);
+    mean.plain = 0.5f * mean.share * (one.plain + other.plain);
+    mean.away = 0.5f * mean.share * (one.away + other.away);
+    return mean;
+}
+
+struct WardLobe {
+    float x, y, z; // direction, unit
+    float exponent, above; // the part above the horizon
+    float plain, away;     // as WardValues; not normalised
+};
+
+// Lobe `k` of the set.
+TERM WardLobe ward_lobe_of(WardFacets f, LobeSet set, float k)
+{
+    SlopeLobe at = slope_lobe(set, k, f.x, f.y, f.z);
+    WardSlope slope = ward_slope(f.is_bounded, f.x, f.y, f.z, at.slope_x, at.slope_y);
+    WardValues values = ward_values(f, slope);
+    float share = k < set.count ? at.share : 0.0f;
+    WardLobe lobe;
+    lobe.x = 2.0f * slope.towards * at.slope_x - f.x;
+    lobe.y = 2.0f * slope.towards * at.slope_y - f.y;
+    lobe.z = 2.0f * slope.towards - f.z;
+    lobe.exponent = slope_exponent(at.variance);
+    lobe.above = slope_above(lobe.z, lobe.exponent);
+    lobe.plain = share * values.plain;
+    lobe.away = share * values.away;
+    return lobe;
 }

@@ -29,21 +29,4 @@
 #define TL_FUZZ_INDEX(k)  (3 * (k))
 #define TL_FUZZ_EXPONENTS (1u | 1u << 3 | 1u << 6 | 1u << 9)
 
-/* The lobes towards one viewer. */
-struct tl_fuzz_lobes {
-    float weights[FUZZ_POWERS];
-    float under; /* what is left to the rest of the material */
-};
-
-TL_INLINE struct tl_fuzz_lobes tl_fuzz_lobes_of(const struct tl_fuzz *fuzz, float facing)
-{
-    struct tl_fuzz_lobes lobes;
-    lobes.under = 1 - fuzz_lobes(fuzz->roughness, facing, lobes.weights) * glms_vec3_max(fuzz->colour);
-    return lobes;
-}
-
-/* The share left to the rest of the material, for the cosine of viewer and smooth normal; 1 without fuzz.
- */
-float tl_fuzz_under(const tl_material *material, float facing);
-
 #endif

@@ -60,6 +60,18 @@ TERM float fuzz_value(float roughness, vec3 n, vec3 l, vec3 v)
     return fuzz_albedo(x, roughness) * fuzz_lobe(dot(n, l), dot(level, l), x, roughness);
 }
 
+// The largest channel of their colour.
+TERM float fuzz_strength(vec3 colour)
+{
+    return max(max(colour.x, colour.y), colour.z);
+}
+
+// The share that fibres of this colour leave to the rest of the material.
+TERM float fuzz_under(vec3 colour, float roughness, float facing)
+{
+    return 1.0f - fuzz_albedo(min(max(facing, 0.0f), 1.0f), roughness) * fuzz_strength(colour);
+}
+
 // The direction in which the fibres stand: the smooth normal, or for those that follow the bumps towards the shading
 // normal `shown`; all unit.
 TERM vec3 fuzz_axis(float follow, vec3 smooth_normal, vec3 shown)

@@ -1,14 +1,24 @@
 /* The light that a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over
- * gloss and diffuse colour. The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel
+ * gloss and diffuse colour (layers_terms.glsl). The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel
  * 1999, 4.4]. The two lobes of every material, K_1 about the normal and K_s about the mirror direction, are
- * not listed: their owner multiplies them by `base`, and has only the first where `is_faceted`.
+ * not listed: their owner multiplies them by `over.base`, and has only the first where `is_faceted`.
  *
  * Directions are unit, all in one space, whichever. Errors: none. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_MATERIAL_LOBES_H
 #define TOILE_RENDER_BRDF_MATERIAL_LOBES_H
 
+#include "render/brdf/facets.h"
 #include "render/brdf/fuzz.h"
 #include "render/brdf/lobe_fit.h"
+#include "render/env/exponent.h"
+
+typedef struct MaterialLayers MaterialLayers;
+
+#include "render/gpu/terms_begin.h"
+
+#include "render/brdf/layers_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 /* A sample's surface, on the side that is seen. */
 struct tl_material_sample {
@@ -26,13 +36,8 @@ struct tl_material_sample {
 
 struct tl_material_lobes {
     vec3s viewer;
-    float base;      /* what coat and fuzz leave of what is below them */
-    float coat;      /* what the coat reflects, below fuzz; 0: no coat */
-    vec3s coat_axis; /* mirror direction of the smooth surface: a coat levels threads and bumps out */
-    float coat_exponent;
-    struct tl_fuzz fuzz; /* colour 0: none */
-    vec3s fuzz_axis;     /* along which its fibres stand */
-    bool is_faceted;     /* the gloss is this, and no lobe about the mirror direction: */
+    MaterialLayers over;
+    bool is_faceted; /* the gloss is this, and no lobe about the mirror direction: */
     struct tl_brdf_sum gloss;
     struct tl_brdf_frame frame; /* of facets, or of a measured material */
 };
@@ -42,8 +47,8 @@ struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *s
  * Returns how many. */
 int tl_material_gloss_fit(const struct tl_material_sample *sample, int max_count,
                           struct tl_fitted_lobe items[TL_LOBE_FIT_SUM_MAX]);
-/* `base` alone, for which nothing of facets is read. */
-float tl_material_base(const struct tl_material_sample *sample);
+/* The layers alone, for which nothing of facets is read. */
+MaterialLayers tl_material_layers(const struct tl_material_sample *sample);
 
 /* The lobes for which prefiltered light can be looked up: those that stand for facets, at most `max_count`
  * for each gloss, then the coat. Returns how many; *facets: of facets. */

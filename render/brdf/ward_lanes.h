@@ -22,22 +22,15 @@ struct tl_ward_lanes {
     float sum[2][TL_LANES], albedo[2][TL_LANES];
 };
 
-/* A slope's contribution, and times (1 - t)^5 where Schlick's term is kept apart. */
-struct tl_ward_value {
-    float plain, away;
-    float towards; /* WardSlope */
-};
-
-TL_INLINE struct tl_ward_value tl_ward_value_of(const struct tl_gloss *gloss, bool schlick, float x, float y,
-                                                float z, float slope_x, float slope_y)
+TL_INLINE WardFacets tl_ward_facets(const struct tl_ward_lanes *w, bool schlick, int lane)
 {
-    const WardSlope slope = ward_slope(gloss->ward == TL_WARD_BOUNDED, x, y, z, slope_x, slope_y);
-    float value = slope.value;
-    if (!schlick)
-        value *= gloss->fresnel == TL_FRESNEL_DIELECTRIC
-                     ? tl_fresnel_dielectric(gloss->index, slope.cosine)
-                     : tl_fresnel_conductor(gloss->index, gloss->extinction, slope.cosine);
-    return (struct tl_ward_value){value, schlick ? value * schlick_share(slope.cosine) : 0, slope.towards};
+    return (WardFacets){w->gloss->ward == TL_WARD_BOUNDED,
+                        schlick ? FRESNEL_SCHLICK : w->gloss->fresnel,
+                        w->gloss->index,
+                        w->gloss->extinction,
+                        w->viewer[0][lane],
+                        w->viewer[1][lane],
+                        w->viewer[2][lane]};
 }
 
 /* LobeSet of each lane. */
@@ -73,54 +66,50 @@ TL_INLINE void tl_ward_place(struct tl_ward_lanes *w, bool schlick, int max_coun
             const LobeSet set = {sets.count[i],    sets.first[i],   sets.step[i],
                                  sets.slope_x[i],  sets.slope_y[i], sets.across_x[i],
                                  sets.across_y[i], sets.overlap[i], sets.minimum[i]};
-            float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
-            const SlopeLobe at = slope_lobe(set, (float)k, x, y, z);
-            const struct tl_ward_value lobe =
-                tl_ward_value_of(w->gloss, schlick, x, y, z, at.slope_x, at.slope_y);
-            float share = (float)k < set.count ? at.share : 0;
-            float exponent = slope_exponent(at.variance), axis = 2 * lobe.towards - z;
-            float above = slope_above(axis, exponent);
-            w->exponent[k][i] = exponent;
-            w->plain[k][i] = share * lobe.plain;
-            w->away[k][i] = share * lobe.away;
-            w->local[k][0][i] = 2 * lobe.towards * at.slope_x - x;
-            w->local[k][1][i] = 2 * lobe.towards * at.slope_y - y;
-            w->local[k][2][i] = axis;
-            w->sum[0][i] += above * w->plain[k][i];
-            w->sum[1][i] += above * w->away[k][i];
+            const WardLobe lobe = ward_lobe_of(tl_ward_facets(w, schlick, i), set, (float)k);
+            w->exponent[k][i] = lobe.exponent;
+            w->plain[k][i] = lobe.plain;
+            w->away[k][i] = lobe.away;
+            w->local[k][0][i] = lobe.x;
+            w->local[k][1][i] = lobe.y;
+            w->local[k][2][i] = lobe.z;
+            w->sum[0][i] += lobe.above * lobe.plain;
+            w->sum[1][i] += lobe.above * lobe.away;
         }
 }
+
+/* SlopeQuadrature of each lane. */
+struct tl_quadrature_lanes {
+    float along[2][TL_LANES], across[2][TL_LANES], middle[TL_LANES], half[TL_LANES], all[TL_LANES];
+};
 
 TL_INLINE void tl_ward_albedo(struct tl_ward_lanes *w, bool schlick)
 {
     const float root_half = 0.707106781f;
-    float along[2][TL_LANES], across[2][TL_LANES], middle[TL_LANES], half[TL_LANES], all[TL_LANES];
+    struct tl_quadrature_lanes nodes;
     float shares[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
-        const SlopeQuadrature nodes =
+        const SlopeQuadrature of =
             slope_quadrature(root_half * sqrtf(w->square[0][i]), root_half * sqrtf(w->square[1][i]),
                              w->viewer[0][i], w->viewer[1][i], w->viewer[2][i]);
-        along[0][i] = nodes.along_x, along[1][i] = nodes.along_y;
-        across[0][i] = nodes.across_x, across[1][i] = nodes.across_y;
-        middle[i] = nodes.middle, half[i] = nodes.half_width, all[i] = nodes.share;
+        nodes.along[0][i] = of.along_x, nodes.along[1][i] = of.along_y;
+        nodes.across[0][i] = of.across_x, nodes.across[1][i] = of.across_y;
+        nodes.middle[i] = of.middle, nodes.half[i] = of.half_width, nodes.all[i] = of.share;
         w->albedo[0][i] = w->albedo[1][i] = shares[i] = 0;
     }
     for (int point = 0; point < SLOPE_POINTS; point++)
         for (int i = 0; i < TL_LANES; i++) {
-            float x = w->viewer[0][i], y = w->viewer[1][i], z = w->viewer[2][i];
-            float at = middle[i] + half[i] * slope_points[point], share = slope_weight(point, at);
-            float slope_x = at * along[0][i], slope_y = at * along[1][i];
-            const struct tl_ward_value one =
-                tl_ward_value_of(w->gloss, schlick, x, y, z, slope_x + across[0][i], slope_y + across[1][i]);
-            const struct tl_ward_value other =
-                tl_ward_value_of(w->gloss, schlick, x, y, z, slope_x - across[0][i], slope_y - across[1][i]);
-            shares[i] += share;
-            w->albedo[0][i] += 0.5f * share * (one.plain + other.plain);
-            w->albedo[1][i] += 0.5f * share * (one.away + other.away);
+            const SlopeQuadrature at = {nodes.along[0][i], nodes.along[1][i], nodes.across[0][i],
+                                        nodes.across[1][i], nodes.middle[i],  nodes.half[i],
+                                        nodes.all[i]};
+            const WardValues mean = ward_node(tl_ward_facets(w, schlick, i), at, point);
+            shares[i] += mean.share;
+            w->albedo[0][i] += mean.plain;
+            w->albedo[1][i] += mean.away;
         }
     for (int i = 0; i < TL_LANES; i++) {
-        w->albedo[0][i] *= all[i] / shares[i];
-        w->albedo[1][i] *= all[i] / shares[i];
+        w->albedo[0][i] *= nodes.all[i] / shares[i];
+        w->albedo[1][i] *= nodes.all[i] / shares[i];
     }
 }
 

@@ -2,7 +2,6 @@
 // materials.c.
 #include "surface_terms.glsl"
 #include "models.glsl"
-#include "fuzz_terms.glsl"
 
 struct Part {
     vec4 diffuse;          // colour, glossiness
@@ -136,13 +135,7 @@ vec3 widths_of(Part part, int gloss, vec3 widening, float handedness)
 // Enum tl_fresnel. Threads have Schlick's term.
 int fresnel_kind(Part part, int gloss)
 {
-    return gloss > 0 ? SCHLICK : int(part.table_first.w >> 4);
-}
-
-// The coat's share of the light that fibres leave (render/brdf/material_lobes.c).
-float coat_share(Part part, vec3 smooth_normal, vec3 viewer)
-{
-    return part.optics.z > 0.0 ? part.optics.z * fresnel_dielectric(1.5, clamp(dot(smooth_normal, viewer), 0.0, 1.0)) : 0.0;
+    return gloss > 0 ? FRESNEL_SCHLICK : int(part.table_first.w >> 4);
 }
 
 bool is_bounded(Part part, int gloss)
@@ -150,92 +143,58 @@ bool is_bounded(Part part, int gloss)
     return gloss > 0 || (part.flags.x & IS_BOUNDED) != 0u;
 }
 
-// Reflectance of facets: `plain`, and `away` times Schlick's share. Of threads their colour times 1 - F; by an index what
-// fresnel_by_index multiplies.
-void reflected_of(Part part, Surface surface, int gloss, out vec3 plain, out vec3 away)
+// The reflectance of facets; with an index, the factor on fresnel_by_index.
+FacetReflected reflected_of(Part part, Surface surface, int gloss)
 {
-    plain = surface.f0;
-    away = fresnel_kind(part, gloss) == SCHLICK ? schlick_colour(plain, 0.0) - plain : vec3(0.0);
-    if (gloss > 0) {
-        vec3 colour = clamp(surface.diffuse * part.threads[gloss - 1].rgb, 0.0, 1.0);
-        plain = colour * (1.0 - plain);
-        away = -colour * away;
-    }
+    if (gloss > 0)
+        return thread_reflected(surface.f0, surface.diffuse, part.threads[gloss - 1].rgb);
+    FacetReflected r = facet_reflected(surface.f0);
+    r.away *= fresnel_kind(part, 0) == FRESNEL_SCHLICK ? 1.0 : 0.0;
+    return r;
 }
 
 // A set of lobes that stands for Ward's facets, in the axes of their widths (render/brdf/ward_lanes.h).
 struct WardSet {
     FacetAxes axes;
-    vec3 viewer; // in these
-    bool bounded;
-    int fresnel;
-    vec2 optics;
+    WardFacets facets;
     LobeSet set;
-    float albedo_plain, albedo_away;
+    WardValues albedo;
 };
-
-// A slope's contribution; and times Schlick's share.
-vec2 ward_values(WardSet w, WardSlope slope)
-{
-    return slope.value * fresnel_by_index(w.fresnel, w.optics, min(slope.cosine, 1.0)) * vec2(1.0, schlick_share(slope.cosine));
-}
 
 WardSet ward_set(Part part, int gloss, vec3 widths, vec3 viewer)
 {
     WardSet w;
-    w.bounded = is_bounded(part, gloss);
-    w.fresnel = fresnel_kind(part, gloss);
-    w.optics = part.optics.xy;
     w.axes = facet_axes(widths.x, widths.y, widths.z);
-    w.viewer = vec3(w.axes.cosine * viewer.x + w.axes.sine * viewer.y, w.axes.cosine * viewer.y - w.axes.sine * viewer.x,
-                    max(viewer.z, 1e-6));
-    vec3 v = w.viewer;
+    WardFacets f = WardFacets(is_bounded(part, gloss), fresnel_kind(part, gloss), part.optics.x, part.optics.y,
+                              w.axes.cosine * viewer.x + w.axes.sine * viewer.y,
+                              w.axes.cosine * viewer.y - w.axes.sine * viewer.x, max(viewer.z, 1e-6));
     float weft = 0.707106781 * sqrt(w.axes.square_x), warp = 0.707106781 * sqrt(w.axes.square_y);
-    w.set = lobe_set(weft, warp, v.x, v.y, v.z, 1.0, part.turn.w);
-    SlopeQuadrature nodes = slope_quadrature(weft, warp, v.x, v.y, v.z);
-    float shares = 0.0;
-    vec2 albedo = vec2(0.0);
+    w.facets = f;
+    w.set = lobe_set(weft, warp, f.x, f.y, f.z, 1.0, part.turn.w);
+    SlopeQuadrature nodes = slope_quadrature(weft, warp, f.x, f.y, f.z);
+    w.albedo = WardValues(0.0, 0.0, 0.0);
     for (int i = 0; i < SLOPE_POINTS; i++) {
-        float at = nodes.middle + nodes.half_width * slope_points[i], share = slope_weight(i, at);
-        float x = at * nodes.along_x, y = at * nodes.along_y;
-        WardSlope one = ward_slope(w.bounded, v.x, v.y, v.z, x + nodes.across_x, y + nodes.across_y);
-        WardSlope two = ward_slope(w.bounded, v.x, v.y, v.z, x - nodes.across_x, y - nodes.across_y);
-        shares += share;
-        albedo += 0.5 * share * (ward_values(w, one) + ward_values(w, two));
+        WardValues node = ward_node(f, nodes, i);
+        w.albedo.share += node.share;
+        w.albedo.plain += node.plain;
+        w.albedo.away += node.away;
     }
-    albedo *= nodes.share / shares;
-    w.albedo_plain = albedo.x;
-    w.albedo_away = albedo.y;
+    w.albedo.plain *= nodes.share / w.albedo.share;
+    w.albedo.away *= nodes.share / w.albedo.share;
     return w;
 }
 
-struct WardLobe {
-    vec3 local; // in the frame of the threads
-    float exponent, plain, away, above;
-};
-
-WardLobe ward_lobe_of(WardSet w, float k)
+// The direction of a lobe in the frame of the threads.
+vec3 ward_local(WardSet w, WardLobe lobe)
 {
-    vec3 v = w.viewer;
-    SlopeLobe at = slope_lobe(w.set, k, v.x, v.y, v.z);
-    WardSlope slope = ward_slope(w.bounded, v.x, v.y, v.z, at.slope_x, at.slope_y);
-    WardLobe lobe;
-    lobe.exponent = slope_exponent(at.variance);
-    vec2 values = at.share * ward_values(w, slope);
-    lobe.plain = values.x;
-    lobe.away = values.y;
-    float x = 2.0 * slope.towards * at.slope_x - v.x, y = 2.0 * slope.towards * at.slope_y - v.y;
-    float axis = 2.0 * slope.towards - v.z;
-    lobe.local = vec3(w.axes.cosine * x - w.axes.sine * y, w.axes.cosine * y + w.axes.sine * x, axis);
-    lobe.above = slope_above(axis, lobe.exponent);
-    return lobe;
+    return vec3(w.axes.cosine * lobe.x - w.axes.sine * lobe.y, w.axes.cosine * lobe.y + w.axes.sine * lobe.x, lobe.z);
 }
 
 // The factor by which a set's lobes reflect its albedo.
-vec3 ward_scale(WardSet w, vec3 plain, vec3 away, float sum_plain, float sum_away)
+vec3 ward_scale(WardSet w, FacetReflected r, float sum_plain, float sum_away)
 {
-    vec3 sum = plain * sum_plain + away * sum_away;
-    return (plain * w.albedo_plain + away * w.albedo_away) / max(sum, 1e-20);
+    vec3 sum = r.plain * sum_plain + r.away * sum_away;
+    return (r.plain * w.albedo.plain + r.away * w.albedo.away) / max(sum, 1e-20);
 }
 
 #include "card_table.glsl"

@@ -106,18 +106,17 @@ uint list_lobes(Vertex v, uint gloss, uint lane)
         return uint(v.part.table.z);
     }
     WardSet w = ward_set(v.part, int(gloss), widths_of(v.part, int(gloss), v.surface.widening, v.tangent.w * v.side), f.viewer);
-    vec3 plain, away;
+    FacetReflected r = reflected_of(v.part, v.surface, int(gloss));
     float sum_plain = 0.0, sum_away = 0.0;
-    reflected_of(v.part, v.surface, int(gloss), plain, away);
     uint count = uint(w.set.count), first = gloss * SET_LOBES;
     for (uint k = 0u; k < count; k++) {
-        WardLobe lobe = ward_lobe_of(w, float(k));
+        WardLobe lobe = ward_lobe_of(w.facets, w.set, float(k));
         sum_plain += lobe.above * lobe.plain;
         sum_away += lobe.above * lobe.away;
-        lobe_at[first + k][lane] = vec4(into_environment(f.frame * lobe.local), lobe.exponent);
-        lobe_weight[first + k][lane] = vec4(plain * lobe.plain + away * lobe.away, 0.0);
+        lobe_at[first + k][lane] = vec4(into_environment(f.frame * ward_local(w, lobe)), lobe.exponent);
+        lobe_weight[first + k][lane] = vec4(r.plain * lobe.plain + r.away * lobe.away, 0.0);
     }
-    vec3 scale = ward_scale(w, plain, away, sum_plain, sum_away);
+    vec3 scale = ward_scale(w, r, sum_plain, sum_away);
     for (uint k = 0u; k < count; k++)
         lobe_weight[first + k][lane].rgb *= scale;
     return count;
@@ -155,8 +154,8 @@ void main()
     // The regions.
     bool has_fuzz = (v.part.flags.x & HAS_FUZZ) != 0u;
     vec3 diffuse = vec3(0.0), seen_fibres = vec3(0.0), all_fibres = vec3(0.0);
-    Fibres fibres = fibres_of(v.part, v.normal, v.normal, v.viewer);
-    vec3 axis = into_environment(fibres.axis);
+    vec3 fibres_axis = fuzz_axis(v.part.fuzz_more.x, v.normal, v.normal), axis = into_environment(fibres_axis);
+    float fibres[FUZZ_POWERS], albedo = fuzz_lobes(v.part.fuzz.a, dot(fibres_axis, v.viewer), fibres);
     for (uint group = slice; group < uint(counts.x + 3) / 4u; group += SLICES) {
         uint seen = visible[group * uint(counts.z) + at];
         for (uint k = 0u; k < 4u && (seen != 0u || has_fuzz); k++) {
@@ -166,7 +165,7 @@ void main()
             vec4 r = regions[2u * region], more = regions[2u * region + 1u];
             float inverse = 1.0 / r.w, cosine = dot(r.xyz, normal), open = float(seen >> 8u * k & 255u) * (1.0 / 255.0);
             if (has_fuzz) {
-                float sent = fuzz_lobes_at(fibres.weights, r.w * disc_height(dot(r.xyz, axis) * inverse));
+                float sent = fuzz_lobes_at(fibres, r.w * disc_height(dot(r.xyz, axis) * inverse));
                 float above = v.part.fuzz_more.x > 0.0 ? disc_share(cosine * inverse) : 1.0;
                 all_fibres += more.rgb * sent;
                 seen_fibres += more.rgb * (sent * open * above);
@@ -212,7 +211,6 @@ void main()
     diffuse = diffuse * fetch_map(gain_atlas, DIFFUSE_GAIN, octahedral_place(normal)) + arrives;
     vec3 ratio = share_of(diffuse, exact_diffuse(normal));
     bool has_gloss = (v.part.flags.x & (IS_FACETED | IS_GLOSSY)) != 0u;
-    float albedo = fibres.weights[0] + fibres.weights[1] + fibres.weights[2] + fibres.weights[3];
     ratios[4u * probe] = vec4(ratio, 0.0);
     ratios[4u * probe + 1u] = vec4(has_gloss ? share_of(gloss, all) : ratio, origins[2u * at].w);
     ratios[4u * probe + 2u] = vec4(has_fuzz ? share_of(seen_fibres + arrives * albedo, all_fibres) : ratio, 0.0);

@@ -65,10 +65,9 @@ Place hit_place(Path path, uint triangle, bool back)
 // A place, and what its coat and its fibres take from the rest.
 struct Lobes {
     Seen s;
-    vec3 normal, coat_axis; // on the viewer's side
-    float coat;
-    Fibres fibres;
-    bool has_fuzz, has_facets;
+    vec3 normal; // on the viewer's side
+    MaterialLayers over;
+    bool has_facets;
     int glosses; // lobes that directions are chosen by, beside the hemisphere
 };
 
@@ -77,19 +76,14 @@ Lobes lobes_of_place(Seen s)
     Lobes l;
     l.s = s;
     l.normal = s.side * s.surface.smooth_normal;
-    l.coat_axis = l.normal;
-    l.coat = 0.0;
-    l.has_fuzz = false;
+#ifdef RICH
+    l.over = layers_over(s.part, l.normal, s.surface.shown, s.viewer);
+#else
+    l.over = material_layers(0.0, 1.0, vec3(0.0), 0.5, 0.0, l.normal, l.normal, s.viewer);
+#endif
     l.has_facets = s.is_faceted && s.facets.viewer.z > 0.0;
     l.glosses = l.has_facets ? 1 + int(s.part.flags.w) : !s.is_faceted && (s.part.flags.x & IS_GLOSSY) != 0u ? 1 : 0;
-#ifdef RICH
-    l.has_fuzz = (s.part.flags.x & HAS_FUZZ) != 0u;
-    if (l.has_fuzz)
-        l.fibres = fibres_of(s.part, l.normal, s.surface.shown, s.viewer);
-    l.coat_axis = mirror_direction(l.normal, s.viewer);
-    l.coat = coat_share(s.part, l.normal, s.viewer);
-    l.glosses += l.coat > 0.0 ? 1 : 0;
-#endif
+    l.glosses += l.over.coat > 0.0 ? 1 : 0;
     return l;
 }
 
@@ -99,20 +93,13 @@ vec3 reflected(Lobes l, vec3 d)
     vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI);
     if (l.s.is_faceted ? l.has_facets && dot(d, l.s.facets.frame[2]) > 0.0 : l.glosses > 0)
         f += gloss_under(l.s, d, 0.0);
-#ifdef RICH
-    f *= 1.0 - l.coat;
-    if (l.coat > 0.0)
-        f += l.coat * lobe_cosine(l.s.part.optics.w, dot(d, l.coat_axis));
-    if (l.has_fuzz)
-        f = f * l.fibres.under + l.s.part.fuzz.rgb * fuzz_value(l.s.part.fuzz.a, l.fibres.axis, d, l.s.viewer);
-#endif
-    return f;
+    return material_over(l.over, f, d, l.s.viewer, 0.0);
 }
 
 vec3 emitted(Lobes l)
 {
 #ifdef RICH
-    return l.s.emitted * ((1.0 - l.coat) * (l.has_fuzz ? l.fibres.under : 1.0));
+    return l.s.emitted * l.over.base;
 #else
     return vec3(0.0);
 #endif
@@ -163,7 +150,7 @@ float facet_pdf(Seen s, vec3 squares, vec3 d)
 
 float hemisphere_exponent(Lobes l)
 {
-    return l.has_fuzz ? 0.0 : 1.0; // fibres do not follow the cosine
+    return fuzz_strength(l.over.fuzz) > 0.0 ? 0.0 : 1.0; // fibres do not follow the cosine
 }
 
 // Half of the directions are chosen by the hemisphere, the others by one lobe like the other.
@@ -178,8 +165,8 @@ float direction_pdf(Lobes l, vec3 d)
         sum += facet_pdf(l.s, slopes_of(l.s, k), d);
     if (!l.s.is_faceted && (l.s.part.flags.x & IS_GLOSSY) != 0u)
         sum += lobe_cosine(l.s.exponent, dot(d, l.s.mirror));
-    if (l.coat > 0.0)
-        sum += lobe_cosine(l.s.part.optics.w, dot(d, l.coat_axis));
+    if (l.over.coat > 0.0)
+        sum += lobe_cosine(l.over.coat_exponent, dot(d, l.over.coat_axis));
     return 0.5 * (pdf + sum / float(l.glosses));
 }
 
@@ -188,8 +175,8 @@ vec3 choose_direction(Lobes l, uint choice, vec2 at)
     int lobe = l.glosses == 0 ? -1 : int(choice % uint(2 * l.glosses)) - l.glosses;
     if (lobe < 0)
         return lobe_direction(l.s.surface.shown, hemisphere_exponent(l), at);
-    if (l.coat > 0.0 && lobe == l.glosses - 1)
-        return lobe_direction(l.coat_axis, l.s.part.optics.w, at);
+    if (l.over.coat > 0.0 && lobe == l.glosses - 1)
+        return lobe_direction(l.over.coat_axis, l.over.coat_exponent, at);
     return l.has_facets ? facet_direction(l.s, slopes_of(l.s, lobe), at) : lobe_direction(l.s.mirror, l.s.exponent, at);
 }
 

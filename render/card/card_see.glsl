@@ -85,18 +85,18 @@ vec3 light_of_table(Seen s)
 vec3 light_of_set(Seen s, int gloss)
 {
     WardSet w = ward_set(s.part, gloss, widths_of(s.part, gloss, s.surface.widening, s.tangent.w), s.facets.viewer);
-    vec3 plain, away, light_plain = vec3(0.0), light_away = vec3(0.0);
+    FacetReflected r = reflected_of(s.part, s.surface, gloss);
+    vec3 light_plain = vec3(0.0), light_away = vec3(0.0);
     float sum_plain = 0.0, sum_away = 0.0;
-    reflected_of(s.part, s.surface, gloss, plain, away);
     for (float k = 0.0; k < w.set.count; k++) {
-        WardLobe lobe = ward_lobe_of(w, k);
-        vec3 light = fetch_lobe(lobe_atlas, into_environment(s.facets.frame * lobe.local), log2(lobe.exponent));
+        WardLobe lobe = ward_lobe_of(w.facets, w.set, k);
+        vec3 light = fetch_lobe(lobe_atlas, into_environment(s.facets.frame * ward_local(w, lobe)), log2(lobe.exponent));
         sum_plain += lobe.above * lobe.plain;
         sum_away += lobe.above * lobe.away;
         light_plain += lobe.plain * light;
         light_away += lobe.away * light;
     }
-    return ward_scale(w, plain, away, sum_plain, sum_away) * (plain * light_plain + away * light_away);
+    return ward_scale(w, r, sum_plain, sum_away) * (r.plain * light_plain + r.away * light_away);
 }
 
 // f_r cos of other models than Ward's, for light from a disc (tl_brdf_gloss_under_disc).
@@ -117,13 +117,13 @@ vec3 model_under(Seen s, vec3 d, float radius)
 // ... of Ward's.
 vec3 facets_under(Seen s, int gloss, vec3 d, float radius)
 {
-    vec3 widths = widths_of(s.part, gloss, s.surface.widening, s.tangent.w), sum = d + s.viewer, h = sum * s.facets.frame, plain, away;
-    float wider = radius * radius / 8.0, square = dot(sum, sum);
-    float value = ward_lobe(is_bounded(s.part, gloss), h.x / h.z, h.y / h.z, h.z * h.z * h.z * h.z / (4.0 * square),
-                            dot(s.facets.frame[2], d), s.facets.viewer.z, widths.x + wider, widths.y + wider, widths.z);
-    reflected_of(s.part, s.surface, gloss, plain, away);
-    float cosine = min(0.5 * sqrt(square), 1.0);
-    return value * fresnel_by_index(fresnel_kind(s.part, gloss), s.part.optics.xy, cosine) * (plain + away * schlick_share(cosine));
+    vec3 widths = widths_of(s.part, gloss, s.surface.widening, s.tangent.w), sum = d + s.viewer, h = sum * s.facets.frame;
+    float square = dot(sum, sum), cosine = min(0.5 * sqrt(square), 1.0);
+    FacetReflected r = reflected_of(s.part, s.surface, gloss);
+    float value = ward_under_disc(is_bounded(s.part, gloss), h.x, h.y, h.z, square, dot(s.facets.frame[2], d),
+                                  s.facets.viewer.z, widths.x, widths.y, widths.z, radius);
+    return value * fresnel_by_index(fresnel_kind(s.part, gloss), s.part.optics.x, s.part.optics.y, cosine) *
+           (r.plain + r.away * schlick_share(cosine));
 }
 #endif
 

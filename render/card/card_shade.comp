@@ -54,17 +54,14 @@ vec3 light_of(Seen s, ivec2 pixel)
             ratio += s.p.weights[k] * ratios[4u * triangle_probes[corner + uint(k)]].rgb;
         light += s.part.transmission.rgb * exact_diffuse(into_environment(-s.surface.shown)) * ratio;
     }
-    bool has_fuzz = (s.part.flags.x & HAS_FUZZ) != 0u;
-    vec3 smooth_normal = s.side * s.surface.smooth_normal, sheen = vec3(0.0);
-    Fibres fibres = fibres_of(s.part, smooth_normal, s.surface.shown, s.viewer);
-    if (has_fuzz)
-        sheen = exact_fibres(fibres) * (w.x * ratios[at.x + 2u].rgb + w.y * ratios[at.y + 2u].rgb + w.z * ratios[at.z + 2u].rgb);
-    // A coat levels threads and bumps out.
-    vec3 axis = mirror_direction(smooth_normal, s.viewer), coat = vec3(0.0);
-    float share = coat_share(s.part, smooth_normal, s.viewer);
-    if (share > 0.0)
-        coat = fetch_lobe(lobe_atlas, into_environment(axis), log2(s.part.optics.w)) *
-               (w.x * ratios[at.x + 3u].rgb + w.y * ratios[at.y + 3u].rgb + w.z * ratios[at.z + 3u].rgb);
+    MaterialLayers over = layers_over(s.part, s.side * s.surface.smooth_normal, s.surface.shown, s.viewer);
+    light = (light + s.emitted) * over.base;
+    if (fuzz_strength(over.fuzz) > 0.0)
+        light += over.fuzz * exact_fibres(over, s.viewer) *
+                 (w.x * ratios[at.x + 2u].rgb + w.y * ratios[at.y + 2u].rgb + w.z * ratios[at.z + 2u].rgb);
+    if (over.coat > 0.0)
+        light += over.coat * fetch_lobe(lobe_atlas, into_environment(over.coat_axis), log2(over.coat_exponent)) *
+                 (w.x * ratios[at.x + 3u].rgb + w.y * ratios[at.y + 3u].rgb + w.z * ratios[at.z + 3u].rgb);
 #endif
     vec3 point = point_of(s.p);
     for (int i = 0; i < counts.y; i++) {
@@ -74,26 +71,18 @@ vec3 light_of(Seen s, ivec2 pixel)
 #ifdef RICH
         if ((s.part.flags.x & TRANSMITS) != 0u && facing < 0.0) {
             float through = shown * above_plane(sun, -facing) * max(-dot(sun.towards, s.surface.shown), 0.0) / PI;
-            light += through * sun.power * s.part.transmission.rgb;
+            light += over.base * through * sun.power * s.part.transmission.rgb;
         }
 #endif
         if (!(seen > 0.0))
             continue;
         float cosine = max(dot(sun.towards, s.surface.shown), 0.0);
-        light += seen * sun.power * (s.surface.diffuse * (cosine / PI) + gloss_under(s, sun.towards, sun.radius));
+        vec3 sent = s.surface.diffuse * (cosine / PI) + gloss_under(s, sun.towards, sun.radius);
 #ifdef RICH
-        if (has_fuzz)
-            sheen += seen * sun.power * fuzz_value(s.part.fuzz.a, fibres.axis, sun.towards, s.viewer);
-        if (share > 0.0)
-            coat += seen * sun.power *
-                    lobe_cosine(lobe_broadened_exponent(s.part.optics.w, sun.radius * 0.707106781), dot(sun.towards, axis));
+        sent = material_over(over, sent, sun.towards, s.viewer, sun.radius);
 #endif
+        light += seen * sun.power * sent;
     }
-#ifdef RICH
-    light = (light + s.emitted) * (1.0 - share) + share * coat;
-    if (has_fuzz)
-        light = light * fibres.under + s.part.fuzz.rgb * sheen;
-#endif
     return light;
 }
 #endif

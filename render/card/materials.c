@@ -376,7 +376,6 @@ static void fill_part(const struct tl_shade_materials *materials, const struct t
     tl_card_put(to->sewing_thread, material->construction.thread, 0);
     tl_card_put(to->fuzz, material->fuzz.colour, material->fuzz.roughness);
     to->fuzz_more[0] = material->fuzz.follow;
-    to->fuzz_more[1] = glms_vec3_max(material->fuzz.colour);
     to->flags[0] = flags_of(materials, part, is_ground);
     to->flags[1] = first_triangle;
     to->flags[3] = (uint32_t)material->thread_count;

@@ -49,7 +49,7 @@ struct lobes {
     int count, facets;
     struct tl_fitted_lobe items[TL_MATERIAL_LOBES_MAX];
     bool has_fuzz;
-    struct tl_fuzz_lobes fibres; /* of fuzz */
+    float fibres[FUZZ_POWERS]; /* weights of the lobes of fuzz */
 };
 
 /* Values that a block of samples shares. */
@@ -313,10 +313,10 @@ static void split_material_lobes(const struct block *block, const tl_material *m
     lobes->count = tl_material_lobes_fit(&lobes->of, request->params->lobes, lobes->items, &lobes->facets);
     lobes->has_fuzz = tl_material_has_fuzz(material);
     if (lobes->has_fuzz)
-        lobes->fibres =
-            tl_fuzz_lobes_of(&material->fuzz, glms_vec3_dot(lobes->of.fuzz_axis, lobes->of.viewer));
-    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->of.base);
-    sample->specular = glms_vec3_scale(sample->specular, lobes->of.base);
+        fuzz_lobes(material->fuzz.roughness, glms_vec3_dot(lobes->of.over.fuzz_axis, lobes->of.viewer),
+                   lobes->fibres);
+    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->of.over.base);
+    sample->specular = glms_vec3_scale(sample->specular, lobes->of.over.base);
 }
 
 /* Suns shine on facets themselves, on a coat as on any lobe, and on fibres. */
@@ -344,8 +344,8 @@ TL_INLINE void see_fibres(const struct block *block, size_t index, const struct 
     const struct tl_compose_request *request = block->request;
     const struct tl_region_lights *lights = request->lights;
     float seen_lanes[3][TL_LANES] = {0}, all_lanes[3][TL_LANES] = {0};
-    const bool is_leaning = lobes->of.fuzz.follow > 0; /* then what lies below the surface is not seen */
-    const vec3s n = lobes->of.fuzz_axis;
+    const bool is_leaning = lobes->of.over.follow > 0; /* then what lies below the surface is not seen */
+    const vec3s n = lobes->of.over.fuzz_axis;
     for (int g = 0; g < lights->group_count; g++) {
         const struct tl_region_group *group = &lights->groups[g];
         if (glms_vec3_dot(group->axis, n) < -group->reach_sine)
@@ -355,7 +355,7 @@ TL_INLINE void see_fibres(const struct block *block, size_t index, const struct 
         for (int lane = 0; lane < TL_LANES; lane++) {
             float cosine = group->x[lane] * n.x + group->y[lane] * n.y + group->z[lane] * n.z;
             float mean = group->sine[lane] * disc_height(cosine * group->inverse_sine[lane]);
-            open[lane] = fuzz_lobes_at(lobes->fibres.weights, mean);
+            open[lane] = fuzz_lobes_at(lobes->fibres, mean);
             visible[lane] = open[lane] * visibility[lane];
         }
         for (int lane = 0; is_leaning && lane < TL_LANES; lane++) {
@@ -444,8 +444,8 @@ static vec3s exact_fibres(const struct block *block, const struct lobes *lobes)
     vec3s light = {{0, 0, 0}};
     for (int k = 0; k < FUZZ_POWERS; k++) {
         const struct tl_exponent_blend power = {.index = TL_FUZZ_INDEX(k)};
-        vec3s arriving = tl_lobes_fetch(block->request->lobes, lobes->of.fuzz_axis, power);
-        light = glms_vec3_add(light, glms_vec3_scale(arriving, lobes->fibres.weights[k]));
+        vec3s arriving = tl_lobes_fetch(block->request->lobes, lobes->of.over.fuzz_axis, power);
+        light = glms_vec3_add(light, glms_vec3_scale(arriving, lobes->fibres[k]));
     }
     return glms_vec3_maxv(light, glms_vec3_zero());
 }
@@ -455,7 +455,7 @@ static vec3s fibres_bounced(const struct lobes *lobes, const struct tl_bounced *
 {
     float albedo = 0;
     for (int k = 0; k < FUZZ_POWERS; k++)
-        albedo += lobes->fibres.weights[k];
+        albedo += lobes->fibres[k];
     return glms_vec3_scale(bounced->arrives, albedo);
 }
 
@@ -476,7 +476,7 @@ TL_INLINE vec3s light_of_fibres(const struct block *block, size_t index, const s
     light = glms_vec3_add(light, fibres_bounced(lobes, bounced));
     if (by_occlusion)
         light = glms_vec3_mul(light, share_of(two->shadowed[DIFFUSE], two->unshadowed[DIFFUSE]));
-    return glms_vec3_mul(light, lobes->of.fuzz.colour);
+    return glms_vec3_mul(light, lobes->of.over.fuzz);
 }
 
 /* The material of a sample that has more than two lobes, or NULL. Mirrors show the two, and so do the other

@@ -62,7 +62,7 @@ static vec3s emitted(const struct tl_lamp_samples_request *request, const struct
         uv = glms_vec2_add(uv, glms_vec2_scale(surface->uvs[corners[i]], lit->sample->weights[i]));
     vec3s colour = tl_map_colour_at(&lit->material->emission_map, uv);
     return glms_vec3_scale(glms_vec3_mul(lit->material->emission, colour),
-                           lit->has_two ? 1 : lit->lobes.base);
+                           lit->has_two ? 1 : lit->lobes.over.base);
 }
 
 static vec3s light_of_sample(const struct tl_lamp_samples_request *request, size_t index)

@@ -318,8 +318,8 @@ vec3 under_coat(vec3 light, vec3 l, vec3 n)
 {
 #ifdef COAT
     vec3 v = direction_or(eye - point, n);
-    float cosine = max(dot(n, v), 0.0), reflected = lamp_layers.x * fresnel_dielectric(COAT_INDEX, cosine);
-    vec3 axis = direction_or(2.0 * cosine * n - v, n), across = cross(axis, l);
+    float reflected = coat_share(lamp_layers.x, dot(n, v));
+    vec3 axis = mirror_direction(n, v), across = cross(axis, l);
     float lobe = exact_power(dot(axis, l), dot(across, across), lamp_layers.y);
     light *= 1.0 - reflected;
     light += reflected * self_shadow(dot(n, l)) * (lamp_layers.y + 1.0) / (2.0 * PI) * lobe;
@@ -346,8 +346,7 @@ vec3 under_fuzz(vec3 light, vec3 l, float side, vec3 smooth_normal)
 {
 #ifdef FUZZ
     vec3 n = fibre_axis(side, smooth_normal), v = direction_or(eye - point, n);
-    float facing = clamp(dot(n, v), 0.0, 1.0);
-    light *= 1.0 - fuzz_albedo(facing, lamp_fuzz.w) * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
+    light *= fuzz_under(lamp_fuzz.rgb, lamp_fuzz.w, dot(n, v));
     light += self_shadow(side * dot(smooth_normal, l)) * fuzz_value(lamp_fuzz.w, n, l, v) * lamp_fuzz.rgb;
 #endif
     return light;
@@ -393,12 +392,11 @@ void main()
 #elif defined(EMISSION)
 #ifdef COAT
     vec3 n = side * smooth_normal;
-    sent *= 1.0 - lamp_layers.x * fresnel_dielectric(COAT_INDEX, max(dot(n, direction_or(eye - point, n)), 0.0));
+    sent *= 1.0 - coat_share(lamp_layers.x, dot(n, direction_or(eye - point, n)));
 #endif
 #ifdef FUZZ
     vec3 up = fibre_axis(side, smooth_normal);
-    float facing = clamp(dot(up, direction_or(eye - point, up)), 0.0, 1.0);
-    sent *= 1.0 - fuzz_albedo(facing, lamp_fuzz.w) * max(max(lamp_fuzz.x, lamp_fuzz.y), lamp_fuzz.z);
+    sent *= fuzz_under(lamp_fuzz.rgb, lamp_fuzz.w, dot(up, direction_or(eye - point, up)));
 #endif
     out_light = vec4(texelFetch(seen_point, texel, 0).w * lamp_layers.z * sent, 0.0);
 #else

@@ -4,7 +4,6 @@
 #include "power.glsl"
 
 const int PHONG = 0, BLINN_PHONG = 1, COSINE_LOBE = 2, TORRANCE_SPARROW = 3, WARD = 4, BANKS = 5;
-const int SCHLICK = 0, DIELECTRIC = 1, CONDUCTOR = 2;
 
 // Cosines of the vectors of shading. The squared sines keep their digits near a peak, where cosines do not.
 struct Cosines {
@@ -43,30 +42,11 @@ Cosines cosines_of(Frame frame, vec3 l, vec3 v, vec3 h)
     return c;
 }
 
-float fresnel_conductor(float n, float k, float cosine)
-{
-    float c = cosine, s2 = 1.0 - c * c, real = n * n - k * k - s2;
-    if (k == 0.0)
-        return fresnel_dielectric(n, c);
-    float size = sqrt(real * real + 4.0 * n * n * k * k), p = sqrt(max(0.5 * (size + real), 0.0));
-    float across = (size - 2.0 * p * c + c * c) / max(size + 2.0 * p * c + c * c, 1e-12);
-    float along = (c * c * size - 2.0 * p * c * s2 + s2 * s2) / max(c * c * size + 2.0 * p * c * s2 + s2 * s2, 1e-12);
-    return clamp(0.5 * across * (1.0 + along), 0.0, 1.0);
-}
-
-// The factor of Fresnel's equations on F0; 1: Schlick's term has no such.
-float fresnel_by_index(int kind, vec2 optics, float cosine)
-{
-    if (kind == DIELECTRIC)
-        return fresnel_dielectric(optics.x, cosine);
-    return kind == CONDUCTOR ? fresnel_conductor(optics.x, optics.y, cosine) : 1.0;
-}
-
 // The Fresnel term. PHONG and BANKS take it at the cosine of the viewer, as the G-buffer does. `optics`: index, extinction.
 vec3 fresnel_of(int model, int kind, vec2 optics, vec3 f0, Cosines c)
 {
     float cosine = clamp(model == PHONG || model == BANKS ? c.b : c.t, 0.0, 1.0);
-    return kind == SCHLICK ? schlick_colour(f0, cosine) : f0 * fresnel_by_index(kind, optics, cosine);
+    return kind == FRESNEL_SCHLICK ? schlick_colour(f0, cosine) : f0 * fresnel_by_index(kind, optics.x, optics.y, cosine);
 }
 
 // The cosine of l with the nearest mirror direction of a thread, and its squared sine.

@@ -154,9 +154,9 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
     const struct tl_material_lobes *lobes = &gather->points->layers[i].lobes;
     float count = (float)gather->request->lobe_samples;
     vec3s share = {{0, 0, 0}};
-    if (lobes->coat > 0) {
-        float lobe = tl_lobe_value(lobes->coat_exponent, off_axis(lobes->coat_axis, direction));
-        float coat = lobes->coat * lobe / (sample_pdf + count * lobe);
+    if (lobes->over.coat > 0) {
+        float lobe = tl_lobe_value(lobes->over.coat_exponent, off_axis(lobes->over.coat_axis, direction));
+        float coat = lobes->over.coat * lobe / (sample_pdf + count * lobe);
         share = (vec3s){{coat, coat, coat}};
     }
     if (lobes->is_faceted) {
@@ -165,13 +165,13 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
             const struct tl_brdf *brdf = &lobes->gloss.items[k];
             vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
             float pdf = tl_brdf_pdf(brdf, &lobes->frame, direction, viewer);
-            share = glms_vec3_add(share, glms_vec3_scale(gloss, lobes->base / (sample_pdf + count * pdf)));
+            share = glms_vec3_add(share, glms_vec3_scale(gloss, lobes->over.base / (sample_pdf + count * pdf)));
         }
     }
-    if (glms_vec3_max(lobes->fuzz.colour) > 0) { /* broad: the environment's samples are enough */
+    if (fuzz_strength(lobes->over.fuzz) > 0) { /* broad: the environment's samples are enough */
         float fibres =
-            fuzz_value(lobes->fuzz.roughness, lobes->fuzz_axis, direction, gather->points->viewer[i]);
-        share = glms_vec3_add(share, glms_vec3_scale(lobes->fuzz.colour, fibres / sample_pdf));
+            fuzz_value(lobes->over.roughness, lobes->over.fuzz_axis, direction, gather->points->viewer[i]);
+        share = glms_vec3_add(share, glms_vec3_scale(lobes->over.fuzz, fibres / sample_pdf));
     }
     return share;
 }
@@ -284,18 +284,18 @@ static void gather_coats(struct gather *gather, int sample)
     begin_batch(&batch, false);
     for (int i = 0; i < gather->points->count; i++) {
         const struct tl_material_lobes *lobes = &gather->points->layers[i].lobes;
-        if (!gather->points->layered[i] || !(lobes->coat > 0))
+        if (!gather->points->layered[i] || !(lobes->over.coat > 0))
             continue;
         float off;
         vec2s numbers = lobe_numbers(gather, i, sample);
-        vec3s direction = tl_lobe_sample(lobes->coat_axis, lobes->coat_exponent, (double)numbers.x,
+        vec3s direction = tl_lobe_sample(lobes->over.coat_axis, lobes->over.coat_exponent, (double)numbers.x,
                                          (double)numbers.y, &off);
-        float lobe = tl_lobe_value(lobes->coat_exponent, off);
+        float lobe = tl_lobe_value(lobes->over.coat_exponent, off);
         if (!(glms_vec3_dot(tl_shading_lane(gather->points->horizon, i), direction) > 0) || !(lobe > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
         float share =
-            lobes->coat * lobe / ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
+            lobes->over.coat * lobe / ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
         vec3s light = finite_product(sky.radiance, (vec3s){{share, share, share}});
         if (!is_dark(light))
             add_ray(&batch, gather, i, direction, light);
@@ -323,7 +323,7 @@ static void gather_facets(struct gather *gather, int sample, int lobe)
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
         vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
         float sample_pdf = (float)request->strata * sky.pdf + (float)request->lobe_samples * pdf;
-        vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, lobes->base / sample_pdf));
+        vec3s light = finite_product(sky.radiance, glms_vec3_scale(gloss, lobes->over.base / sample_pdf));
         if (!is_dark(light))
             add_ray(&batch, gather, i, direction, light);
     }

@@ -163,10 +163,10 @@ static void follow_transmitted(struct paths *paths, int i, int sample)
 static void follow_coat(struct paths *paths, int i, int sample)
 {
     const struct tl_material_lobes *lobes = &paths->points->layers[i].lobes;
-    float off, weight = lobes->coat / (float)paths->samples;
+    float off, weight = lobes->over.coat / (float)paths->samples;
     double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
     if (weight > 0)
-        follow_above(paths, i, tl_lobe_sample(lobes->coat_axis, lobes->coat_exponent, height, turn, &off),
+        follow_above(paths, i, tl_lobe_sample(lobes->over.coat_axis, lobes->over.coat_exponent, height, turn, &off),
                      (vec3s){{weight, weight, weight}});
 }
 
@@ -185,7 +185,7 @@ static void follow_facets(struct paths *paths, int i, int sample, int lobe)
     if (!(pdf > 0))
         return;
     vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
-    follow_above(paths, i, direction, glms_vec3_scale(gloss, lobes->base / pdf / (float)paths->samples));
+    follow_above(paths, i, direction, glms_vec3_scale(gloss, lobes->over.base / pdf / (float)paths->samples));
 }
 
 /* Directions are uniform above the smooth surface, because fuzz does not follow the cosine. */
@@ -194,12 +194,12 @@ static void follow_fuzz(struct paths *paths, int i, int sample)
     const struct tl_material_lobes *lobes = &paths->points->layers[i].lobes;
     float off;
     double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
-    if (!(glms_vec3_max(lobes->fuzz.colour) > 0))
+    if (!(fuzz_strength(lobes->over.fuzz) > 0))
         return;
-    vec3s direction = tl_lobe_sample(lobes->fuzz_axis, 0, height, turn, &off);
-    float fibres = fuzz_value(lobes->fuzz.roughness, lobes->fuzz_axis, direction, paths->points->viewer[i]);
+    vec3s direction = tl_lobe_sample(lobes->over.fuzz_axis, 0, height, turn, &off);
+    float fibres = fuzz_value(lobes->over.roughness, lobes->over.fuzz_axis, direction, paths->points->viewer[i]);
     follow_above(paths, i, direction,
-                 glms_vec3_scale(lobes->fuzz.colour, fibres * 2 * (float)M_PI / (float)paths->samples));
+                 glms_vec3_scale(lobes->over.fuzz, fibres * 2 * (float)M_PI / (float)paths->samples));
 }
 
 static void follow_paths(struct paths *paths, int i, int sample)

@@ -228,7 +228,7 @@ static void set_layers(const struct sample_place *place, vec3s smooth, struct tl
     result->layered = true;
     layers->openness = material->openness;
     layers->lobes = tl_material_lobes_of(&sample);
-    const float base = layers->lobes.base;
+    const float base = layers->lobes.over.base;
     result->diffuse = glms_vec3_scale(result->diffuse, base);
     result->glossy = glms_vec3_scale(result->glossy, layers->lobes.is_faceted ? 0 : base);
     result->emission = glms_vec3_scale(result->emission, base);

@@ -23,7 +23,7 @@ struct tl_ray_differential {
 struct tl_ray_differential tl_camera_ray(const struct tl_view *view, int columns, int rows, int x, int y);
 
 /* The parts of a material beyond two lobes. The colours of those in tl_shading_point are already multiplied
- * by `lobes.base`. */
+ * by `lobes.over.base`. */
 struct tl_shading_layers {
     float openness;    /* fraction that is seen straight through */
     vec3s transmitted; /* kt: diffuse transmission of light from the other side: K_1(-normal, w) */

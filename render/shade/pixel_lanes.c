@@ -124,14 +124,6 @@ struct gloss_lanes {
     float thread_square[TL_THREADS_MAX][3][TL_LANES]; /* ... of each system of threads */
 };
 
-TL_INLINE tl_quad schlick(tl_quad f0, float share)
-{
-    tl_quad reflectance = f0;
-    for (int c = 0; c < 3; c++)
-        reflectance[c] = schlick_reflectance(f0[c], share);
-    return reflectance;
-}
-
 /* The frame of tl_brdf_frame_make, with the sine and cosine of the rotation at hand. */
 TL_INLINE struct tl_brdf_frame frame_of(const struct tl_shade_part *part, vec3s n, vec3s t, float handedness,
                                         float side)
@@ -168,25 +160,27 @@ TL_INLINE void find_frames(const struct tl_pixel_lanes *lanes, struct gloss_lane
     }
 }
 
-/* Schlick's two summands of what a lobe reflects: `plain`, and `away` times (1 - t)^5. */
+/* FacetReflected as quads. */
 struct reflected {
     tl_quad plain, away;
 };
 
-TL_INLINE struct reflected of_surface(const struct tl_look_lanes *look, int lane)
+TL_INLINE vec3s vector_of(tl_quad v)
 {
-    return (struct reflected){look->f0[lane], schlick(look->f0[lane], 1) - look->f0[lane]};
+    return (vec3s){{v[0], v[1], v[2]}};
 }
 
-/* The colour of threads times 1 - F (tl_brdf_sum_of). */
-TL_INLINE struct reflected of_thread(const struct tl_look_lanes *look, int thread, int lane)
+/* `thread` < 0: of the surface. */
+TL_INLINE struct reflected reflected_of(const struct tl_look_lanes *look, int thread, int lane)
 {
-    const tl_quad one = {1, 1, 1, 1}, zero = {0, 0, 0, 0};
-    tl_quad colour = look->diffuse[lane] * tl_pixel_quad(look->part->material->threads[thread].ratio);
-    for (int c = 0; c < 3; c++)
-        colour[c] = tl_minf(tl_maxf(colour[c], zero[c]), one[c]);
-    const struct reflected f = of_surface(look, lane);
-    return (struct reflected){colour * (one - f.plain), zero - colour * f.away};
+    const tl_material *material = look->part->material;
+    const vec3s f0 = vector_of(look->f0[lane]);
+    const FacetReflected f = thread < 0 ? facet_reflected(f0)
+                                        : thread_reflected(f0, vector_of(look->diffuse[lane]),
+                                                           material->threads[thread].ratio);
+    const tl_quad none = {0, 0, 0, 0};
+    const bool by_index = thread < 0 && material->gloss.fresnel != TL_FRESNEL_SCHLICK;
+    return (struct reflected){tl_pixel_quad(f.plain), by_index ? none : tl_pixel_quad(f.away)};
 }
 
 /* The lobes of a set. */
@@ -259,7 +253,7 @@ TL_INLINE void fit_ward(const struct tl_pixel_lanes *lanes, const struct gloss_l
             lobes->log_exponent[k][i] = tl_log2(ward.exponent[k][i]);
         }
     for (int i = 0; i < look->count; i++) {
-        const struct reflected f = thread < 0 ? of_surface(look, i) : of_thread(look, thread, i);
+        const struct reflected f = reflected_of(look, thread, i);
         const tl_quad scale = divide_or_zero(f.plain * ward.albedo[0][i] + f.away * ward.albedo[1][i],
                                              f.plain * ward.sum[0][i] + f.away * ward.sum[1][i]);
         for (int k = 0; k < ward.count; k++)
@@ -319,12 +313,11 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
     const struct tl_look_lanes *look = &lanes->look;
     struct blend_lanes blends;
     struct pair_lanes pair;
-    float shares[TL_LANES], log_exponents[TL_LANES];
+    float cosines[TL_LANES], log_exponents[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(look->shown, i), viewer = tl_lane_vector(look->viewer, i);
-        float cosine = glms_vec3_dot(normal, viewer);
+        cosines[i] = glms_vec3_dot(normal, viewer);
         tl_lane_store(gloss->mirror, i, mirror_direction(normal, viewer));
-        shares[i] = schlick_share(cosine);
         gloss->exponent[i] = lobe_exponent(look->glossiness[i]);
         log_exponents[i] = tl_log2(gloss->exponent[i]);
     }
@@ -332,7 +325,7 @@ TL_INLINE void add_lobe(const struct tl_pixel_scene *scene, const struct tl_pixe
     for (int i = 0; i < TL_LANES; i++)
         place_pair(&blends, i, tl_pixel_turned(scene, tl_lane_vector(gloss->mirror, i)), &pair);
     for (int i = 0; i < look->count; i++) {
-        gloss->reflectance[i] = schlick(look->f0[i], shares[i]);
+        gloss->reflectance[i] = tl_pixel_quad(schlick_colour(vector_of(look->f0[i]), cosines[i]));
         light[i] += gloss->reflectance[i] * fetch_pair(&blends, i, &pair) * lanes->glossy_ratio[i];
     }
 }
@@ -348,24 +341,22 @@ static bool is_plain_ward(const struct tl_gloss *model)
 TL_INLINE void add_ward(const struct tl_pixel_lanes *lanes, const struct gloss_lanes *gloss, int thread,
                         const struct tl_sun *sun, const float towards[3][TL_LANES], tl_quad lit[TL_LANES])
 {
-    const float wider = sun->radius * sun->radius / 8;
     const float(*square_of)[TL_LANES] = thread < 0 ? gloss->square : gloss->thread_square[thread];
     const bool is_bounded = thread >= 0 || lanes->look.part->material->gloss.ward == TL_WARD_BOUNDED;
     float lobe[TL_LANES], share[TL_LANES];
     for (int i = 0; i < TL_LANES; i++) {
         vec3s normal = tl_lane_vector(gloss->normal, i), direction = tl_lane_vector(towards, i);
         vec3s sum = glms_vec3_add(direction, tl_lane_vector(lanes->look.viewer, i));
-        float cos_a = glms_vec3_dot(normal, direction), cos_b = gloss->viewer[2][i];
-        float x = glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
-              y = glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum), z = glms_vec3_dot(normal, sum);
-        const float square = glms_vec3_dot(sum, sum), over = 1 / z; /* 4 cos^2 t */
-        lobe[i] = ward_lobe(is_bounded, x * over, y * over, z * z * z * z / (4 * square), cos_a, cos_b,
-                            square_of[0][i] + wider, square_of[1][i] + wider, square_of[2][i]);
+        const float square = glms_vec3_dot(sum, sum);
+        lobe[i] = ward_under_disc(is_bounded, glms_vec3_dot(tl_lane_vector(gloss->tangent, i), sum),
+                                  glms_vec3_dot(tl_lane_vector(gloss->bitangent, i), sum),
+                                  glms_vec3_dot(normal, sum), square, glms_vec3_dot(normal, direction),
+                                  gloss->viewer[2][i], square_of[0][i], square_of[1][i], square_of[2][i],
+                                  sun->radius);
         share[i] = schlick_share(0.5f * sqrtf(square));
     }
     for (int i = 0; i < lanes->look.count; i++) {
-        const struct reflected f =
-            thread < 0 ? of_surface(&lanes->look, i) : of_thread(&lanes->look, thread, i);
+        const struct reflected f = reflected_of(&lanes->look, thread, i);
         lit[i] += lobe[i] * (f.plain + f.away * share[i]);
     }
 }
@@ -498,14 +489,15 @@ TL_INLINE void add_fuzz(const struct tl_pixel_scene *scene, const struct tl_pixe
     for (int i = 0; i < TL_LANES; i++) {
         const vec3s smooth = glms_vec3_scale(tl_lane_vector(look->smooth, i), look->side[i]);
         const vec3s n = fuzz_axis(fuzz->follow, smooth, tl_lane_vector(look->shown, i));
-        const struct tl_fuzz_lobes lobes =
-            tl_fuzz_lobes_of(fuzz, glms_vec3_dot(n, tl_lane_vector(look->viewer, i)));
+        const float facing = glms_vec3_dot(n, tl_lane_vector(look->viewer, i));
+        float lobes[FUZZ_POWERS];
+        fuzz_lobes(fuzz->roughness, facing, lobes);
         const vec3s d = tl_pixel_turned(scene, n);
         const vec2s place = octahedral_place(d);
         tl_lane_store(normal, i, n);
-        under[i] = lobes.under;
+        under[i] = fuzz_under(fuzz->colour, fuzz->roughness, facing);
         for (int k = 0; k < FUZZ_POWERS; k++) {
-            weights[k][i] = lobes.weights[k];
+            weights[k][i] = lobes[k];
             place_fetch(&fetch[k], i, maps[(size_t)TL_FUZZ_INDEX(k)].side, place);
         }
     }

@@ -2,7 +2,7 @@
 // Column: the number of a term; row: a trial.
 #include "bounced_terms.glsl"
 #include "facets_terms.glsl"
-#include "fuzz_terms.glsl"
+#include "layers_terms.glsl"
 #include "ground.glsl"
 #include "lobes_terms.glsl"
 #include "normalise_terms.glsl"

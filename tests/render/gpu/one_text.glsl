@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 85
+#define ONE_TEXT_NUMBERS 95
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -87,6 +87,33 @@ TERM float one_text(int number, uint trial)
                : number == 48 ? fresnel_dielectric(0.5f + 2.0f * e.x, max(cosine, 0.0f))
                               : min(ward_lobe(d.y < 0.5f, a.x, a.y - 0.5f, 0.1f + b.y, b.x - 0.1f, z, weft * weft,
                                               warp * warp, 0.5f * weft * warp), 100.0f);
+    // The reflectance of facets, and the lobes that stand for them.
+    WardFacets facets;
+    facets.is_bounded = d.y < 0.5f;
+    facets.fresnel = int(3.0f * a.x);
+    facets.index = 0.5f + 2.0f * b.x;
+    facets.extinction = 3.0f * b.y;
+    facets.x = x;
+    facets.y = y;
+    facets.z = z;
+    WardValues node = ward_node(facets, nodes, int(5.0f * e.y));
+    WardLobe ward = ward_lobe_of(facets, set, 1.0f);
+    FacetReflected thread_light = thread_reflected(vec3(0.1f * a.x, a.y, 0.04f), vec3(b.x, b.y, 1.0f), vec3(0.5f, 1.5f, c.x));
+    MaterialLayers over = material_layers(a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x, b.x - 0.2f, n, v,
+                                          direction_or(vec3(d.x, d.y, e.y), n));
+    if (number > 92)
+        return number == 93 ? over.base + over.coat
+                            : min(material_over(over, v, direction_or(vec3(c.x, c.y, e.y), n), v, 0.1f * b.y).z, 10.0f);
+    if (number > 84)
+        return number == 85   ? coat_share(a.x - 0.1f, cosine)
+               : number == 86 ? fresnel_by_index(facets.fresnel, facets.index, facets.extinction, max(cosine, 0.0f))
+               : number == 87 ? min(node.plain, 10.0f)
+               : number == 88 ? min(node.away, 10.0f) + node.share
+               : number == 89 ? ward.x + ward.y + ward.z
+               : number == 90 ? min(ward.plain + ward.away, 10.0f)
+               : number == 91 ? thread_light.plain.x + thread_light.away.y
+                              : min(ward_under_disc(d.y < 0.5f, a.x, a.y - 0.5f, 0.5f + b.x, 1.0f + c.x, b.y, z,
+                                                    weft * weft, warp * warp, 0.0f, 0.2f * c.y), 100.0f);
     // Bumps and the surface that they bend.
     int minify = int(3.0f * c.x);
     Bumps mean = bumps_of_moments(a.x - 0.5f, a.y - 0.5f, 0.3f + 0.2f * b.x, 0.3f + 0.2f * b.y, 0.1f * c.x, d.x, d.y);

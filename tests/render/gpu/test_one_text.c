@@ -2,8 +2,7 @@
  * leaves to a driver. Its powers of two and logarithms may err by some units of the last place, its sines by
  * 2^-11 [OpenGL 4.5, GLSL 4.7.1]; differences grow where a term subtracts. */
 #include "render/bounce/bounced.h"
-#include "render/brdf/facets.h"
-#include "render/brdf/fuzz.h"
+#include "render/brdf/material_lobes.h"
 #include "render/brdf/normalise.h"
 #include "render/env/lobes_fetch.h"
 #include "render/gpu/gpu.h"
