@@ -10,31 +10,6 @@
 /* Lobes that stand for the gloss of what a ray hits. */
 #define HIT_LOBES 3
 
-/* ---- Directions ---- */
-
-/* The pdf of directions about a normal, half of them by the cosine and half even: gloss towards the horizon
- * needs rays there. */
-static float spread_pdf(float cosine)
-{
-    return (cosine + 0.5f) / (2 * (float)M_PI);
-}
-
-/* A direction by that pdf, fixed to the surface by its tangent. */
-static vec3s spread_direction(vec3s normal, vec3s tangent, vec2s at)
-{
-    vec3s along = glms_vec3_sub(tangent, glms_vec3_scale(normal, glms_vec3_dot(normal, tangent)));
-    if (!(glms_vec3_norm2(along) > 1e-6f))
-        along = glms_vec3_cross(normal, fabsf(normal.x) < 0.6f ? (vec3s){{1, 0, 0}} : (vec3s){{0, 1, 0}});
-    along = glms_vec3_normalize(along);
-    vec3s across = glms_vec3_cross(normal, along);
-    float cosine = fmaxf(sqrtf(0.25f + 2 * (1 - at.x)) - 0.5f, 1e-2f);
-    float radius = sqrtf(1 - cosine * cosine), angle = 2 * (float)M_PI * at.y;
-    vec3s direction = glms_vec3_scale(normal, cosine);
-    direction = glms_vec3_add(direction, glms_vec3_scale(along, radius * cosf(angle)));
-    direction = glms_vec3_add(direction, glms_vec3_scale(across, radius * sinf(angle)));
-    return glms_vec3_normalize(direction);
-}
-
 /* World direction -> direction in the environment. */
 static vec3s into_environment(const struct tl_bounce_request *request, vec3s direction)
 {
@@ -55,11 +30,11 @@ struct gathered {
     vec3s open, all; /* of the sky, by the cosine */
 };
 
-/* Adds light of a direction that was chosen by spread_pdf. */
+/* Adds light of a direction that was chosen by bounce_pdf. */
 TL_INLINE void count_hit(struct tl_bounced *sum, const struct bounce_ray *ray, vec3s light)
 {
     float basis[TL_BOUNCED_TERMS];
-    const float angle = 1 / spread_pdf(ray->cosine);
+    const float angle = 1 / bounce_pdf(ray->cosine);
     bounced_basis(ray->direction, basis);
     sum->arrives = glms_vec3_muladds(light, ray->cosine * angle / (float)M_PI, sum->arrives);
     for (int c = 0; c < 3; c++)
@@ -74,7 +49,7 @@ static void count_sky(const struct tl_bounce *bounce, const struct tl_bounce_req
 {
     float basis[TL_BOUNCED_TERMS], pdf;
     vec3s sky = tl_bounce_sky_colour(&bounce->sky, into_environment(request, direction), &pdf);
-    sky = glms_vec3_divs(sky, TL_BOUNCE_RAYS * spread_pdf(cosine) + TL_BOUNCE_SKY_RAYS * pdf);
+    sky = glms_vec3_divs(sky, TL_BOUNCE_RAYS * bounce_pdf(cosine) + TL_BOUNCE_SKY_RAYS * pdf);
     sums->all = glms_vec3_muladds(sky, cosine, sums->all);
     sums->open = glms_vec3_muladds(sky, cosine * share, sums->open);
     const float luminance = tl_luminance(sky.raw);
@@ -381,10 +356,9 @@ TL_CLONES void tl_bounce_trace(struct tl_bounce *bounce, const struct tl_bounce_
     const uint32_t round = adds ? bounce->states[at] - TL_BOUNCE_FIRST + 1 : 0;
     struct gathered sums = {0};
     for (uint32_t k = 0; k < TL_BOUNCE_RAYS; k++) {
-        struct bounce_ray ray = {
-            .origin = origin,
-            .direction =
-                spread_direction(normal, tangent, spread_place((uint32_t)at, round * TL_BOUNCE_RAYS + k))};
+        const vec2s number = spread_place((uint32_t)at, round * TL_BOUNCE_RAYS + k);
+        struct bounce_ray ray = {.origin = origin,
+                                 .direction = bounce_direction(normal, tangent, number.x, number.y)};
         ray.cosine = glms_vec3_dot(normal, ray.direction);
         follow_ray(bounce, request, &ray, &sums);
     }

@@ -8,6 +8,9 @@
 // which for even light is the share of the lobe above the horizon. In these bands the hemisphere of n is
 // 1/2 + 3/4 P_1 - 7/16 P_3 of d.n, and K_s keeps 1, (s + 1) / (s + 2), s / (s + 3) and
 // (s + 1) (s - 1) / (s + 2) (s + 4) of them [Ramamoorthi and Hanrahan 2001].
+#ifdef GL_core_profile
+#include "vectors.glsl"
+#endif
 #ifndef TERM
 #define TERM
 #endif
@@ -69,4 +72,25 @@ TERM BouncedShares bounced_lobe(vec3 normal, vec3 direction, float exponent, out
     shares.even = max(shares.even, BOUNCED_MIN_EVEN);
     shares.above = share_above(cosine, s * BOUNCED_BLUR / (s + BOUNCED_BLUR));
     return shares;
+}
+
+// The pdf of directions of rays about a normal, half of them by the cosine and half even: gloss towards the horizon needs
+// rays there.
+TERM float bounce_pdf(float cosine)
+{
+    return (cosine + 0.5f) / 6.28318531f;
+}
+
+// A direction by that pdf, fixed to the surface by its tangent; (x, y): even in the unit square.
+TERM vec3 bounce_direction(vec3 normal, vec3 tangent, float x, float y)
+{
+    vec3 along = vec3_subtract(tangent, vec3_scale(normal, dot(normal, tangent)));
+    if (!(dot(along, along) > 1e-6f))
+        along = cross(normal, abs(normal.x) < 0.6f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f));
+    along = direction_or(along, along);
+    float cosine = max(sqrt(0.25f + 2.0f * (1.0f - x)) - 0.5f, 1e-2f);
+    float radius = sqrt(1.0f - cosine * cosine), angle = 6.28318531f * y;
+    vec3 d = vec3_add(vec3_scale(normal, cosine), vec3_scale(along, radius * cos(angle)));
+    d = vec3_add(d, vec3_scale(cross(normal, along), radius * sin(angle)));
+    return direction_or(d, normal);
 }

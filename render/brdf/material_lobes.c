@@ -51,8 +51,9 @@ int tl_material_lobes_fit(const struct tl_material_lobes *lobes, int max_count,
         items[k].weight = glms_vec3_scale(items[k].weight, lobes->over.base);
     *facets = count;
     if (lobes->over.coat > 0)
-        items[count++] = (struct tl_fitted_lobe){
-            lobes->over.coat_axis, lobes->over.coat_exponent, {{lobes->over.coat, lobes->over.coat, lobes->over.coat}}};
+        items[count++] = (struct tl_fitted_lobe){lobes->over.coat_axis,
+                                                 lobes->over.coat_exponent,
+                                                 {{lobes->over.coat, lobes->over.coat, lobes->over.coat}}};
     return count;
 }
 

@@ -1,7 +1,8 @@
 /* The light that a material sends to a viewer, as lobes over one another: fibres, over a clear coat, over
- * gloss and diffuse colour (layers_terms.glsl). The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase [Heidrich and Seidel
- * 1999, 4.4]. The two lobes of every material, K_1 about the normal and K_s about the mirror direction, are
- * not listed: their owner multiplies them by `over.base`, and has only the first where `is_faceted`.
+ * gloss and diffuse colour (layers_terms.glsl). The coat is a film of index 1.5, Lo = F Lm + (1 - F) Lbase
+ * [Heidrich and Seidel 1999, 4.4]. The two lobes of every material, K_1 about the normal and K_s about the
+ * mirror direction, are not listed: their owner multiplies them by `over.base`, and has only the first where
+ * `is_faceted`.
  *
  * Directions are unit, all in one space, whichever. Errors: none. Pure; threads: any. */
 #ifndef TOILE_RENDER_BRDF_MATERIAL_LOBES_H

@@ -99,8 +99,8 @@ TL_INLINE void tl_ward_albedo(struct tl_ward_lanes *w, bool schlick)
     }
     for (int point = 0; point < SLOPE_POINTS; point++)
         for (int i = 0; i < TL_LANES; i++) {
-            const SlopeQuadrature at = {nodes.along[0][i], nodes.along[1][i], nodes.across[0][i],
-                                        nodes.across[1][i], nodes.middle[i],  nodes.half[i],
+            const SlopeQuadrature at = {nodes.along[0][i],  nodes.along[1][i], nodes.across[0][i],
+                                        nodes.across[1][i], nodes.middle[i],   nodes.half[i],
                                         nodes.all[i]};
             const WardValues mean = ward_node(tl_ward_facets(w, schlick, i), at, point);
             shares[i] += mean.share;

@@ -10,7 +10,7 @@
 #include "card_lobes.glsl"
 #include "bounced_terms.glsl"
 #include "spread_terms.glsl"
-#include "card_cube.glsl"
+#include "directions_terms.glsl"
 layout(local_size_x = 64) in;
 layout(std430, binding = CARD_TANGENTS) restrict readonly buffer Tangents
 {
@@ -63,23 +63,6 @@ shared vec3 light_of[64], way_of[64], open_of[64], all_of[64], sun_of[64];
 shared float cosine_of[64];
 shared uint known_of[64];
 
-// ---- Directions ----
-
-float spread_pdf(float cosine)
-{
-    return (cosine + 0.5) / (2.0 * PI);
-}
-
-vec3 spread_direction(vec3 n, vec3 t, vec2 at)
-{
-    vec3 along = t - n * dot(n, t);
-    if (!(dot(along, along) > 1e-6))
-        along = cross(n, abs(n.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0));
-    along = normalize(along);
-    float cosine = max(sqrt(0.25 + 2.0 * (1.0 - at.x)) - 0.5, 1e-2), radius = sqrt(1.0 - cosine * cosine), angle = 2.0 * PI * at.y;
-    return normalize(n * cosine + along * (radius * cos(angle)) + cross(n, along) * (radius * sin(angle)));
-}
-
 // ---- The sky (render/bounce/bounce_sky.c) ----
 
 float sky_sum(int i)
@@ -92,7 +75,7 @@ vec3 weighted_sky(vec3 d, float cosine)
 {
     vec3 colour = sky[cube_texel(d, SKY_SIZE)].rgb;
     float pdf = dot(colour, vec3(0.2126, 0.7152, 0.0722)) / max(sky_sum(SKY_COUNT), 1e-20);
-    return colour * (cosine / (float(RAYS) * spread_pdf(cosine) + float(SKY_RAYS) * pdf));
+    return colour * (cosine / (float(RAYS) * bounce_pdf(cosine) + float(SKY_RAYS) * pdf));
 }
 
 bool sky_sample(vec2 at, out vec3 d)
@@ -146,7 +129,7 @@ Arrival follow(vec3 o, vec3 d, float cosine)
                    hit.v * sent[triangle_probes[side + 2u]];
         bool is_known = sum.w > 0.1;
         found.is_known = found.is_known && is_known;
-        found.light += is_known ? found.open * (1.0 - share) * sum.rgb / (sum.w * spread_pdf(cosine)) : vec3(0.0);
+        found.light += is_known ? found.open * (1.0 - share) * sum.rgb / (sum.w * bounce_pdf(cosine)) : vec3(0.0);
         found.open *= share;
         from = hit.distance + eye.w;
     }
@@ -154,7 +137,7 @@ Arrival follow(vec3 o, vec3 d, float cosine)
         vec3 point = o + d * to;
         float cover = ground_opacity(disc, point.x, point.z);
         if (cover > 0.0)
-            found.light += sent_by_ground(point) * (found.open * cover / spread_pdf(cosine));
+            found.light += sent_by_ground(point) * (found.open * cover / bounce_pdf(cosine));
         found.open *= 1.0 - cover;
     }
     return found;
@@ -168,7 +151,8 @@ void trace(uint at, uint vertex, uint ray, vec3 n, vec3 o)
     cosine_of[thread] = 1.0;
     known_of[thread] = 0u;
     if (ray < RAYS) {
-        d = spread_direction(n, tangents[vertex].xyz, spread_place(at, ray));
+        vec2 place = spread_place(at, ray);
+        d = bounce_direction(n, tangents[vertex].xyz, place.x, place.y);
         float cosine = dot(n, d);
         Arrival found = follow(o, d, cosine);
         vec3 sky_light = weighted_sky(into_environment(d), cosine);

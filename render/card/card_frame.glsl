@@ -4,7 +4,7 @@
 #include "lobes_terms.glsl"
 #include "terms.glsl"
 #include "ground.glsl"
-#include "lamp_at.glsl"
+#include "lamp_terms.glsl"
 layout(std140, binding = 0) uniform FrameValues
 {
     mat4 view_projection;

@@ -6,7 +6,6 @@
 #define TREE_BINDING CARD_NODES
 #include "trace.glsl"
 #include "spread_terms.glsl"
-#include "card_cube.glsl"
 #include "card_sky.glsl"
 #include "card_see.glsl"
 #include "card_fuzz.glsl"

@@ -25,12 +25,6 @@ layout(std430, binding = CARD_RATIOS) restrict readonly buffer Ratios
 layout(binding = 6) uniform sampler2DArray sun_seen;
 #include "card_fuzz.glsl"
 
-// The share of a light above the plane of the smooth normal, on the side to which `facing` is its cosine.
-float above_plane(Sun sun, float facing)
-{
-    return sun.is_lamp ? self_shadow_ramp(facing) : disc_share(facing / max(sun.radius, 1e-3));
-}
-
 // The light that the pixel sends to the viewer.
 vec3 light_of(Seen s, ivec2 pixel)
 {
@@ -67,10 +61,10 @@ vec3 light_of(Seen s, ivec2 pixel)
     for (int i = 0; i < counts.y; i++) {
         Sun sun = sun_at(i, point, s.surface.shown);
         float facing = s.side * dot(sun.towards, s.surface.smooth_normal);
-        float shown = texelFetch(sun_seen, ivec3(pixel, i), 0).r, seen = shown * above_plane(sun, facing);
+        float shown = texelFetch(sun_seen, ivec3(pixel, i), 0).r, seen = shown * light_above(sun.is_lamp, sun.radius, facing);
 #ifdef RICH
         if ((s.part.flags.x & TRANSMITS) != 0u && facing < 0.0) {
-            float through = shown * above_plane(sun, -facing) * max(-dot(sun.towards, s.surface.shown), 0.0) / PI;
+            float through = shown * light_above(sun.is_lamp, sun.radius, -facing) * max(-dot(sun.towards, s.surface.shown), 0.0) / PI;
             light += over.base * through * sun.power * s.part.transmission.rgb;
         }
 #endif

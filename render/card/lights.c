@@ -1,6 +1,7 @@
 #include "render/card/card_internal.h"
 
 #include "config/base/memory.h"
+#include "render/shade/pixel_lights.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -62,10 +63,9 @@ static void send_lobes(tl_graphics_card *card, const struct tl_card_light *reque
 
 static bool send_blends(tl_graphics_card *card, tl_error *error)
 {
-    enum { STEPS = 64, OCTAVES = 10 }; /* as render/shade/pixel_lanes.c */
-    float blends[STEPS * OCTAVES + 2][2] = {{0}};
-    for (int i = 0; i <= STEPS * OCTAVES; i++) {
-        const struct tl_exponent_blend blend = tl_exponent_blend(exp2f((float)i / STEPS));
+    float blends[LOBE_BLENDS + 1][2] = {{0}}; /* an even number */
+    for (int i = 0; i < LOBE_BLENDS; i++) {
+        const struct tl_exponent_blend blend = tl_exponent_blend(exp2f((float)i / LOBE_BLEND_STEPS));
         blends[i][0] = (float)blend.index;
         blends[i][1] = blend.weight;
     }
@@ -108,34 +108,30 @@ static int farthest_sample(const struct tl_sun *sun, const int *order, int befor
     return best;
 }
 
-static void place_suns(tl_graphics_card *card, const struct tl_suns *suns, float yaw)
+/* Suns, then lamps. */
+static void place_lights(tl_graphics_card *card, const struct tl_card_light *request)
 {
     struct tl_card_frame *frame = &card->frame;
-    for (int s = 0; s < suns->count; s++) {
-        const struct tl_sun *sun = &suns->items[s];
+    struct tl_pixel_lights lights;
+    tl_pixel_lights_make(request->suns, request->environment_yaw, request->lamps, request->lamp_count,
+                         &lights);
+    frame->counts[1] = lights.count;
+    for (int i = 0; i < lights.count; i++) {
+        const struct tl_sun *sun = &lights.items[i].sun;
+        const struct tl_lamp *lamp = &lights.items[i].lamp;
+        const bool is_near = lamp->kind == TL_LAMP_POINT;
+        tl_card_put(frame->suns[i], is_near ? lamp->position : sun->direction,
+                    lamp->kind == TL_LAMP_NONE ? sun->radius : -1);
+        tl_card_put(frame->sun_powers[i], sun->power, is_near);
+        if (lamp->kind != TL_LAMP_NONE)
+            continue;
         const int places = sun->sample_count < 9 ? sun->sample_count : 9;
         int order[9];
         for (int k = 0; k < places; k++)
             order[k] = farthest_sample(sun, order, k);
-        for (int k = 0; k < TL_CARD_PLACES; k++) {
-            const vec3s at = places > 0 ? sun->samples[order[k % places]] : sun->direction;
-            tl_card_put(frame->sun_places[s][k], tl_turn_direction(at, yaw), 0);
-        }
-        tl_card_put(frame->suns[s], tl_turn_direction(sun->direction, yaw), sun->radius);
-        tl_card_put(frame->sun_powers[s], sun->power, 0);
-    }
-}
-
-/* After the suns. */
-static void place_lamps(tl_graphics_card *card, const struct tl_card_light *request)
-{
-    struct tl_card_frame *frame = &card->frame;
-    for (size_t i = 0; i < request->lamp_count; i++) {
-        const struct tl_lamp *lamp = &request->lamps[i];
-        const bool is_point = lamp->kind == TL_LAMP_POINT;
-        const int place = frame->counts[1]++;
-        tl_card_put(frame->suns[place], is_point ? lamp->position : lamp->direction, -1);
-        tl_card_put(frame->sun_powers[place], lamp->irradiance, is_point);
+        for (int k = 0; k < TL_CARD_PLACES; k++)
+            tl_card_put(frame->sun_places[i][k],
+                        places > 0 ? sun->samples[order[k % places]] : sun->direction, 0);
     }
 }
 
@@ -154,9 +150,7 @@ bool tl_card_send_light(tl_graphics_card *card, const struct tl_card_light *requ
     frame->turn[0] = cosf(request->environment_yaw);
     frame->turn[1] = sinf(request->environment_yaw);
     frame->counts[0] = count;
-    frame->counts[1] = request->suns->count;
-    place_suns(card, request->suns, request->environment_yaw);
-    place_lamps(card, request);
+    place_lights(card, request);
     return true;
 }
 

@@ -1,6 +1,7 @@
 #include "render/env/cube.h"
 
 #include "config/base/memory.h"
+#include "render/env/exponent.h"
 
 #include <assert.h>
 #include <math.h>
@@ -37,40 +38,19 @@ bool tl_cube_is_black(const tl_cube *cube)
 
 vec3s tl_cube_direction(int face, float s, float t)
 {
-    float u = 2 * s - 1, v = 2 * t - 1;
-    switch (face) {
-    case 0:
-        return (vec3s){{1, -v, -u}};
-    case 1:
-        return (vec3s){{-1, -v, u}};
-    case 2:
-        return (vec3s){{u, 1, v}};
-    case 3:
-        return (vec3s){{u, -1, -v}};
-    case 4:
-        return (vec3s){{u, -v, 1}};
-    default:
-        assert(face == 5);
-        return (vec3s){{-u, -v, -1}};
-    }
+    return cube_direction(face, s, t);
 }
 
 void tl_cube_project(int face, vec3s direction, float *s, float *t)
 {
-    float x = direction.x, y = direction.y, z = direction.z;
-    const float sc[6] = {-z, z, x, x, x, -x}, tc[6] = {-y, -y, z, -z, -y, -y};
-    float major = fabsf(direction.raw[face / 2]);
-    if (major <= 0) /* the zero vector maps to the centre of the face */
-        major = 1;
-    *s = 0.5f * (sc[face] / major + 1);
-    *t = 0.5f * (tc[face] / major + 1);
+    const vec2s place = cube_place(face, direction);
+    *s = place.x;
+    *t = place.y;
 }
 
 void tl_cube_locate(vec3s direction, int *face, float *s, float *t)
 {
-    float ax = fabsf(direction.x), ay = fabsf(direction.y), az = fabsf(direction.z);
-    int axis = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
-    *face = 2 * axis + (direction.raw[axis] < 0);
+    *face = cube_face(direction);
     tl_cube_project(*face, direction, s, t);
 }
 
@@ -90,8 +70,7 @@ double tl_cube_rectangle_solid_angle(double s0, double t0, double s1, double t1)
 
 vec3s tl_turn_direction(vec3s direction, float yaw)
 {
-    float c = cosf(yaw), s = sinf(yaw);
-    return (vec3s){{c * direction.x + s * direction.z, direction.y, -s * direction.x + c * direction.z}};
+    return turned_direction(cosf(yaw), -sinf(yaw), direction);
 }
 
 float tl_cube_solid_angle(int size, int x, int y)
@@ -115,18 +94,9 @@ void tl_cube_solid_angles(int size, float *out)
     }
 }
 
-static int clamp_index(int value, int count)
-{
-    return value < 0 ? 0 : value >= count ? count - 1 : value;
-}
-
 int tl_cube_texel(int size, vec3s direction)
 {
-    int face;
-    float s, t;
-    tl_cube_locate(direction, &face, &s, &t);
-    int x = clamp_index((int)(s * (float)size), size), y = clamp_index((int)(t * (float)size), size);
-    return (face * size + y) * size + x;
+    return cube_texel(direction, size);
 }
 
 vec3s tl_cube_texel_direction(int size, int texel)

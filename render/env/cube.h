@@ -4,9 +4,13 @@
 #ifndef TOILE_RENDER_ENV_CUBE_H
 #define TOILE_RENDER_ENV_CUBE_H
 
-#include <cglm/struct.h>
+#include "render/gpu/vectors.h"
 
-#include <stdbool.h>
+#include "render/gpu/terms_begin.h"
+
+#include "render/env/directions_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 typedef struct tl_cube {
     int size;      /* texels per face side */

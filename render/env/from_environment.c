@@ -21,8 +21,9 @@ static tl_cube environment_as_cube(const tl_environment *environment)
 
 void tl_environment_place(vec3s direction, float *u, float *v)
 {
-    *u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
-    *v = acosf(fminf(fmaxf(direction.y, -1), 1)) / (float)M_PI;
+    const vec2s place = latlong_place(direction);
+    *u = place.x;
+    *v = place.y;
 }
 
 static int floor_of(float value)
@@ -75,11 +76,9 @@ vec3s tl_environment_texel(const tl_environment *environment, vec3s direction)
     if (environment->layout == TL_ENV_CUBE) {
         index = (size_t)tl_cube_texel(image->width, direction);
     } else {
-        float u = 0.5f + atan2f(direction.x, -direction.z) / (float)(2 * M_PI);
-        float v = acosf(fminf(fmaxf(direction.y, -1), 1)) / (float)M_PI;
-        int column = clamp_index((int)(u * (float)image->width), image->width),
-            row = clamp_index((int)(v * (float)image->height), image->height);
-        index = (size_t)row * (size_t)image->width + (size_t)column;
+        const vec2s at = latlong_place(direction);
+        index = (size_t)texel_within(at.y, image->height) * (size_t)image->width +
+                (size_t)texel_within(at.x, image->width);
     }
     const float *texel = tl_image_floats(image) + 3 * index;
     return (vec3s){{texel[0], texel[1], texel[2]}};

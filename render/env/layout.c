@@ -39,13 +39,13 @@ static void to_disc(const struct disc *disc, double x, double y, double point[2]
     point[1] = 1 - y / disc->radius;
 }
 
-static vec3s latlong_direction(const struct tl_sphere_map *map, double x, double y)
+static vec3s direction_on_latlong(const struct tl_sphere_map *map, double x, double y)
 {
     double phi = 2 * M_PI * (x / map->width - 0.5), theta = M_PI * y / map->height;
     return (vec3s){{(float)(sin(theta) * sin(phi)), (float)cos(theta), (float)(-sin(theta) * cos(phi))}};
 }
 
-static vec3s cube_direction(const struct tl_sphere_map *map, double x, double y)
+static vec3s direction_on_cube(const struct tl_sphere_map *map, double x, double y)
 {
     int face = (int)fmin(y / map->width, 5);
     return glms_vec3_normalize(
@@ -87,11 +87,11 @@ static vec3s octahedral_direction(const struct tl_sphere_map *map, double x, dou
 vec3s tl_layout_direction(const struct tl_sphere_map *map, double x, double y)
 {
     if (map->layout == TL_LAYOUT_LATLONG)
-        return latlong_direction(map, x, y);
+        return direction_on_latlong(map, x, y);
     if (map->layout == TL_LAYOUT_OCTAHEDRAL)
         return octahedral_direction(map, x, y);
     if (map->layout == TL_LAYOUT_CUBE)
-        return cube_direction(map, x, y);
+        return direction_on_cube(map, x, y);
     struct disc disc = disc_at(map, x);
     double point[2];
     to_disc(&disc, x, y, point);

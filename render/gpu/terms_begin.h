@@ -14,8 +14,10 @@
 #define TERM        TL_INLINE
 #define TERM_TABLE  static const
 #define abs         fabsf
+#define acos        acosf
 #define asin        asinf
 #define atan        atanf
+#define atan2       atan2f
 #define clamp       term_clamp
 #define cos         cosf
 #define exp         expf

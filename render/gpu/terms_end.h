@@ -2,8 +2,10 @@
 #undef TERM
 #undef TERM_TABLE
 #undef abs
+#undef acos
 #undef asin
 #undef atan
+#undef atan2
 #undef clamp
 #undef cos
 #undef exp

@@ -165,7 +165,7 @@ static void add_suns(const struct block *block, size_t index, const struct frame
     for (int i = 0; i < request->suns->count; i++) {
         const struct tl_sun *sun = &request->suns->items[i];
         const float *visibility = request->sun_visibility[i];
-        float above = disc_share(glms_vec3_dot(sun->direction, frame->smooth) / fmaxf(sun->radius, 1e-3f));
+        float above = light_above(false, sun->radius, glms_vec3_dot(sun->direction, frame->smooth));
         /* The mean square angle of a disc is half its radius squared. */
         float exponent = lobe_broadened_exponent(frame->exponent, sun->radius * GLM_SQRT1_2f);
         float lobes[2] = {lobe_cosine(1, glms_vec3_dot(sun->direction, frame->normal)),
@@ -330,7 +330,7 @@ static vec3s sun_on_lobes(const struct block *block, size_t index, const struct 
         const float *visibility = request->sun_visibility[i];
         const vec3s facets = tl_material_facets(&lobes->of, sun->direction, sun->radius);
         const vec3s sent = tl_material_over(&lobes->of, facets, sun->direction, sun->radius);
-        float above = disc_share(glms_vec3_dot(sun->direction, smooth) / fmaxf(sun->radius, 1e-3f));
+        float above = light_above(false, sun->radius, glms_vec3_dot(sun->direction, smooth));
         float seen = shadowed && visibility ? above * visibility[index] : 1;
         light = glms_vec3_add(light, glms_vec3_scale(glms_vec3_mul(sun->power, sent), seen));
     }

@@ -51,3 +51,9 @@ TERM float self_shadow_ramp(float cosine)
 {
     return clamp(32.0f * cosine, 0.0f, 1.0f);
 }
+
+// The share of a light above the plane of a surface's smooth normal: of a sun's disc, of this angular radius, or of a lamp.
+TERM float light_above(bool is_lamp, float radius, float cosine)
+{
+    return is_lamp ? self_shadow_ramp(cosine) : disc_share(cosine / max(radius, 1e-3f));
+}

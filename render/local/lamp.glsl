@@ -1,5 +1,5 @@
 // The current lamp, and the cosines at a point that it lights.
-#include "lamp_at.glsl"
+#include "lamp_terms.glsl"
 #include "models.glsl"
 
 layout(location = 64) uniform mat4 view_projection;

@@ -4,9 +4,10 @@
 //
 // One of ON_GREY, ON_BLURRED, ON_LATLONG, ON_CUBE and AS_IT_IS is defined: software GL carries out both sides of a branch.
 // SAME_SIZE: the screen has as many pixels as the image.
+#include "directions_terms.glsl"
+#include "lobes_terms.glsl"
 #include "tone.glsl"
 
-const float PI = 3.14159265358979;
 
 layout(location = 0) uniform vec3 exposure; // factors of red, green and blue
 layout(location = 1) uniform vec2 environment_turn; // cosine and sine of the environment's yaw
@@ -30,12 +31,9 @@ vec3 behind()
     return vec3(SHOWN_GREY);
 #else
     vec3 world = view * vec3(2.0 * uv - 1.0, 1.0);
-    vec3 d = vec3(environment_turn.x * world.x - environment_turn.y * world.z, world.y,
-                  environment_turn.y * world.x + environment_turn.x * world.z);
+    vec3 d = turned_direction(environment_turn.x, environment_turn.y, world);
 #if defined(ON_LATLONG)
-    d = normalize(d);
-    vec2 place = vec2(0.5 + atan(d.x, -d.z) / (2.0 * PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
-    return exposure * textureLod(backdrop, place, 0.0).rgb;
+    return exposure * textureLod(backdrop, latlong_place(normalize(d)), 0.0).rgb;
 #else
     return exposure * textureLod(backdrop, d, 0.0).rgb;
 #endif

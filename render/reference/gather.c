@@ -165,7 +165,8 @@ static vec3s layered_share(const struct gather *gather, int i, vec3s direction, 
             const struct tl_brdf *brdf = &lobes->gloss.items[k];
             vec3s gloss = tl_brdf_gloss(brdf, &lobes->frame, direction, viewer);
             float pdf = tl_brdf_pdf(brdf, &lobes->frame, direction, viewer);
-            share = glms_vec3_add(share, glms_vec3_scale(gloss, lobes->over.base / (sample_pdf + count * pdf)));
+            share =
+                glms_vec3_add(share, glms_vec3_scale(gloss, lobes->over.base / (sample_pdf + count * pdf)));
         }
     }
     if (fuzz_strength(lobes->over.fuzz) > 0) { /* broad: the environment's samples are enough */
@@ -294,8 +295,8 @@ static void gather_coats(struct gather *gather, int sample)
         if (!(glms_vec3_dot(tl_shading_lane(gather->points->horizon, i), direction) > 0) || !(lobe > 0))
             continue;
         struct tl_sky_sample sky = tl_sky_lookup(&gather->scene->sky, direction);
-        float share =
-            lobes->over.coat * lobe / ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
+        float share = lobes->over.coat * lobe /
+                      ((float)request->strata * sky.pdf + (float)request->lobe_samples * lobe);
         vec3s light = finite_product(sky.radiance, (vec3s){{share, share, share}});
         if (!is_dark(light))
             add_ray(&batch, gather, i, direction, light);

@@ -166,7 +166,8 @@ static void follow_coat(struct paths *paths, int i, int sample)
     float off, weight = lobes->over.coat / (float)paths->samples;
     double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
     if (weight > 0)
-        follow_above(paths, i, tl_lobe_sample(lobes->over.coat_axis, lobes->over.coat_exponent, height, turn, &off),
+        follow_above(paths, i,
+                     tl_lobe_sample(lobes->over.coat_axis, lobes->over.coat_exponent, height, turn, &off),
                      (vec3s){{weight, weight, weight}});
 }
 
@@ -197,7 +198,8 @@ static void follow_fuzz(struct paths *paths, int i, int sample)
     if (!(fuzz_strength(lobes->over.fuzz) > 0))
         return;
     vec3s direction = tl_lobe_sample(lobes->over.fuzz_axis, 0, height, turn, &off);
-    float fibres = fuzz_value(lobes->over.roughness, lobes->over.fuzz_axis, direction, paths->points->viewer[i]);
+    float fibres =
+        fuzz_value(lobes->over.roughness, lobes->over.fuzz_axis, direction, paths->points->viewer[i]);
     follow_above(paths, i, direction,
                  glms_vec3_scale(lobes->over.fuzz, fibres * 2 * (float)M_PI / (float)paths->samples));
 }

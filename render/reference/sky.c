@@ -1,6 +1,7 @@
 #include "render/reference/sky.h"
 
 #include "config/base/memory.h"
+#include "render/env/exponent.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -146,25 +147,13 @@ void tl_sky_release(struct tl_sky *sky)
     *sky = (struct tl_sky){0};
 }
 
-static vec3s into_world(const struct tl_sky *sky, vec3s d)
-{
-    float c = sky->turn_cos, s = sky->turn_sin;
-    return (vec3s){{c * d.x + s * d.z, d.y, -s * d.x + c * d.z}};
-}
-
-static vec3s from_world(const struct tl_sky *sky, vec3s d)
-{
-    float c = sky->turn_cos, s = sky->turn_sin;
-    return (vec3s){{c * d.x - s * d.z, d.y, s * d.x + c * d.z}};
-}
-
 /* The pdf at a point of a cube face. An area dA of the face at distance 1 subtends dA / |p|^3 [area of a
  * face: 4], so uniform sampling of the texel in the plane is not uniform in solid angle. */
 static double cube_pdf(const struct tl_sky *sky, size_t texel, vec3s on_face)
 {
-    double size = sky->environment->image.width, square = (double)glms_vec3_norm2(on_face);
-    double area = 4 / (size * size);
-    return pdf_of(sky, texel) * solid_angle_of(sky, texel) / area * square * sqrt(square);
+    const double size = sky->environment->image.width, area = 4 / (size * size);
+    const float square = glms_vec3_norm2(on_face);
+    return pdf_of(sky, texel) * solid_angle_of(sky, texel) / area * (double)cube_stretch(square);
 }
 
 static struct tl_sky_sample sample_of(const struct tl_sky *sky, size_t texel, vec3s world, double pdf)
@@ -179,31 +168,19 @@ static struct tl_sky_sample sample_cube(const struct tl_sky *sky, size_t texel, 
     double s = ((double)(texel % size) + x) / (double)size;
     double t = ((double)(texel / size % size) + y) / (double)size;
     vec3s on_face = tl_cube_direction((int)(texel / size / size), (float)s, (float)t);
-    return sample_of(sky, texel, into_world(sky, glms_vec3_normalize(on_face)),
+    return sample_of(sky, texel,
+                     turned_direction(sky->turn_cos, -sky->turn_sin, glms_vec3_normalize(on_face)),
                      cube_pdf(sky, texel, on_face));
 }
 
 static struct tl_sky_sample sample_latlong(const struct tl_sky *sky, size_t texel, double x, double y)
 {
     const tl_image *image = &sky->environment->image;
-    size_t row = texel / (size_t)image->width;
-    double upper = cos(M_PI * (double)row / image->height);
-    double lower = cos(M_PI * (double)(row + 1) / image->height);
-    double height = upper + (lower - upper) * y, radius = sqrt(fmax(1 - height * height, 0));
-    double phi = 2 * M_PI * (((double)(texel % (size_t)image->width) + x) / image->width - 0.5);
-    vec3s direction = {{(float)(radius * sin(phi)), (float)height, (float)(-radius * cos(phi))}};
-    return sample_of(sky, texel, into_world(sky, direction), pdf_of(sky, texel));
-}
-
-/* Every second bit, starting with the lowest, as a number in (0, 1). */
-static double every_second_bit(uint32_t bits)
-{
-    bits &= 0x55555555;
-    bits = (bits | bits >> 1) & 0x33333333;
-    bits = (bits | bits >> 2) & 0x0f0f0f0f;
-    bits = (bits | bits >> 4) & 0x00ff00ff;
-    bits = (bits | bits >> 8) & 0x0000ffff;
-    return (bits + 0.5) / 65536;
+    const size_t width = (size_t)image->width;
+    const vec3s direction = latlong_direction((float)(((double)(texel % width) + x) / image->width),
+                                              (int)(texel / width), image->height, (float)y);
+    return sample_of(sky, texel, turned_direction(sky->turn_cos, -sky->turn_sin, direction),
+                     pdf_of(sky, texel));
 }
 
 struct tl_sky_sample tl_sky_sample_at(const struct tl_sky *sky, double share)
@@ -222,33 +199,23 @@ struct tl_sky_sample tl_sky_sample_at(const struct tl_sky *sky, double share)
      * stratified, too. */
     double left = (share - sky->before[low]) / (sky->before[low + 1] - sky->before[low]);
     uint32_t bits = (uint32_t)fmin(fmax(left, 0) * 0x1p32, 0x1p32 - 1);
-    double x = every_second_bit(bits), y = every_second_bit(bits >> 1);
+    const double x = (double)every_second_bit(bits), y = (double)every_second_bit(bits >> 1);
     size_t texel = sky->order[low];
     return is_cube(sky) ? sample_cube(sky, texel, x, y) : sample_latlong(sky, texel, x, y);
-}
-
-static size_t index_within(float share, int count)
-{
-    int index = (int)(share * (float)count);
-    return (size_t)(index < 0 ? 0 : index >= count ? count - 1 : index);
 }
 
 struct tl_sky_sample tl_sky_lookup(const struct tl_sky *sky, vec3s direction)
 {
     const tl_image *image = &sky->environment->image;
-    vec3s d = from_world(sky, direction);
-    size_t width = (size_t)image->width;
+    const vec3s d = turned_direction(sky->turn_cos, sky->turn_sin, direction);
     if (is_cube(sky)) {
-        int face;
-        float s, t;
-        tl_cube_locate(d, &face, &s, &t);
-        size_t row = (size_t)face * width + index_within(t, image->width);
-        size_t texel = row * width + index_within(s, image->width);
-        float major = fmaxf(fabsf(d.x), fmaxf(fabsf(d.y), fabsf(d.z)));
-        return sample_of(sky, texel, direction, cube_pdf(sky, texel, glms_vec3_divs(d, major)));
+        const int texel = cube_texel(d, image->width);
+        const float major = fmaxf(fabsf(d.x), fmaxf(fabsf(d.y), fabsf(d.z)));
+        return sample_of(sky, (size_t)texel, direction,
+                         cube_pdf(sky, (size_t)texel, glms_vec3_divs(d, major)));
     }
-    float u = 0.5f + atan2f(d.x, -d.z) / (float)(2 * M_PI);
-    float v = acosf(fminf(fmaxf(d.y, -1), 1)) / (float)M_PI;
-    size_t texel = index_within(v, image->height) * width + index_within(u, image->width);
+    const vec2s place = latlong_place(d);
+    const size_t texel = (size_t)texel_within(place.y, image->height) * (size_t)image->width +
+                         (size_t)texel_within(place.x, image->width);
     return sample_of(sky, texel, direction, pdf_of(sky, texel));
 }

@@ -3,6 +3,13 @@
 #define TOILE_RENDER_SCENE_LAMP_H
 
 #include "assets/base/surface.h"
+#include "render/gpu/vectors.h"
+
+#include "render/gpu/terms_begin.h"
+
+#include "render/scene/lamp_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 /* A light that is no part of the environment. Its irradiance on a surface that faces it is `irradiance`, at
  * every distance if it is directional, and at 1 m, falling with the square of the distance, if it is a point.
@@ -17,8 +24,15 @@ struct tl_lamp {
 };
 #define TL_LAMPS_MAX 4
 
-/* The light of a lamp at a point. Points nearer than TL_LAMP_NEAREST_M are lit as at that distance. */
-#define TL_LAMP_NEAREST_M 1e-3f
+/* The `lamp` of lamp_terms.glsl. */
+TL_INLINE vec4s tl_lamp_place(const struct tl_lamp *lamp)
+{
+    const bool is_near = lamp->kind == TL_LAMP_POINT;
+    const vec3s at = is_near ? lamp->position : lamp->direction;
+    return (vec4s){{at.x, at.y, at.z, is_near}};
+}
+
+/* The light of a lamp at a point. */
 struct tl_lamplight {
     vec3s direction;  /* towards the lamp, unit; `otherwise` where the two coincide */
     float distance_m; /* infinite for DIRECTIONAL */

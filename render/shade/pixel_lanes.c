@@ -175,9 +175,9 @@ TL_INLINE struct reflected reflected_of(const struct tl_look_lanes *look, int th
 {
     const tl_material *material = look->part->material;
     const vec3s f0 = vector_of(look->f0[lane]);
-    const FacetReflected f = thread < 0 ? facet_reflected(f0)
-                                        : thread_reflected(f0, vector_of(look->diffuse[lane]),
-                                                           material->threads[thread].ratio);
+    const FacetReflected f =
+        thread < 0 ? facet_reflected(f0)
+                   : thread_reflected(f0, vector_of(look->diffuse[lane]), material->threads[thread].ratio);
     const tl_quad none = {0, 0, 0, 0};
     const bool by_index = thread < 0 && material->gloss.fresnel != TL_FRESNEL_SCHLICK;
     return (struct reflected){tl_pixel_quad(f.plain), by_index ? none : tl_pixel_quad(f.away)};

@@ -32,21 +32,17 @@ struct tl_pixel_lit {
 };
 TL_INLINE struct tl_pixel_lit tl_pixel_light_at(const struct tl_pixel_light *light, vec3s point)
 {
-    struct tl_pixel_lit lit = {light->sun.direction, 1};
     if (light->lamp.kind != TL_LAMP_POINT)
-        return lit;
-    const vec3s away = glms_vec3_sub(light->lamp.position, point);
-    const float square = tl_maxf(glms_vec3_dot(away, away), TL_LAMP_NEAREST_M * TL_LAMP_NEAREST_M);
-    lit.direction = glms_vec3_scale(away, 1 / sqrtf(square));
-    lit.share = 1 / square;
-    return lit;
+        return (struct tl_pixel_lit){light->sun.direction, 1};
+    const vec4s place = tl_lamp_place(&light->lamp);
+    return (struct tl_pixel_lit){towards_lamp(place, point, light->sun.direction),
+                                 lamp_falloff(place, point)};
 }
 
 /* The share of a light that lies above the plane of a surface's smooth normal. */
 TL_INLINE float tl_pixel_light_above(const struct tl_pixel_light *light, float cosine)
 {
-    return light->lamp.kind == TL_LAMP_NONE ? disc_share(cosine / tl_maxf(light->sun.radius, 1e-3f))
-                                            : self_shadow_ramp(cosine);
+    return light_above(light->lamp.kind != TL_LAMP_NONE, light->sun.radius, cosine);
 }
 
 #endif

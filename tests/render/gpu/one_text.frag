@@ -1,7 +1,9 @@
 #version 450 core
 // Column: the number of a term; row: a trial.
 #include "bounced_terms.glsl"
+#include "directions_terms.glsl"
 #include "facets_terms.glsl"
+#include "lamp_terms.glsl"
 #include "layers_terms.glsl"
 #include "ground.glsl"
 #include "lobes_terms.glsl"

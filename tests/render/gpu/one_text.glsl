@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 95
+#define ONE_TEXT_NUMBERS 103
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -101,6 +101,20 @@ TERM float one_text(int number, uint trial)
     FacetReflected thread_light = thread_reflected(vec3(0.1f * a.x, a.y, 0.04f), vec3(b.x, b.y, 1.0f), vec3(0.5f, 1.5f, c.x));
     MaterialLayers over = material_layers(a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x, b.x - 0.2f, n, v,
                                           direction_or(vec3(d.x, d.y, e.y), n));
+    vec2 on_map = latlong_place(n), on_face = cube_place(cube_face(v), n);
+    vec3 in_row = latlong_direction(a.x, int(18.99f * b.x), 19, b.y), on_cube = cube_direction(int(5.99f * a.x), b.x, c.y);
+    vec3 bounced = bounce_direction(n, vec3_scale(v, e.y < 0.1f ? 0.0f : 1.0f), d.x, d.y);
+    vec4 lamp = vec4(a.x, b.x, c.x, e.y < 0.5f ? 0.0f : 1.0f);
+    vec3 towards = towards_lamp(lamp, v, n);
+    if (number > 94)
+        return number == 95   ? 0.3f * (on_map.x + on_map.y) // a driver may err in its inverse functions
+               : number == 96 ? min(max(on_face.x - on_face.y, -10.0f), 10.0f)
+               : number == 97 ? in_row.x + in_row.y - in_row.z
+               : number == 98 ? on_cube.x + on_cube.y - on_cube.z + every_second_bit(trial * 77773u)
+               : number == 99 ? bounced.x + bounced.y - bounced.z
+               : number == 100 ? towards.x + towards.y - towards.z + bounce_pdf(e.x)
+               : number == 101 ? lamp_falloff(lamp, v)
+                              : light_above(e.y < 0.5f, 0.02f * e.x, 0.05f * (d.x - 0.5f)) + cube_stretch(1.0f + 2.0f * c.x);
     if (number > 92)
         return number == 93 ? over.base + over.coat
                             : min(material_over(over, v, direction_or(vec3(c.x, c.y, e.y), n), v, 0.1f * b.y).z, 10.0f);

@@ -4,10 +4,12 @@
 #include "render/bounce/bounced.h"
 #include "render/brdf/material_lobes.h"
 #include "render/brdf/normalise.h"
+#include "render/env/cube.h"
 #include "render/env/lobes_fetch.h"
 #include "render/gpu/gpu.h"
 #include "render/gpu/shaders.h"
 #include "render/light/terms.h"
+#include "render/scene/lamp.h"
 #include "render/surfaces/surface_terms.h"
 #include "render/trace/spread.h"
 
