@@ -29,6 +29,7 @@ static struct tl_material_params params_of(const tl_material *material)
 {
     const struct tl_gloss *gloss = &material->gloss;
     struct tl_material_params params = {.use_file = true,
+                                        .diffuse_roughness = material->diffuse_roughness,
                                         .glossiness = material->glossiness,
                                         .model = gloss->model,
                                         .facets = gloss->facets,
@@ -108,6 +109,7 @@ static void set_params(const struct tl_material_params *params, tl_material *mat
 {
     memcpy(material->transmission.raw, params->transmission, sizeof material->transmission.raw);
     material->diffuse = even_colour(params);
+    material->diffuse_roughness = params->diffuse_roughness;
     material->thread_count = 0;
     for (int weft = 0; has_threads(params) && weft < 2; weft++)
         add_thread(params, weft == 1, material);

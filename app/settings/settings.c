@@ -406,13 +406,14 @@ static void choose_role(struct tl_scene_params *scene)
 /* Parts of a material beyond two lobes: those that environment maps do not show, and those that they do. */
 static bool is_more_than_maps_show(const struct tl_material_params *material)
 {
-    return material->model != TL_REFLECT_PHONG || material->openness > 0 || material->fuzz > 0;
+    return material->model != TL_REFLECT_PHONG || material->openness > 0 || material->fuzz > 0 ||
+           material->diffuse_roughness > 0;
 }
 
 /* ... and what no pass over shadow maps shows: those that read nothing but filter chains draw any gloss. */
 static bool is_more_than_chains_show(const struct tl_material_params *material)
 {
-    return material->openness > 0 || material->fuzz > 0;
+    return material->openness > 0 || material->fuzz > 0 || material->diffuse_roughness > 0;
 }
 
 static bool is_layered(const struct tl_material_params *material)

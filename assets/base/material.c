@@ -41,8 +41,9 @@ bool tl_material_transmits(const tl_material *material)
 
 bool tl_material_is_layered(const tl_material *material)
 {
-    return material->gloss.model != TL_REFLECT_PHONG || material->coat > 0 || material->openness > 0 ||
-           tl_material_has_fuzz(material) || tl_material_transmits(material);
+    return material->gloss.model != TL_REFLECT_PHONG || material->diffuse_roughness > 0 ||
+           material->coat > 0 || material->openness > 0 || tl_material_has_fuzz(material) ||
+           tl_material_transmits(material);
 }
 
 vec3s tl_material_thread_gain(const tl_material *material)

@@ -131,9 +131,11 @@ struct tl_measured;
 
 typedef struct tl_material {
     char name[64];
-    vec3s diffuse;    /* linear albedo at g-independent K_1; [0, 1] */
-    vec3s specular;   /* F0: reflectance at normal incidence; [0, 1] */
-    float glossiness; /* g in [0, 1] */
+    vec3s diffuse;           /* linear albedo at g-independent K_1; [0, 1] */
+    float diffuse_roughness; /* rad: standard deviation of the angles of matt facets; 0: Lambert's law; [0, 1]
+                              */
+    vec3s specular;          /* F0: reflectance at normal incidence; [0, 1] */
+    float glossiness;        /* g in [0, 1] */
     struct tl_gloss gloss;
     int thread_count; /* 0: all gloss is `specular` */
     struct tl_thread threads[TL_THREADS_MAX];

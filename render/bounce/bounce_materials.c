@@ -2,6 +2,7 @@
 
 #include "config/base/memory.h"
 #include "config/colour/srgb.h"
+#include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
 
 #include <math.h>
@@ -47,9 +48,10 @@ static vec3s albedo_of(vec3s diffuse, vec3s specular, float glossiness)
 static struct tl_bounce_material material_of(const tl_material *material)
 {
     const struct tl_back *back = &material->back;
-    const vec3s front = mean_colour(&material->diffuse_map, material->diffuse);
+    const float matt = matt_albedo_mean(material->diffuse_roughness);
+    const vec3s front = glms_vec3_scale(mean_colour(&material->diffuse_map, material->diffuse), matt);
     struct tl_bounce_material read = {
-        .diffuse = {front, back->is_given ? back->diffuse : front},
+        .diffuse = {front, back->is_given ? glms_vec3_scale(back->diffuse, matt) : front},
         .specular[0] = mean_colour(&material->specular_map, material->specular),
         .emission = mean_colour(&material->emission_map, material->emission),
         .openness = material->openness,
@@ -60,7 +62,7 @@ static struct tl_bounce_material material_of(const tl_material *material)
                                    ? back->diffuse
                                    : mean_colour(&material->diffuse_map, tl_material_colour(material));
         read.has_lobes = read.has_lobes || glms_vec3_max(read.specular[side]) > glms_vec3_max(coloured);
-        read.whole[side] = albedo_of(coloured, read.specular[side], material->glossiness);
+        read.whole[side] = albedo_of(glms_vec3_scale(coloured, matt), read.specular[side], material->glossiness);
     }
     for (int side = 0; side < 2; side++)
         read.albedo[side] =

@@ -3,7 +3,8 @@
 MaterialLayers tl_material_layers(const struct tl_material_sample *sample)
 {
     const tl_material *material = sample->material;
-    return material_layers(material->coat, tl_lobe_exponent(material->coat_glossiness), material->fuzz.colour,
+    return material_layers(material->diffuse_roughness, material->coat,
+                           tl_lobe_exponent(material->coat_glossiness), material->fuzz.colour,
                            material->fuzz.roughness, material->fuzz.follow, sample->smooth, sample->normal,
                            sample->viewer);
 }

@@ -15,6 +15,9 @@ static const struct tl_option material_rows[] = {
     TL_OPTION_BOOL(material_params, use_file, AFFECTS,
                    "keep the materials of the garment's file, if it has any"),
     TL_OPTION_COLOUR(material_params, diffuse, AFFECTS, 0, 1, "diffuse albedo; larger: brighter"),
+    TL_OPTION_FLOAT(material_params, diffuse_roughness, AFFECTS, 0, 1, "rad",
+                    "spread of the facets that reflect diffusely; larger: flatter, as felt and chalk are; "
+                    "0: Lambert's law"),
     TL_OPTION_COLOUR(material_params, specular, AFFECTS, 0, 1,
                      "reflectance at normal incidence; 0.04 for most fibres; larger: shinier"),
     TL_OPTION_FLOAT(

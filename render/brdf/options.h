@@ -8,7 +8,7 @@ enum tl_on_print { TL_ON_PRINT_REPLACE, TL_ON_PRINT_TINT, TL_ON_PRINT_KEEP };
 
 struct tl_material_params { /* table "material": from the fabric or by hand */
     bool use_file;          /* keep the garment file's own materials where it has them */
-    float diffuse[3];
+    float diffuse[3], diffuse_roughness;
     float specular[3];
     float thread;                      /* share of `diffuse` that is sent back as gloss */
     float thread_along, thread_across; /* slopes of a lobe of its own for that; 0: it joins `specular` */

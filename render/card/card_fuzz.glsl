@@ -3,7 +3,7 @@
 
 MaterialLayers layers_over(Part part, vec3 normal, vec3 shown, vec3 viewer)
 {
-    return material_layers(part.optics.z, part.optics.w, part.fuzz.rgb, part.fuzz.a, part.fuzz_more.x, normal, shown, viewer);
+    return material_layers(part.fuzz_more.y, part.optics.z, part.optics.w, part.fuzz.rgb, part.fuzz.a, part.fuzz_more.x, normal, shown, viewer);
 }
 
 // The unshadowed light of the environment.

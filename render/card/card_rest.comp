@@ -78,7 +78,7 @@ Lobes lobes_of_place(Seen s)
 #ifdef RICH
     l.over = layers_over(s.part, l.normal, s.surface.shown, s.viewer);
 #else
-    l.over = material_layers(0.0, 1.0, vec3(0.0), 0.5, 0.0, l.normal, l.normal, s.viewer);
+    l.over = material_layers(0.0, 0.0, 1.0, vec3(0.0), 0.5, 0.0, l.normal, l.normal, s.viewer);
 #endif
     l.has_facets = s.is_faceted && s.facets.viewer.z > 0.0;
     l.glosses = l.has_facets ? 1 + int(s.part.flags.w) : !s.is_faceted && (s.part.flags.x & IS_GLOSSY) != 0u ? 1 : 0;
@@ -89,7 +89,8 @@ Lobes lobes_of_place(Seen s)
 // f_r cos for light from a direction above the surface.
 vec3 reflected(Lobes l, vec3 d)
 {
-    vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI);
+    vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI) *
+             material_matt(l.over, l.s.surface.shown, d, l.s.viewer);
     if (l.s.is_faceted ? l.has_facets && dot(d, l.s.facets.frame[2]) > 0.0 : l.glosses > 0)
         f += gloss_under(l.s, d, 0.0);
     return material_over(l.over, f, d, l.s.viewer, 0.0);

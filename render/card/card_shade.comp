@@ -37,7 +37,12 @@ vec3 light_of(Seen s, ivec2 pixel)
         w = (w + 1e-6) * (1.0 - covered);
         w /= w.x + w.y + w.z;
     }
-    vec3 light = s.surface.diffuse * exact_diffuse(into_environment(s.surface.shown)) *
+    vec3 matt = s.surface.diffuse;
+#ifdef RICH
+    MaterialLayers over = layers_over(s.part, s.side * s.surface.smooth_normal, s.surface.shown, s.viewer);
+    matt *= over.matt_albedo;
+#endif
+    vec3 light = matt * exact_diffuse(into_environment(s.surface.shown)) *
                      (w.x * ratios[at.x].rgb + w.y * ratios[at.y].rgb + w.z * ratios[at.z].rgb) +
                  exact_gloss(s) * (w.x * gloss[0].rgb + w.y * gloss[1].rgb + w.z * gloss[2].rgb);
 #ifdef RICH
@@ -48,7 +53,6 @@ vec3 light_of(Seen s, ivec2 pixel)
             ratio += s.p.weights[k] * ratios[4u * triangle_probes[corner + uint(k)]].rgb;
         light += s.part.transmission.rgb * exact_diffuse(into_environment(-s.surface.shown)) * ratio;
     }
-    MaterialLayers over = layers_over(s.part, s.side * s.surface.smooth_normal, s.surface.shown, s.viewer);
     light = (light + s.emitted) * over.base;
     if (fuzz_strength(over.fuzz) > 0.0)
         light += over.fuzz * exact_fibres(over, s.viewer) *
@@ -71,11 +75,13 @@ vec3 light_of(Seen s, ivec2 pixel)
         if (!(seen > 0.0))
             continue;
         float cosine = max(dot(sun.towards, s.surface.shown), 0.0);
-        vec3 sent = s.surface.diffuse * (cosine / PI) + gloss_under(s, sun.towards, sun.radius);
+        vec3 sent = s.surface.diffuse * (cosine / PI), shine = gloss_under(s, sun.towards, sun.radius);
 #ifdef RICH
-        sent = material_over(over, sent, sun.towards, s.viewer, sun.radius);
+        sent *= material_matt(over, s.surface.shown, sun.towards, s.viewer);
+        light += seen * sun.power * material_over(over, sent + shine, sun.towards, s.viewer, sun.radius);
+#else
+        light += seen * sun.power * (sent + shine);
 #endif
-        light += seen * sun.power * sent;
     }
     return light;
 }

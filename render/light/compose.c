@@ -158,8 +158,9 @@ struct received {
     vec3s unshadowed[2], shadowed[2];
 };
 
+/* `lobes`: of a material of more than two, whose diffuse colour holds its albedo. */
 static void add_suns(const struct block *block, size_t index, const struct frame *frame,
-                     struct received *light)
+                     const struct lobes *lobes, struct received *light)
 {
     const struct tl_compose_request *request = block->request;
     for (int i = 0; i < request->suns->count; i++) {
@@ -168,10 +169,14 @@ static void add_suns(const struct block *block, size_t index, const struct frame
         float above = light_above(false, sun->radius, glms_vec3_dot(sun->direction, frame->smooth));
         /* The mean square angle of a disc is half its radius squared. */
         float exponent = lobe_broadened_exponent(frame->exponent, sun->radius * GLM_SQRT1_2f);
-        float lobes[2] = {lobe_cosine(1, glms_vec3_dot(sun->direction, frame->normal)),
-                          lobe_cosine(exponent, glms_vec3_dot(sun->direction, frame->gloss))};
+        float values[2] = {lobe_cosine(1, glms_vec3_dot(sun->direction, frame->normal)),
+                           lobe_cosine(exponent, glms_vec3_dot(sun->direction, frame->gloss))};
+        if (lobes)
+            values[DIFFUSE] *=
+                material_matt(lobes->of.over, frame->normal, sun->direction, lobes->of.viewer) /
+                lobes->of.over.matt_albedo;
         for (int kind = 0; kind < 2; kind++) {
-            vec3s arriving = glms_vec3_scale(sun->power, lobes[kind]);
+            vec3s arriving = glms_vec3_scale(sun->power, values[kind]);
             light->unshadowed[kind] = glms_vec3_add(light->unshadowed[kind], arriving);
             light->shadowed[kind] = glms_vec3_add(
                 light->shadowed[kind], glms_vec3_scale(arriving, visibility ? above * visibility[index] : 1));
@@ -315,7 +320,7 @@ static void split_material_lobes(const struct block *block, const tl_material *m
     if (lobes->has_fuzz)
         fuzz_lobes(material->fuzz.roughness, glms_vec3_dot(lobes->of.over.fuzz_axis, lobes->of.viewer),
                    lobes->fibres);
-    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->of.over.base);
+    sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->of.over.base * lobes->of.over.matt_albedo);
     sample->specular = glms_vec3_scale(sample->specular, lobes->of.over.base);
 }
 
@@ -488,8 +493,8 @@ static const tl_material *rich_material(const struct tl_compose_request *request
         return NULL;
     const tl_material *material =
         tl_triangle_material(request->ranges, samples->items[index].triangle & ~TL_SAMPLE_BACK);
-    const bool is_rich =
-        material->coat > 0 || material->gloss.model != TL_REFLECT_PHONG || tl_material_has_fuzz(material);
+    const bool is_rich = material->coat > 0 || material->diffuse_roughness > 0 ||
+                         material->gloss.model != TL_REFLECT_PHONG || tl_material_has_fuzz(material);
     return is_rich ? material : NULL;
 }
 
@@ -549,7 +554,7 @@ TL_INLINE vec3s compose_sample(struct block *block, size_t index)
     const struct tl_mirror *mirror = request->mirrors ? &request->mirrors[index] : NULL;
     if (mirror && mirror->ray_count > 0)
         received.shadowed[GLOSSY] = mirror_light(block, mirror, &frame);
-    add_suns(block, index, &frame, &received);
+    add_suns(block, index, &frame, rich ? &lobes : NULL, &received);
     if (mirror && mirror->ray_count > 0 && frame.exponent >= TL_PERFECT_EXPONENT)
         received.shadowed[GLOSSY] = perfect_mirror_light(block, mirror, frame.exponent);
     if (by_occlusion)

@@ -36,7 +36,10 @@ static struct lit lit_of(const struct tl_lamp_samples_request *request, size_t i
 static vec3s reflected(const struct lit *lit, vec3s l)
 {
     const tl_sample *sample = lit->sample;
-    const float matt = fmaxf(glms_vec3_dot(sample->normal, l), 0) / (float)M_PI;
+    const float lambert = fmaxf(glms_vec3_dot(sample->normal, l), 0) / (float)M_PI;
+    const float matt = lit->has_two
+                           ? lambert
+                           : lambert * material_matt(lit->lobes.over, sample->normal, l, lit->lobes.viewer);
     const float shine =
         tl_lobe_cosine(tl_lobe_exponent(sample->glossiness), glms_vec3_dot(sample->mirror, l));
     const vec3s gloss = lit->lobes.is_faceted ? tl_material_facets(&lit->lobes, l, 0)

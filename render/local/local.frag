@@ -265,7 +265,7 @@ vec4 lit_here(float side, vec3 smooth_normal, vec3 kd)
 #ifdef THREADS
     shine += inside_threads(c, colours.f0, kd, thread_widening_here(side));
 #endif
-    return shown > 0.0 ? shown * vec4(shine, max(c.a, 0.0) / PI) : vec4(0.0);
+    return shown > 0.0 ? shown * vec4(shine, matt(c)) : vec4(0.0);
 }
 #endif
 

@@ -67,7 +67,7 @@ vec4 lit(vec3 n, float side, vec3 l, vec3 v, vec3 h)
 #else
     float shown = self_shadow_ramp(c.a);
 #endif
-    return shown * vec4(light, max(c.a, 0.0) / PI);
+    return shown * vec4(light, matt(c));
 }
 #endif
 

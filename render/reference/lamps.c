@@ -26,6 +26,8 @@ static vec3s reflected(const struct tl_shading_point *point, const struct tl_brd
                        const struct tl_brdf_frame *frame, vec3s l)
 {
     float matt = fmaxf(glms_vec3_dot(point->normal, l), 0) / (float)M_PI;
+    if (point->layered)
+        matt *= material_matt(point->layers.lobes.over, point->normal, l, point->viewer);
     vec3s gloss = tl_brdf_sum_gloss(brdfs, frame, l, point->viewer);
     vec3s sent = point->material->measured
                      ? tl_measured_reflected(point->material->measured, frame, l, point->viewer)

@@ -1,5 +1,5 @@
 #include "config/base/memory.h"
-#include "render/brdf/fuzz.h"
+#include "render/brdf/material_lobes.h"
 #include "render/brdf/ward_lanes.h"
 #include "render/env/lobes_fetch.h"
 #include "render/shade/pixels_internal.h"
@@ -82,31 +82,45 @@ TL_INLINE tl_quad fetch_pair(const struct blend_lanes *blends, int lane, const s
     return low + blends->weight[lane] * (fetch_lane(blends->high[lane], &pair->high, lane) - low);
 }
 
+/* The factor on Lambert's value for light from l; NULL: on that of an environment. */
+TL_INLINE float matt_of(const struct tl_pixel_lanes *lanes, int lane, const vec3s *l)
+{
+    const struct tl_look_lanes *seen = &lanes->look;
+    const vec3s n = tl_lane_vector(seen->shown, lane), v = tl_lane_vector(seen->viewer, lane);
+    const float roughness = seen->part->material->diffuse_roughness, cosine = glms_vec3_dot(n, v);
+    return l ? matt_factor(roughness, glms_vec3_dot(n, *l), cosine, glms_vec3_dot(*l, v))
+             : matt_albedo(roughness, cosine);
+}
+
 TL_INLINE void add_diffuse(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                            tl_quad light[TL_LANES])
 {
+    const struct tl_look_lanes *seen = &lanes->look;
     const struct tl_lobe_map *map = &scene->request->lobes->maps[0];
     struct fetch_lanes fetch;
     for (int i = 0; i < TL_LANES; i++) {
-        vec3s d = tl_pixel_turned(scene, tl_lane_vector(lanes->look.shown, i));
+        vec3s d = tl_pixel_turned(scene, tl_lane_vector(seen->shown, i));
         place_fetch(&fetch, i, map->side, octahedral_place(d));
     }
-    for (int i = 0; i < lanes->look.count; i++)
-        light[i] = lanes->look.diffuse[i] * fetch_lane(map, &fetch, i) * lanes->diffuse_ratio[i];
+    for (int i = 0; i < seen->count; i++)
+        light[i] = seen->diffuse[i] * fetch_lane(map, &fetch, i) * lanes->diffuse_ratio[i];
+    for (int i = 0; seen->part->material->diffuse_roughness > 0 && i < seen->count; i++)
+        light[i] *= matt_of(lanes, i, NULL);
 }
 
 /* The light that comes through from the other side. */
 TL_INLINE void add_transmitted(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                                tl_quad light[TL_LANES])
 {
+    const struct tl_look_lanes *seen = &lanes->look;
     const struct tl_lobe_map *map = &scene->request->lobes->maps[0];
-    const tl_quad colour = tl_pixel_quad(lanes->look.part->material->transmission);
+    const tl_quad colour = tl_pixel_quad(seen->part->material->transmission);
     struct fetch_lanes fetch;
     for (int i = 0; i < TL_LANES; i++) {
-        vec3s d = tl_pixel_turned(scene, glms_vec3_negate(tl_lane_vector(lanes->look.shown, i)));
+        vec3s d = tl_pixel_turned(scene, glms_vec3_negate(tl_lane_vector(seen->shown, i)));
         place_fetch(&fetch, i, map->side, octahedral_place(d));
     }
-    for (int i = 0; i < lanes->look.count; i++)
+    for (int i = 0; i < seen->count; i++)
         light[i] += colour * fetch_lane(map, &fetch, i) * lanes->other_ratio[i];
 }
 
@@ -426,6 +440,10 @@ TL_INLINE void add_light(const struct tl_pixel_scene *scene, const struct tl_pix
         through[i] = part->transmits ? shares[i] * tl_pixel_light_above(source, -cosine) : 0;
         lobe[i] = tl_pixel_diffuse_lobe(shown);
         other_lobe[i] = tl_pixel_diffuse_lobe(-shown);
+    }
+    for (int i = 0; part->material->diffuse_roughness > 0 && i < TL_LANES; i++) {
+        const vec3s direction = tl_lane_vector(towards, i);
+        lobe[i] *= matt_of(lanes, i, &direction);
     }
     for (int i = 0; i < look->count; i++) {
         float visible = tl_pixel_light_seen(scene, number, lanes->pixel[i]);

@@ -13,6 +13,7 @@ foreach(name
     env/emitters
     plan/first_second
     brdf/fuzz
+    brdf/matt
     brdf/ggx/ggx_lobes
     metrics/flip
     surfaces/ground

@@ -184,6 +184,13 @@ static void have_lamps(struct drawn_scene *drawn)
     drawn->scene.frame.lamp_count = 3;
 }
 
+static void be_rough(struct drawn_scene *drawn)
+{
+    have_lamps(drawn);
+    for (int i = 0; i < 2; i++)
+        drawn->scene.shapes[i].material.diffuse_roughness = 0.7f;
+}
+
 static void have_a_lamp_below(struct drawn_scene *drawn)
 {
     have_lamps(drawn);
@@ -389,6 +396,7 @@ static const struct picture_case pictures[] = {
     {"emission", emit, 0.035, 0.004, 0, lean},
     {"lamp", have_a_lamp, 0.035, 0.0015, 0, NULL},
     {"three lamps", have_lamps, 0.035, 0.0015, 0, NULL},
+    {"rough", be_rough, 0.035, 0.0015, 0, NULL},
     {"lamps, from below", have_a_lamp_below, 0.035, 0.0015, 0, NULL},
     {"lamps through voile", have_lamps_and_voile, 0.035, 0.006, 10, NULL},
     {"holes", have_holes, 0.06, 0.0015, 10, NULL},

@@ -44,6 +44,12 @@ static void have_a_coat(struct drawn_scene *drawn)
     drawn_scene_cloth(drawn)->coat_glossiness = 0.95f;
 }
 
+static void be_rough(struct drawn_scene *drawn)
+{
+    for (int i = 0; i < 2; i++)
+        drawn->scene.shapes[i].material.diffuse_roughness = 0.7f;
+}
+
 static void glow(struct drawn_scene *drawn)
 {
     be_satin(drawn);
@@ -170,6 +176,7 @@ static const struct rest_case cases[] = {
     {"weave, LEAN", be_woven, 1, 1, 0.012, 0.12},
     {"maps", be_mapped, 1, 1, 0.012, 0.15},
     {"coat on fuzz", have_a_coat, 1, 1, 0.012, 0.15},
+    {"rough", be_rough, 1, 1, 0.012, 0.12},
     {"emission", glow, 1, 1, 0.012, 0.15},
     {"mirrors", be_mirrors, 1, 1, 0.012, 0.2},
     {"threads, converged", have_threads, 4, 8, 0.005, 0.06},

@@ -99,7 +99,7 @@ TERM float one_text(int number, uint trial)
     WardValues node = ward_node(facets, nodes, int(5.0f * e.y));
     WardLobe ward = ward_lobe_of(facets, set, 1.0f);
     FacetReflected thread_light = thread_reflected(vec3(0.1f * a.x, a.y, 0.04f), vec3(b.x, b.y, 1.0f), vec3(0.5f, 1.5f, c.x));
-    MaterialLayers over = material_layers(a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x, b.x - 0.2f, n, v,
+    MaterialLayers over = material_layers(b.y, a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x, b.x - 0.2f, n, v,
                                           direction_or(vec3(d.x, d.y, e.y), n));
     vec2 on_map = latlong_place(n), on_face = cube_place(cube_face(v), n);
     vec3 in_row = latlong_direction(a.x, int(18.99f * b.x), 19, b.y), on_cube = cube_direction(int(5.99f * a.x), b.x, c.y);
@@ -116,7 +116,7 @@ TERM float one_text(int number, uint trial)
                : number == 101 ? lamp_falloff(lamp, v)
                               : light_above(e.y < 0.5f, 0.02f * e.x, 0.05f * (d.x - 0.5f)) + cube_stretch(1.0f + 2.0f * c.x);
     if (number > 92)
-        return number == 93 ? over.base + over.coat
+        return number == 93 ? over.base + over.coat + over.matt_albedo + material_matt(over, n, v, direction_or(vec3(d.x, d.y, e.x), n))
                             : min(material_over(over, v, direction_or(vec3(c.x, c.y, e.y), n), v, 0.1f * b.y).z, 10.0f);
     if (number > 84)
         return number == 85   ? coat_share(a.x - 0.1f, cosine)

@@ -54,6 +54,7 @@ struct feature {
     int facets;   /* 0: Beckmann's */
     int threads;  /* systems of threads with a lobe of their own */
     float follow; /* of fuzz, which stands on bumps then */
+    float roughness;
 };
 
 static const struct feature features[] = {
@@ -85,6 +86,7 @@ static const struct feature features[] = {
     {.name = "cosine lobe", .model = TL_REFLECT_COSINE_LOBE, .error = 0.05},
     {.name = "banks", .model = TL_REFLECT_BANKS, .error = 0.05},
     {.name = "coat", .coat = 1, .error = 0.05},
+    {.name = "rough", .error = 0.05, .roughness = 0.7f},
     {.name = "transmission", .transmission = 0.5f, .error = 0.05},
     {.name = "openness", .openness = 0.4f, .error = 0.05},
     {.name = "fuzz", .fuzz = 1, .error = 0.05},
@@ -119,6 +121,7 @@ static void set_feature(const struct feature *feature, tl_material *material)
     material->gloss.width_weft = feature->weft;
     material->gloss.width_warp = feature->warp;
     material->coat = feature->coat;
+    material->diffuse_roughness = feature->roughness;
     material->coat_glossiness = 0.97f;
     material->transmission = (vec3s){{feature->transmission, feature->transmission, feature->transmission}};
     material->openness = feature->openness;

@@ -149,10 +149,12 @@ static void shadows_equal_the_reference(void **state)
 static void layers_equal_the_reference(void **state)
 {
     struct test_device *device = *state;
-    for (int kind = 0; kind < 4; kind++) {
+    for (int kind = 0; kind < 5; kind++) {
         struct test_scene scene;
         test_scene_open_lamplit(&scene, shiny_sphere(32), 96, 96);
         tl_material *ball = &scene.shapes[0].material;
+        if (kind == 4)
+            ball->diffuse_roughness = 0.7f;
         if (kind == 3) /* fibres over a coat */
             ball->fuzz = (struct tl_fuzz){{{1, 0.8f, 0.5f}}, 0.5f, 0};
         if (kind == 0 || kind == 3) { /* a coat over Ward */
@@ -160,7 +162,7 @@ static void layers_equal_the_reference(void **state)
                 .model = TL_REFLECT_WARD, .width_weft = 0.3f, .width_warp = 0.15f, .index = 1.5f};
             ball->coat = 0.8f;
             ball->coat_glossiness = 0.97f;
-        } else {
+        } else if (kind < 3) {
             test_scene_add(&scene,
                            test_square((vec3s){{0.2f, 0, kind == 1 ? 1.0f : -0.9f}}, (vec3s){{1, 0, 0}},
                                        (vec3s){{0, 0, 1}}, kind == 1 ? 0.4f : 1.5f, 8));
@@ -188,12 +190,12 @@ static void layers_equal_the_reference(void **state)
         tl_image expected = test_scene_draw(&scene, device->renderer);
         scene.settings.light.method = TL_METHOD_PEM;
         struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
-        static const char *const names[] = {"coat", "voile", "mirror", "fuzz"};
+        static const char *const names[] = {"coat", "voile", "mirror", "fuzz", "rough"};
         print_message("%s: rel. RMSE %.4f, largest %.3f of the peak, %zu pixels\n", names[kind], off.rel_rmse,
                       off.largest, off.pixels);
         assert_true(off.pixels > 2000);
         assert_true(off.rel_rmse < 0.05);
-        if (kind == 0 || kind == 3)
+        if (kind == 0 || kind >= 3)
             assert_true(off.rel_rmse < 1e-3);
         if (kind == 2) { /* there is something to see in it */
             scene.settings.light.reflect_scene = false;

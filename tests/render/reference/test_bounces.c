@@ -186,6 +186,11 @@ static void make_fuzzy(tl_material *material)
     material->fuzz = (struct tl_fuzz){.colour = {{0.5f, 0.5f, 0.5f}}, .roughness = 0.5f};
 }
 
+static void make_rough(tl_material *material)
+{
+    material->diffuse_roughness = 0.5f;
+}
+
 static void make_sheer(tl_material *material)
 {
     material->transmission = (vec3s){{0.4f, 0.4f, 0.4f}};
@@ -216,6 +221,7 @@ static void test_sphere_for_sky(void **state)
                  {"ward", make_ward},
                  {"coat", make_coated},
                  {"fuzz", make_fuzzy},
+                 {"rough", make_rough},
                  {"sheer", make_sheer}};
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         struct test_scene *open = slanted_scene(test_white, cases[i].make);

@@ -282,6 +282,14 @@ static vec3s transmitted(const struct one_pixel *one, const struct tl_trace_hit 
     return glms_vec3_mul(point->material->transmission, light);
 }
 
+/* Lambert's law at a point of a layer; of rough cloth by [Oren and Nayar 1994, eq. 30]. */
+static float lambert(const struct tl_shading_point *point, vec3s l)
+{
+    const float cosine = fmaxf(glms_vec3_dot(l, point->normal), 0) / (float)M_PI;
+    return point->layered ? cosine * material_matt(point->layers.lobes.over, point->normal, l, point->viewer)
+                          : cosine;
+}
+
 /* The lamps' light that a point of a layer sends back or lets through. */
 static vec3s lamplight(const struct one_pixel *one, vec3s at, const struct tl_shading_point *point,
                        float visible)
@@ -299,7 +307,7 @@ static vec3s lamplight(const struct one_pixel *one, vec3s at, const struct tl_sh
                 point->glossy, lobe_cosine(point->exponent, glms_vec3_dot(light.direction, point->axis)));
             if (point->layered && lobes->is_faceted)
                 gloss = tl_brdf_sum_gloss(&lobes->gloss, &lobes->frame, light.direction, point->viewer);
-            sent = glms_vec3_add(glms_vec3_scale(point->albedo, fmaxf(cosine, 0)), gloss);
+            sent = glms_vec3_add(glms_vec3_scale(point->albedo, lambert(point, light.direction)), gloss);
         }
         sum = glms_vec3_add(sum, glms_vec3_scale(glms_vec3_mul(light.irradiance, sent), shown));
     }
@@ -320,14 +328,15 @@ static vec3s evaluate_layer(const struct one_pixel *one, const struct tl_ray_dif
     evaluate_gloss(one, hit, &point, &gloss, glints);
     vec3s colour =
         glms_vec3_mul(glms_vec3_mul(point.albedo, exact_light(one, point.normal, 1)), diffuse_ratio);
+    if (point.layered)
+        colour = glms_vec3_scale(colour, point.layers.lobes.over.matt_albedo);
     colour = glms_vec3_add(colour, glms_vec3_mul(gloss, glossy_ratio));
     for (int i = 0; i < 2; i++) {
         const struct tl_sun *sun = &scene->suns.items[i];
         vec3s direction = tl_turn_direction(sun->direction, one->yaw);
         float seen =
             disc_share(glms_vec3_dot(direction, point.horizon) / sun->radius) * (i == 0 ? visible : 1);
-        float cosine = fmaxf(glms_vec3_dot(direction, point.normal), 0);
-        vec3s light = glms_vec3_add(glms_vec3_scale(point.albedo, cosine / (float)M_PI), glints[i]);
+        vec3s light = glms_vec3_add(glms_vec3_scale(point.albedo, lambert(&point, direction)), glints[i]);
         colour = glms_vec3_add(colour, glms_vec3_scale(glms_vec3_mul(sun->power, light), seen));
     }
     const vec3s at = glms_vec3_add(ray->origin, glms_vec3_scale(ray->direction, hit->distance_m));
@@ -368,6 +377,12 @@ typedef void editor(struct lanes_scene *scene);
 static void be_matt(struct lanes_scene *scene)
 {
     scene->shapes[0].material.diffuse = (vec3s){{0.6f, 0.3f, 0.2f}};
+}
+
+static void be_rough(struct lanes_scene *scene)
+{
+    for (int i = 0; i < SHAPES; i++)
+        scene->shapes[i].material.diffuse_roughness = 0.3f + 0.5f * (float)i;
 }
 
 static void be_glossy(struct lanes_scene *scene)
@@ -503,6 +518,8 @@ static const struct lanes_case cases[] = {
     {"voile from below", be_voile, TL_DETAIL_MINIFY_NONE, 0, true, 0},
     {"net of satin", be_net, TL_DETAIL_MINIFY_NONE, 0, false, 0},
     {"matt, a far lamp", be_matt, TL_DETAIL_MINIFY_NONE, 0, false, 1},
+    {"rough", be_rough, TL_DETAIL_MINIFY_NONE, 0.7f, false, 0},
+    {"rough, lamps", be_rough, TL_DETAIL_MINIFY_NONE, 0, false, 2},
     {"satin, lamps", be_satin, TL_DETAIL_MINIFY_LEAN, 0.4f, false, 2},
     {"ggx, lamps", be_ggx, TL_DETAIL_MINIFY_NONE, 0, false, 2},
     {"maps, lamps, from below", be_mapped, TL_DETAIL_MINIFY_LEAN, 1, true, 2},
