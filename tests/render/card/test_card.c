@@ -15,6 +15,9 @@
 #define WIDTH  120
 #define HEIGHT 104
 
+#define SMALL_WIDTH  72
+#define SMALL_HEIGHT 64
+
 /* ---- Editors ---- */
 
 static void be_faceted(struct drawn_scene *drawn)
@@ -220,6 +223,14 @@ static void have_clamped_holes(struct drawn_scene *drawn)
     have_holes(drawn);
     drawn_scene_cloth(drawn)->diffuse_map.clamp_v = true;
     look_up(drawn);
+}
+
+/* Over half of the sheet: light falls through it on the ball, and what that sends back leaves. */
+static void have_a_large_hole(struct drawn_scene *drawn)
+{
+    have_holes(drawn);
+    struct tl_map *map = &drawn_scene_cloth(drawn)->diffuse_map;
+    map->transform = (struct tl_uv_transform){.scale = {0.07f, 0.12f}};
 }
 
 static void be_open(struct drawn_scene *drawn)
@@ -530,6 +541,45 @@ static void test_pictures(void **state)
     assert_int_equal(faulty, 0);
 }
 
+/* ---- Emission ---- */
+
+static void shine_under_a_coat(struct drawn_scene *drawn)
+{
+    have_a_coat(drawn);
+    drawn_scene_cloth(drawn)->emission = (vec3s){{1, 0.6f, 0.4f}};
+}
+
+/* What emission adds is what the coat and the fibres leave of it. */
+static void test_emission_under_a_coat(void **state)
+{
+    const struct test_device *device = *state;
+    struct drawn_scene drawn;
+    tl_image images[2][2];
+    open_small(&drawn, SMALL_WIDTH, SMALL_HEIGHT);
+    drawn.plain.settings.image.ground = false;
+    static editor *const edits[] = {have_a_coat, shine_under_a_coat};
+    for (int i = 0; i < 2; i++) {
+        images[0][i] = draw_samples(device->renderer, &drawn, edits[i]);
+        drawn_scene_edit(&drawn, edits[i]);
+        images[1][i] = draw_anew(device->renderer, &drawn, TL_DEVICE_CARD);
+        expect_device(device->renderer, &drawn, "the graphics card, by");
+    }
+    double off = 0, sum = 0;
+    for (size_t i = 0; i < (size_t)4 * SMALL_WIDTH * SMALL_HEIGHT; i++) {
+        double added[2];
+        for (int k = 0; k < 2; k++)
+            added[k] = (double)(tl_image_floats(&images[k][1])[i] - tl_image_floats(&images[k][0])[i]);
+        off += fabs(added[1] - added[0]);
+        sum += added[0];
+    }
+    printf("emission adds %.1f in all, off by %.5f of it\n", sum, off / sum);
+    assert_true(sum > 100);
+    assert_near(off, 0, 0.002 * sum); /* halves, and tables of halves */
+    for (int i = 0; i < 4; i++)
+        tl_image_release(&images[i / 2][i % 2]);
+    drawn_scene_close(&drawn);
+}
+
 /* ---- Bounced light ---- */
 
 /* The ball shines on the sheet. */
@@ -575,13 +625,11 @@ static void test_bounces(void **state)
     check_bounces(device->renderer, &drawn, glow, 0.03, 0.05); /* the CPU's is lit at samples */
     check_bounces(device->renderer, &drawn, have_lamps, 0.05, 0.08);
     check_bounces(device->renderer, &drawn, be_voile, 0.05, 0.02);
+    check_bounces(device->renderer, &drawn, have_a_large_hole, 0.01, 0.011);
     drawn_scene_close(&drawn);
 }
 
 /* ---- From frame to frame ---- */
-
-#define SMALL_WIDTH  72
-#define SMALL_HEIGHT 64
 
 /* The same bytes twice, after other pictures by either device, and by another renderer. */
 static void test_frames_repeat(void **state)
@@ -734,8 +782,12 @@ static void test_memory(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pictures),      cmocka_unit_test(test_bounces),
-                                       cmocka_unit_test(test_frames_repeat), cmocka_unit_test(test_changes),
-                                       cmocka_unit_test(test_refusals),      cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pictures),
+                                       cmocka_unit_test(test_bounces),
+                                       cmocka_unit_test(test_emission_under_a_coat),
+                                       cmocka_unit_test(test_frames_repeat),
+                                       cmocka_unit_test(test_changes),
+                                       cmocka_unit_test(test_refusals),
+                                       cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

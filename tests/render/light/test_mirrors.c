@@ -24,14 +24,13 @@ struct stage {
 };
 
 /* Samples along the floor's x axis, seen from above at 45 degrees towards the wall. */
-static void stage_open(struct stage *stage, float glossiness)
+static void stage_open_with(struct stage *stage, float glossiness, const tl_material *wall)
 {
     tl_error error = {0};
     *stage = (struct stage){
         .mirror = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 1, 0}}, 2, 4),
         .wall = test_square((vec3s){{1, 1, 0}}, (vec3s){{0, 0, 1}}, (vec3s){{-1, 0, 0}}, 1, 4)};
-    stage->wall.material.diffuse = (vec3s){{0.8f, 0.4f, 0.2f}};
-    stage->wall.material.specular = (vec3s){{0, 0, 0}};
+    stage->wall.material = *wall;
     test_shape_refresh(&stage->mirror);
     test_shape_refresh(&stage->wall);
     stage->surfaces[0] = stage->mirror.surface;
@@ -58,6 +57,20 @@ static void stage_open(struct stage *stage, float glossiness)
                                               .specular = {{0.5f, 0.5f, 0.5f}}};
     }
     tl_mirrors_trace(&stage->mirrors, stage->trace, &stage->ranges, NULL, &stage->samples);
+}
+
+static tl_material matt_wall(void)
+{
+    tl_material wall = tl_material_default("wall");
+    wall.diffuse = (vec3s){{0.8f, 0.4f, 0.2f}};
+    wall.specular = (vec3s){{0, 0, 0}};
+    return wall;
+}
+
+static void stage_open(struct stage *stage, float glossiness)
+{
+    const tl_material wall = matt_wall();
+    stage_open_with(stage, glossiness, &wall);
 }
 
 static void stage_close(struct stage *stage)
@@ -100,6 +113,102 @@ static void rays_meet_what_is_there(void **state)
         hits++;
     }
     assert_int_equal(stage.samples.count, SAMPLES + hits);
+    stage_close(&stage);
+}
+
+/* The wall as it is seen along the mirrored ray: Schlick's reflectance at its 45 degrees, the mirrored
+ * direction on its own viewer's side, and the back's own colours where that is seen. */
+static void what_is_met_looks_itself(void **state)
+{
+    (void)state;
+    const vec3s f0 = {{0.1f, 0.2f, 0.3f}}, back_f0 = {{0.05f, 0.5f, 0.02f}},
+                back_colour = {{0.1f, 0.2f, 0.6f}};
+    for (int turned = 0; turned < 3; turned++) { /* front; a back like it; a back of its own */
+        tl_material wall = matt_wall();
+        wall.specular = f0;
+        wall.glossiness = 0.7f;
+        wall.openness = 0.3f;
+        wall.double_sided = true;
+        wall.back = (struct tl_back){turned == 2, back_colour, back_f0};
+        struct stage stage;
+        stage_open_with(&stage, 1, &wall);
+        if (turned) { /* the mirror lies on the wall's other side, which the rays meet */
+            for (size_t i = 0; i < SAMPLES; i++) {
+                tl_sample *sample = &stage.samples.items[i];
+                sample->point.x = 2 - sample->point.x;
+                sample->mirror.x = -sample->mirror.x;
+            }
+            stage.samples.count = SAMPLES;
+            tl_mirrors_trace(&stage.mirrors, stage.trace, &stage.ranges, NULL, &stage.samples);
+        }
+        size_t hits = stage.samples.count - SAMPLES;
+        assert_in_range(hits, SAMPLES / 2, SAMPLES);
+        for (size_t i = SAMPLES; i < stage.samples.count; i++) {
+            const tl_sample *seen = &stage.samples.items[i];
+            const bool own = turned == 2;
+            const double share = pow(1 - sqrt(0.5), 5);
+            assert_near(seen->normal.x, turned ? 1 : -1, 1e-5);
+            assert_near(seen->smooth.x, turned ? 1 : -1, 1e-5);
+            assert_near(seen->mirror.x, (turned ? 1 : -1) * sqrt(0.5), 1e-5);
+            assert_near(seen->mirror.y, sqrt(0.5), 1e-5);
+            assert_near(seen->cover, 0.7, 1e-6);
+            assert_near(seen->glossiness, 0.7, 1e-6);
+            assert_true(((seen->triangle & TL_SAMPLE_BACK) != 0) == (turned != 0));
+            for (int c = 0; c < 3; c++) {
+                const double r = (double)(own ? back_f0 : f0).raw[c];
+                assert_near(seen->diffuse.raw[c], (own ? back_colour : wall.diffuse).raw[c], 1e-6);
+                assert_near(seen->specular.raw[c], r + (1 - r) * share, 1e-5);
+            }
+        }
+        stage_close(&stage);
+    }
+}
+
+/* Directions of a lobe cos^s by even shares of its volume: the mean of their cosines is (s + 1) / (s + 2),
+ * which the middles of shares reach within 1 / count^2 of its width, and they lie on all sides of the axis.
+ */
+static void directions_follow_the_lobe(void **state)
+{
+    (void)state;
+    enum { COUNT = 512 };
+    static const float exponents[] = {1, 10, 200, 1500};
+    static const vec3s axes[] = {{{0, 1, 0}}, {{0.6f, 0, -0.8f}}, {{-0.48f, 0.6f, 0.64f}}};
+    for (size_t e = 0; e < TL_COUNT(exponents); e++)
+        for (size_t a = 0; a < TL_COUNT(axes); a++) {
+            const double s = (double)exponents[e], width = 1 / (s + 2);
+            double cosines = 0, squares = 0;
+            vec3s sum = {{0, 0, 0}};
+            for (int m = 0; m < COUNT; m++) {
+                const vec3s d = tl_mirror_direction(axes[a], exponents[e], m, COUNT);
+                const double cosine = (double)glms_vec3_dot(d, axes[a]);
+                assert_near(glms_vec3_norm(d), 1, 1e-5);
+                cosines += cosine / COUNT;
+                squares += cosine * cosine / COUNT;
+                sum = glms_vec3_add(sum, glms_vec3_scale(d, 1.0f / COUNT));
+            }
+            assert_near(cosines, (s + 1) / (s + 2), 0.002 * width + 1e-6);
+            assert_near(squares, (s + 1) / (s + 3), 0.004 * width + 1e-6);
+            const vec3s aside = glms_vec3_sub(sum, glms_vec3_scale(axes[a], (float)cosines));
+            assert_near(glms_vec3_norm(aside), 0, 0.02 * sqrt(width));
+        }
+    assert_int_equal(tl_mirror_ray_count(1e5f), 1);
+    assert_true(glms_vec3_eqv_eps(tl_mirror_direction(axes[2], 1e5f, 0, 1), axes[2]));
+}
+
+/* A mirror that a mirror shows is free to see the sky: its ray goes up and away. */
+static void mirrors_in_mirrors_end(void **state)
+{
+    (void)state;
+    tl_material wall = matt_wall();
+    wall.glossiness = 1;
+    wall.double_sided = true;
+    struct stage stage;
+    stage_open_with(&stage, 1, &wall);
+    assert_true(stage.samples.count > SAMPLES + SAMPLES / 2);
+    for (size_t i = SAMPLES; i < stage.samples.count; i++) { /* rays go on, up and away from the wall */
+        assert_int_equal(stage.mirrors.items[i].ray_count, 1);
+        assert_int_equal(stage.mirrors.items[i].hits[0], TL_MIRROR_OPEN);
+    }
     stage_close(&stage);
 }
 
@@ -191,9 +300,9 @@ static void ground_is_met_where_it_lies(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_meet_what_is_there),
-        cmocka_unit_test(what_is_met_is_lit),
-        cmocka_unit_test(ground_is_met_where_it_lies),
+        cmocka_unit_test(rays_meet_what_is_there),    cmocka_unit_test(what_is_met_looks_itself),
+        cmocka_unit_test(directions_follow_the_lobe), cmocka_unit_test(mirrors_in_mirrors_end),
+        cmocka_unit_test(what_is_met_is_lit),         cmocka_unit_test(ground_is_met_where_it_lies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
