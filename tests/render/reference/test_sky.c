@@ -93,12 +93,44 @@ static void test_measure(void **state)
     }
 }
 
+/* Shares of a row are shares of its solid angle: they divide the cosines evenly. The digits of the sine stay,
+ * at a pole of a tall picture, too. */
+static void test_rows_of_lat_long(void **state)
+{
+    (void)state;
+    const int heights[] = {1, 2, 19, 4096};
+    for (size_t h = 0; h < TL_COUNT(heights); h++)
+        for (int k = 0; k < 12; k++) {
+            const int row = (heights[h] - 1) * (k % 3) / 2;
+            const double upper = cos(M_PI * row / heights[h]), lower = cos(M_PI * (row + 1) / heights[h]);
+            const double share = 0.1 + 0.2 * k / 3, y = upper + (lower - upper) * share, x = sqrt(1 - y * y);
+            const vec3s d = latlong_direction(0.75f, row, heights[h], (float)share);
+            assert_near(d.y, y, 2e-7);
+            assert_near((double)d.x / x, 1, 1e-6);
+            assert_near(d.z, 0, 1e-6);
+        }
+}
+
+static void test_every_second_bit(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 1000; i++) {
+        const uint32_t bits = i * 2654435761u;
+        double sum = 0.5;
+        for (int k = 0; k < 16; k++)
+            sum += (double)(bits >> 2 * k & 1) * (1 << k);
+        assert_near(every_second_bit(bits), sum / 65536, 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_curve),
         cmocka_unit_test(test_samples_and_lookups_agree),
         cmocka_unit_test(test_measure),
+        cmocka_unit_test(test_rows_of_lat_long),
+        cmocka_unit_test(test_every_second_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
