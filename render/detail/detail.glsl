@@ -51,20 +51,7 @@ vec2 detail_field_uv(vec2 uv)
     return vec2(dot(detail_rows[0], point), dot(detail_rows[1], point));
 }
 
-// Samples a map of the field at its level of detail.
-vec4 detail_texel(sampler2D map, vec2 uv)
-{
-#if defined(VERTEX_STAGE)
-    return textureLod(map, detail_field_uv(uv), 0.0);
-#elif defined(DETAIL_SHIFTED)
-    mat2 turned = transpose(mat2(detail_rows[0].xy, detail_rows[1].xy));
-    return textureGrad(map, detail_field_uv(uv), turned * unmoved_across, turned * unmoved_down);
-#else
-    return texture(map, detail_field_uv(uv));
-#endif
-}
-
-// The same of a layer of a map.
+// Samples a layer of maps of the field at its level of detail.
 vec2 detail_layer(sampler2DArray map, vec2 uv, float layer)
 {
 #if defined(VERTEX_STAGE)

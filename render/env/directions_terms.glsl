@@ -57,9 +57,11 @@ TERM float cube_stretch(float square)
 
 // ---- Lat-long pictures ----
 
+// The place of a direction of any length; acos would lose half of its digits at the poles.
 TERM vec2 latlong_place(vec3 d)
 {
-    return vec2(0.5f + atan2(d.x, -d.z) / 6.28318531f, acos(max(min(d.y, 1.0f), -1.0f)) / 3.14159265f);
+    float across = sqrt(d.x * d.x + d.z * d.z), turn = across > 0.0f ? atan2(d.x, -d.z) : 0.0f;
+    return vec2(0.5f + turn / 6.28318531f, atan2(across, d.y) / 3.14159265f);
 }
 
 // The direction at u below which lies `share` of the solid angle of a row. 1 - cos a = 2 sin^2(a / 2) from the nearer pole

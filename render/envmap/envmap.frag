@@ -4,6 +4,7 @@
 // LAYERED: some surfaces have coats or transmit light. PASS: this draw is one of several passes (passes.c).
 // VERTEX_VECTORS: directions come from vertices (vectors.frag). BAKED: diffuse light comes from light maps
 // (light_map.frag).
+#include "directions_terms.glsl"
 #include "exponents.glsl"
 #include "facets_terms.glsl"
 #include "lobes_terms.glsl"
@@ -181,14 +182,14 @@ vec3 light_of(int mode, Sample place, vec3 v, float ratio)
 
 #ifdef LAYERED
 // The share of the coat, which lies on the smooth surface.
-float coat_share(Part part, Sample place, vec3 v)
+float coat_over(Part part, Sample place, vec3 v)
 {
 #ifdef VERTEX_VECTORS
     float cosine = vertex_vector(over_vectors).w;
 #else
     float cosine = dot(place.smooth_normal, v);
 #endif
-    return part.coat * fresnel_dielectric(COAT_INDEX, clamp(cosine, 0.0, 1.0));
+    return coat_share(part.coat, cosine);
 }
 
 vec3 coat_light(Part part, Sample place, vec3 v)
@@ -213,7 +214,7 @@ vec3 through_light(Part part, Sample place)
 
 vec3 layered(Part part, Sample place, vec3 v, vec3 light)
 {
-    float coat = coat_share(part, place, v);
+    float coat = coat_over(part, place, v);
     vec3 over = coat > 0.0 ? coat * coat_light(part, place, v) : vec3(0.0);
     return (1.0 - coat) * (light + through_light(part, place)) + over;
 }
@@ -237,7 +238,7 @@ vec3 whole_light(Part part, int number, Sample place, vec3 v, float cosine, floa
 vec3 share_over(Part part, int number, Sample place, vec3 v, float cosine)
 {
 #ifdef LAYERED
-    return vec3(coat_share(part, place, v));
+    return vec3(coat_over(part, place, v));
 #else
     return reflectance(number, cosine);
 #endif

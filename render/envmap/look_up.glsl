@@ -59,10 +59,7 @@ layout(binding = 6) uniform sampler2DArray maps;
 
 vec3 look_up(vec3 direction, int slot, float level)
 {
-    vec3 d = turn * direction;
-    float across = length(d.xz);
-    float turn = across > 0.0 ? atan(d.x, -d.z) * 0.15915494 : 0.0;
-    return textureLod(maps, vec3(0.5 + turn, atan(across, d.y) * 0.31830989, float(slot)), level).rgb;
+    return textureLod(maps, vec3(latlong_place(turn * direction), float(slot)), level).rgb;
 }
 
 #elif defined(OCTAHEDRAL)
@@ -93,10 +90,7 @@ vec3 octahedral_level(vec2 place, int slot, int level)
 
 vec3 look_up(vec3 direction, int slot, float level)
 {
-    vec3 d = turn * direction;
-    vec3 p = d / (abs(d.x) + abs(d.y) + abs(d.z));
-    vec2 outwards = max(-p.y, 0.0) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.z >= 0.0 ? 1.0 : -1.0);
-    vec2 place = 0.5 + 0.5 * (p.xz + outwards);
+    vec2 place = octahedral_place(turn * direction);
     int last = textureQueryLevels(maps) - 1, whole = min(int(level), last);
     vec3 light = octahedral_level(place, slot, whole);
 #ifdef MINIFY

@@ -14,7 +14,6 @@
 #define TERM        TL_INLINE
 #define TERM_TABLE  static const
 #define abs         fabsf
-#define acos        acosf
 #define asin        asinf
 #define atan        atanf
 #define atan2       atan2f

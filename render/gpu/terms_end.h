@@ -2,7 +2,6 @@
 #undef TERM
 #undef TERM_TABLE
 #undef abs
-#undef acos
 #undef asin
 #undef atan
 #undef atan2

@@ -33,7 +33,7 @@ vec3 behind()
     vec3 world = view * vec3(2.0 * uv - 1.0, 1.0);
     vec3 d = turned_direction(environment_turn.x, environment_turn.y, world);
 #if defined(ON_LATLONG)
-    return exposure * textureLod(backdrop, latlong_place(normalize(d)), 0.0).rgb;
+    return exposure * textureLod(backdrop, latlong_place(d), 0.0).rgb;
 #else
     return exposure * textureLod(backdrop, d, 0.0).rgb;
 #endif

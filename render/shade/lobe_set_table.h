@@ -17,6 +17,9 @@
 #include <math.h>
 #include <stdbool.h>
 
+typedef struct LobeSetBetween LobeSetBetween;
+typedef struct LobeSetPlace LobeSetPlace;
+
 #include "render/gpu/terms_begin.h"
 
 #include "render/shade/lobe_set_terms.glsl"
@@ -46,20 +49,6 @@ void tl_lobe_set_table_make(const tl_material *material, float gloss_low, float 
                             struct tl_lobe_set_table *out);
 void tl_lobe_set_table_release(struct tl_lobe_set_table *table);
 
-/* A place between nodes: the first of two, and the share of the second. */
-struct tl_lobe_set_between {
-    int first;
-    float share;
-};
-
-TL_INLINE struct tl_lobe_set_between tl_lobe_set_between(float at, int count)
-{
-    at = tl_minf(tl_maxf(at, 0), (float)(count - 1));
-    int first = (int)at;
-    first = first < count - 1 ? first : count > 1 ? count - 2 : 0;
-    return (struct tl_lobe_set_between){first, at - (float)first};
-}
-
 TL_INLINE const struct tl_lobe_set_node *tl_lobe_set_nodes(const struct tl_lobe_set_table *table, int gloss,
                                                            int row, int column)
 {
@@ -71,7 +60,7 @@ TL_INLINE const struct tl_lobe_set_node *tl_lobe_set_nodes(const struct tl_lobe_
  * corner i lists them from the other end. */
 TL_INLINE void tl_lobe_set_add_nodes(const struct tl_lobe_set_table *table,
                                      const struct tl_lobe_set_node *nodes, int orders, float share,
-                                     struct tl_lobe_set_between row, struct tl_lobe_set_between column,
+                                     LobeSetBetween row, LobeSetBetween column,
                                      tl_quad sums[2 * TL_LOBE_FIT_MAX])
 {
     for (int i = 0; i < 4; i++) {
@@ -87,30 +76,16 @@ TL_INLINE void tl_lobe_set_add_nodes(const struct tl_lobe_set_table *table,
     }
 }
 
-/* The place at which the table is read. */
-struct tl_lobe_set_place {
-    struct tl_lobe_set_between row, column, gloss;
-    float side; /* 1 or -1, a factor on the x and y of directions: the frame is turned where y < 0 */
-};
-
-/* The place of a viewer (x, y, cosine > 0) in the frame of the threads. */
-TL_INLINE struct tl_lobe_set_place tl_lobe_set_place(const struct tl_lobe_set_table *table, float x, float y,
-                                                     float cosine, float glossiness)
+/* lobe_set_place in a table. */
+TL_INLINE LobeSetPlace tl_lobe_set_place(const struct tl_lobe_set_table *table, float x, float y,
+                                         float cosine, float glossiness)
 {
-    float side = y < 0 ? -1.0f : 1.0f;
-    struct tl_lobe_set_between column =
-        tl_lobe_set_between(lobe_set_column(side * x, side * y), TL_LOBE_SET_AZIMUTHS);
-    struct tl_lobe_set_between row = tl_lobe_set_between(lobe_set_row(cosine), TL_LOBE_SET_COSINES);
-    struct tl_lobe_set_between gloss =
-        tl_lobe_set_between((glossiness - table->gloss_low) / (table->gloss_high - table->gloss_low) *
-                                (float)(table->gloss_count - 1),
-                            table->gloss_count);
-    return (struct tl_lobe_set_place){row, column, gloss, side};
+    return lobe_set_place(x, y, cosine, glossiness, table->gloss_low, table->gloss_high, table->gloss_count);
 }
 
 /* The interpolated node: of each lobe its direction, which is not normalised, and its logarithm; then its
  * weights. */
-TL_INLINE void tl_lobe_set_fetch(const struct tl_lobe_set_table *table, const struct tl_lobe_set_place *at,
+TL_INLINE void tl_lobe_set_fetch(const struct tl_lobe_set_table *table, const LobeSetPlace *at,
                                  tl_quad sums[2 * TL_LOBE_FIT_MAX])
 {
     for (int k = 0; k < 2 * table->lobe_count; k++)

@@ -46,3 +46,37 @@ TERM float lobe_set_low_share(float f0)
 {
     return f0 < TL_LOBE_SET_LOW_F0 ? f0 * (1.0f / TL_LOBE_SET_LOW_F0) : 1.0f - lobe_set_high_share(f0);
 }
+
+// A place between nodes: the first of two, and the share of the second.
+struct LobeSetBetween {
+    int first;
+    float share;
+};
+
+TERM LobeSetBetween lobe_set_between(float at, int count)
+{
+    float within = min(max(at, 0.0f), float(count - 1));
+    int first = int(within), last = count > 1 ? count - 2 : 0;
+    LobeSetBetween between;
+    between.first = first < last ? first : last;
+    between.share = within - float(between.first);
+    return between;
+}
+
+// The place at which a table is read.
+struct LobeSetPlace {
+    LobeSetBetween row, column, gloss;
+    float side; // 1 or -1, a factor on the x and y of directions: the frame is turned where y < 0
+};
+
+// The place of a viewer (x, y, cosine > 0) in the frame of the threads. `low`, `high`: glossiness at both ends of `count`.
+TERM LobeSetPlace lobe_set_place(float x, float y, float cosine, float glossiness, float low, float high, int count)
+{
+    float along = count > 1 ? (glossiness - low) / (high - low) * float(count - 1) : 0.0f;
+    LobeSetPlace at;
+    at.side = y < 0.0f ? -1.0f : 1.0f;
+    at.column = lobe_set_between(lobe_set_column(at.side * x, at.side * y), TL_LOBE_SET_AZIMUTHS);
+    at.row = lobe_set_between(lobe_set_row(cosine), TL_LOBE_SET_COSINES);
+    at.gloss = lobe_set_between(along, count);
+    return at;
+}

@@ -209,7 +209,7 @@ TL_INLINE void fetch_lobe_set(const struct tl_pixel_lanes *lanes, const struct g
                               struct lobe_lanes *lobes)
 {
     const struct tl_lobe_set_table *set = lanes->look.part->lobe_set;
-    struct tl_lobe_set_place places[TL_LANES];
+    LobeSetPlace places[TL_LANES];
     lobes->count = set->lobe_count;
     for (int i = 0; i < TL_LANES; i++)
         places[i] = tl_lobe_set_place(set, gloss->viewer[0][i], gloss->viewer[1][i], gloss->viewer[2][i],

@@ -14,7 +14,7 @@ static inline int look_lobe_set_up(const struct tl_lobe_set_table *table, const 
     float cosine = glms_vec3_dot(viewer, frame->normal);
     if (!(cosine > 0))
         return 0;
-    const struct tl_lobe_set_place place =
+    const LobeSetPlace place =
         tl_lobe_set_place(table, glms_vec3_dot(viewer, frame->tangent),
                           glms_vec3_dot(viewer, frame->bitangent), cosine, glossiness);
     const struct tl_lobe_set_shares shares = tl_lobe_set_shares((tl_quad){f0.x, f0.y, f0.z, 0});
