@@ -13,19 +13,21 @@
 #include <string.h>
 
 #define SIZE  32
-#define DEPTH 0.02f /* m, of the height map on a square of 1 m */
+#define DEPTH 0.02f /* of the height map, of a side of the square */
 
 struct stage {
     tl_image ramp, bumps;
     struct test_shape shape;
     tl_environment white;
+    float metres; /* a side of the square, and of the unit of UV */
     tl_frame frame;
     struct tl_render_settings settings;
 };
 
-static struct stage *stage_new(void)
+static struct stage *stage_new_of(float metres)
 {
     struct stage *stage = TL_NEW(struct stage);
+    stage->metres = metres;
     stage->ramp = tl_image_create(256, 1, 3, TL_IMAGE_F32);
     for (int i = 0; i < 3 * 256; i++) {
         int column = i / 3;
@@ -39,23 +41,28 @@ static struct stage *stage_new(void)
               y = 2 * (float)M_PI * ((float)row + 0.5f) / 16;
         tl_image_bytes(&stage->bumps)[i] = (uint8_t)lrintf(127.5f + 60 * sinf(x) + 60 * cosf(y));
     }
-    stage->shape = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.5f, 2);
+    stage->shape = test_square((vec3s){{0, 0, 0}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.5f * metres, 2);
     tl_material *material = &stage->shape.material;
     material->diffuse = (vec3s){{1, 1, 1}};
     material->specular = (vec3s){{0, 0, 0}};
     material->diffuse_map.image = &stage->ramp;
     material->diffuse_map.clamp_u = material->diffuse_map.clamp_v = true;
     material->height_map.image = &stage->bumps;
-    material->height_m = DEPTH;
+    material->height_m = DEPTH * metres;
     test_shape_refresh(&stage->shape);
     stage->white = tl_environment_constant(1, 1, 1);
-    stage->frame = test_frame((vec3s){{1.2f, 0.5f, 1.3f}}, (vec3s){{0, 0, 0}}, 16, &stage->shape.surface, 1,
-                              &stage->white);
+    stage->frame = test_frame((vec3s){{1.2f * metres, 0.5f * metres, 1.3f * metres}}, (vec3s){{0, 0, 0}}, 16,
+                              &stage->shape.surface, 1, &stage->white);
     stage->settings = test_settings(SIZE, SIZE);
     stage->settings.light.method = TL_METHOD_UNSHADOWED;
     stage->settings.light.composition = TL_COMPOSE_DIFFERENCE;
     stage->settings.image.supersample = 1;
     return stage;
+}
+
+static struct stage *stage_new(void)
+{
+    return stage_new_of(1);
 }
 
 static void stage_free(struct stage *stage)
@@ -95,7 +102,7 @@ static float expected_u(const struct tl_height_field *field, const struct tl_det
 static void check_shift(struct test_device *device, struct stage *stage, const struct tl_height_field *field)
 {
     bool behind = field->turned_over;
-    stage->frame.camera.eye.z = behind ? -1.3f : 1.3f;
+    stage->frame.camera.eye.z = (behind ? -1.3f : 1.3f) * stage->metres;
     for (int mode = TL_DETAIL_NORMAL; mode <= TL_DETAIL_RELIEF; mode++) {
         stage->settings.detail.mode = mode;
         tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings);
@@ -103,7 +110,8 @@ static void check_shift(struct test_device *device, struct stage *stage, const s
         for (int i = 0; i < SIZE * SIZE; i++) {
             vec3s view, at = pixel_point(stage, i % SIZE, i / SIZE, &view);
             view.z *= behind ? -1 : 1;
-            float u = expected_u(field, &stage->settings.detail, (vec2s){{at.x + 0.5f, 0.5f - at.y}}, view);
+            const vec2s uv = {{at.x / stage->metres + 0.5f, 0.5f - at.y / stage->metres}};
+            float u = expected_u(field, &stage->settings.detail, uv, view);
             const float *pixel = test_pixel(&image, i % SIZE, i / SIZE);
             double off = fabs((double)(pixel[0] / pixel[2] - u));
             worst = fmax(worst, off);
@@ -116,23 +124,30 @@ static void check_shift(struct test_device *device, struct stage *stage, const s
     }
 }
 
-static void test_shift(void **state)
+static void check_shifts(struct test_device *device, float metres)
 {
-    struct stage *stage = stage_new();
+    struct stage *stage = stage_new_of(metres);
     tl_image heights = tl_image_create(64, 64, 1, TL_IMAGE_F32);
     for (int i = 0; i < 64 * 64; i++)
-        tl_image_floats(&heights)[i] = DEPTH * ((float)tl_image_bytes(&stage->bumps)[i] / 255 - 1);
-    struct tl_height_field field = tl_height_field_make(&heights, 1, 1, false, false), back;
+        tl_image_floats(&heights)[i] = DEPTH * metres * ((float)tl_image_bytes(&stage->bumps)[i] / 255 - 1);
+    struct tl_height_field field = tl_height_field_make(&heights, metres, metres, false, false), back;
     tl_image cones = tl_bake_cones(&field, 1);
     field.cones = &cones;
     back = tl_height_field_back(&field);
     stage->shape.material.double_sided = true;
     test_shape_refresh(&stage->shape);
-    check_shift(*state, stage, &field);
-    check_shift(*state, stage, &back);
+    check_shift(device, stage, &field);
+    check_shift(device, stage, &back);
     tl_image_release(&cones);
     tl_image_release(&heights);
     stage_free(stage);
+}
+
+/* What is similar looks alike, however many metres a unit of UV has. */
+static void test_shift(void **state)
+{
+    check_shifts(*state, 1);
+    check_shifts(*state, 0.25f);
 }
 
 static void test_reference(void **state)
