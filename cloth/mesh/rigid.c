@@ -1,66 +1,19 @@
 #include "cloth/mesh/rigid.h"
 
-/* The eigenvector of a symmetric matrix's largest eigenvalue, by repeated squaring: a shift by the sum of
- * |entries| makes all eigenvalues positive, so that in the power 2^SQUARINGS the largest one dominates; every
- * column is then the eigenvector. The longest column is taken, as others may vanish. */
-#define SQUARINGS 40
-static void largest_eigenvector(double m[4][4], double out[4])
-{
-    double shift = 0, norm;
-    for (int i = 0; i < 16; i++)
-        shift += fabs(m[i / 4][i % 4]);
-    for (int i = 0; i < 4; i++)
-        m[i][i] += shift;
-    for (int round = 0; round < SQUARINGS; round++) {
-        double squared[4][4] = {0};
-        norm = 0;
-        for (int i = 0; i < 64; i++)
-            squared[i / 16][i / 4 % 4] += m[i / 16][i % 4] * m[i % 4][i / 4 % 4];
-        for (int i = 0; i < 16; i++)
-            norm = fmax(norm, fabs(squared[i / 4][i % 4]));
-        for (int i = 0; i < 16; i++)
-            m[i / 4][i % 4] = norm > 0 ? squared[i / 4][i % 4] / norm : 0;
-    }
-    int longest = 0;
-    for (int i = 1; i < 4; i++)
-        longest = m[i][i] > m[longest][longest] ? i : longest;
-    norm = 0;
-    for (int i = 0; i < 4; i++)
-        norm += m[longest][i] * m[longest][i];
-    for (int i = 0; i < 4; i++)
-        out[i] = norm > 0 ? m[longest][i] / sqrt(norm) : i == 0;
-}
+#include "assets/topology/rotation.h"
 
-static vec3d centre_of(const vec3s *points, size_t count)
+static vec3d vector_of(const double v[3])
 {
-    vec3d sum = {0};
-    for (size_t i = 0; i < count; i++)
-        sum = vec3d_add(sum, vec3d_from(points[i]));
-    return vec3d_scale(sum, count > 0 ? 1 / (double)count : 0);
+    return (vec3d){v[0], v[1], v[2]};
 }
 
 struct tl_rigid tl_rigid_fit(const vec3s *from, const vec3s *to, size_t count)
 {
-    struct tl_rigid rigid = {.from = centre_of(from, count), .to = centre_of(to, count)};
-    double s[3][3] = {0}, q[4];
-    for (size_t k = 0; k < count; k++) {
-        vec3d a = vec3d_sub(vec3d_from(from[k]), rigid.from), b = vec3d_sub(vec3d_from(to[k]), rigid.to);
-        const double left[3] = {a.x, a.y, a.z}, right[3] = {b.x, b.y, b.z};
-        for (int i = 0; i < 9; i++)
-            s[i / 3][i % 3] += left[i / 3] * right[i % 3];
-    }
-    double n[4][4] = {{s[0][0] + s[1][1] + s[2][2], s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]},
-                      {s[1][2] - s[2][1], s[0][0] - s[1][1] - s[2][2], s[0][1] + s[1][0], s[2][0] + s[0][2]},
-                      {s[2][0] - s[0][2], s[0][1] + s[1][0], s[1][1] - s[0][0] - s[2][2], s[1][2] + s[2][1]},
-                      {s[0][1] - s[1][0], s[2][0] + s[0][2], s[1][2] + s[2][1], s[2][2] - s[0][0] - s[1][1]}};
-    largest_eigenvector(n, q);
-    rigid.rotation[0] = (vec3d){1 - 2 * (q[2] * q[2] + q[3] * q[3]), 2 * (q[1] * q[2] - q[0] * q[3]),
-                                2 * (q[1] * q[3] + q[0] * q[2])};
-    rigid.rotation[1] = (vec3d){2 * (q[1] * q[2] + q[0] * q[3]), 1 - 2 * (q[1] * q[1] + q[3] * q[3]),
-                                2 * (q[2] * q[3] - q[0] * q[1])};
-    rigid.rotation[2] = (vec3d){2 * (q[1] * q[3] - q[0] * q[2]), 2 * (q[2] * q[3] + q[0] * q[1]),
-                                1 - 2 * (q[1] * q[1] + q[2] * q[2])};
-    return rigid;
+    const struct tl_rotation fit = tl_rotation_fit(from, to, count);
+    return (struct tl_rigid){
+        .from = vector_of(fit.from),
+        .to = vector_of(fit.to),
+        .rotation = {vector_of(fit.rows[0]), vector_of(fit.rows[1]), vector_of(fit.rows[2])}};
 }
 
 vec3d tl_rigid_turn(const struct tl_rigid *rigid, vec3d direction)

@@ -1,5 +1,5 @@
-/* The rigid motion that maps one set of points onto another with the least sum of squared distances [Horn
- * 1987]. Threads: pure. */
+/* The rigid motion that maps one set of points onto another with the least sum of squared distances. Threads:
+ * pure. */
 #ifndef TOILE_CLOTH_MESH_RIGID_H
 #define TOILE_CLOTH_MESH_RIGID_H
 

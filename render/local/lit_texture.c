@@ -52,7 +52,7 @@ const struct tl_lit_chart *tl_lit_texture_chart(struct tl_lit_texture *lit, cons
     return chart->fits ? chart : NULL;
 }
 
-static void allocate(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int side)
+static void allocate(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int side, int layers)
 {
     static const unsigned formats[][2] = {
         [TL_PASS_TARGET_FIXED8] = {GL_RGBA8, GL_R8}, [TL_PASS_TARGET_FLOAT] = {GL_RGBA32F, GL_R32F}};
@@ -66,16 +66,17 @@ static void allocate(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int si
     int levels = tl_texture_full_levels(side, side);
     tl_texture_destroy(&lit->light);
     tl_texture_destroy(&lit->cover);
-    lit->light = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, formats[target][0], side, side, 2, levels);
-    lit->cover = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, formats[target][1], side, side, 2, levels);
+    lit->light = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, formats[target][0], side, side, layers, levels);
+    lit->cover = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, formats[target][1], side, side, layers, levels);
 }
 
-void tl_lit_texture_begin(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int side, bool back)
+void tl_lit_texture_begin(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int side, int layers,
+                          int layer)
 {
     const float empty[4] = {0, 0, 0, 0};
-    allocate(lit, gpu, target, side);
-    glNamedFramebufferTextureLayer(lit->framebuffer, GL_COLOR_ATTACHMENT0, lit->light.id, 0, back);
-    glNamedFramebufferTextureLayer(lit->framebuffer, GL_COLOR_ATTACHMENT1, lit->cover.id, 0, back);
+    allocate(lit, gpu, target, side, layers);
+    glNamedFramebufferTextureLayer(lit->framebuffer, GL_COLOR_ATTACHMENT0, lit->light.id, 0, layer);
+    glNamedFramebufferTextureLayer(lit->framebuffer, GL_COLOR_ATTACHMENT1, lit->cover.id, 0, layer);
     glClearNamedFramebufferfv(lit->framebuffer, GL_COLOR, 0, empty);
     glClearNamedFramebufferfv(lit->framebuffer, GL_COLOR, 1, empty);
     glBindFramebuffer(GL_FRAMEBUFFER, lit->framebuffer);

@@ -39,8 +39,10 @@ size_t tl_lit_texture_bytes(const struct tl_lit_texture *lit);
 /* The chart of a part, valid until the next call; NULL where UVs overlap. */
 const struct tl_lit_chart *tl_lit_texture_chart(struct tl_lit_texture *lit, const tl_surface *surface,
                                                 size_t index, size_t part, int side);
-/* Begins drawing texels of the front or of the back, which are cleared. `target`: enum tl_pass_target. */
-void tl_lit_texture_begin(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int side, bool back);
+/* Begins drawing texels of one of `layers` layers, 0 the front, 1 the back, which are cleared. `target`: enum
+ * tl_pass_target. */
+void tl_lit_texture_begin(struct tl_lit_texture *lit, tl_gpu *gpu, int target, int side, int layers,
+                          int layer);
 /* Averages the mip levels of what was drawn. */
 void tl_lit_texture_end(const struct tl_lit_texture *lit);
 

@@ -1,5 +1,6 @@
 #include "render/local/local.h"
 
+#include "config/base/hash.h"
 #include "config/base/memory.h"
 #include "render/env/exponent.h"
 #include "render/gpu/shaders.h"
@@ -38,6 +39,7 @@ enum {
     CHART,
     LIT_SCALE,
     TEXEL_SIDE,
+    OBJECT_TURN = 103,
     FIRST_CORNER
 };
 enum {
@@ -68,7 +70,8 @@ struct lit_part {
     enum tl_lamp_shadow shadow;
     const struct tl_gloss_tables *tables; /* NULL: the formula */
     const tl_texture *power;              /* of POWER_TABLE */
-    const struct tl_lit_chart *chart;     /* NULL: not lit in texture space */
+    const struct tl_lit_chart *chart;     /* NULL: no texture over UVs */
+    const struct tl_object_map *normals;  /* NULL: not from a map in object space */
     float lit_scale;                      /* the largest gloss of its texels, if that is known */
 };
 
@@ -90,13 +93,14 @@ void tl_local_release(struct tl_local *local)
     tl_table_textures_release(&local->tables);
     tl_target_destroy(&local->product);
     tl_lit_texture_release(&local->lit);
+    tl_object_maps_release(&local->normals);
     *local = (struct tl_local){0};
 }
 
 size_t tl_local_bytes(const struct tl_local *local)
 {
     return tl_table_textures_bytes(&local->tables) + tl_target_bytes(&local->product) +
-           tl_lit_texture_bytes(&local->lit);
+           tl_lit_texture_bytes(&local->lit) + tl_object_maps_bytes(&local->normals);
 }
 
 static void define(char defines[TL_LOCAL_DEFINES_SIZE], const char *name)
@@ -175,6 +179,8 @@ static void define_all(const struct tl_local_request *request, const struct lit_
         define(defines, "FUZZ");
     if (part->material->thread_count > 0 && !part->material->measured)
         define(defines, part->material->thread_count > 1 ? "THREADS 2" : "THREADS 1");
+    if (part->normals)
+        define(defines, "OBJECT_SPACE");
     if (pass->define)
         define(defines, pass->define);
     size_t length = strlen(defines);
@@ -296,6 +302,13 @@ static void set_chart(const struct lit_part *part)
     glUniform1f(LIT_SCALE, part->lit_scale);
 }
 
+static void set_normals(const struct tl_object_map *normals, const tl_surface *surface)
+{
+    const mat3s turn = tl_object_map_turn(normals, surface);
+    glUniformMatrix3fv(OBJECT_TURN, 1, GL_FALSE, turn.raw[0]);
+    glBindTextureUnit(LIT_UNIT, normals->texture.light.id);
+}
+
 static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                       const struct lit_part *part, const struct pass *pass, tl_error *error)
 {
@@ -312,6 +325,8 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
         set_chart(part);
         glUniform1f(TEXEL_SIDE, pass->texel_side);
     }
+    if (part->normals)
+        set_normals(part->normals, request->drawn[part->surface]);
     if (request->params->normalisation == TL_NORMALISE_SLERP)
         glUniform1ui(FIRST_CORNER, tl_surfaces_bind_corners(request->surfaces, part->surface, part->part));
     tl_surfaces_draw_part(request->surfaces, part->surface, part->part);
@@ -360,11 +375,11 @@ static bool has_bumps(const tl_material *material)
     return material->normal_map.image || material->height_map.image || material->weave;
 }
 
-/* Whether a part is lit in texture space. */
-static bool is_lit_as_texture(const struct tl_local_request *request, const tl_material *material)
+/* Whether a part has a texture over its UVs. */
+static bool has_chart(const struct tl_local_request *request, const tl_material *material)
 {
     const struct tl_shading_params *params = request->params;
-    return params->space == TL_SPACE_TEXTURE && params->frequency != TL_FREQUENCY_GOURAUD &&
+    return params->space >= TL_SPACE_TEXTURE && params->frequency != TL_FREQUENCY_GOURAUD &&
            params->coordinates != TL_COORDINATES_VERTEX && request->drawn && has_bumps(material);
 }
 
@@ -400,7 +415,7 @@ static bool draw_as_texture(struct tl_local *local, tl_gpu *gpu, const struct tl
     const struct tl_shading_params *params = request->params;
     bool fine = true;
     for (int back = 0; fine && back < 2; back++) {
-        tl_lit_texture_begin(&local->lit, gpu, params->pass_target, params->texture_size, back);
+        tl_lit_texture_begin(&local->lit, gpu, params->pass_target, params->texture_size, 2, back);
         const struct pass texels = {0, part->tables ? part->tables->count - 1 : -1, "TEXELS", back ? -1 : 1};
         fine = draw_pass(local, gpu, request, part, &texels, error);
     }
@@ -411,6 +426,36 @@ static bool draw_as_texture(struct tl_local *local, tl_gpu *gpu, const struct tl
     glBindTextureUnit(LIT_COVER_UNIT, local->lit.cover.id);
     const struct pass mapped = {0, -1, "LIT", 0};
     return fine && draw_pass(local, gpu, request, part, &mapped, error);
+}
+
+/* Finds the normals of a part in object space, and draws them where the map is new. */
+static bool find_normals(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
+                         struct lit_part *part, tl_error *error)
+{
+    const struct tl_shading_params *params = request->params;
+    const tl_surface *surface = request->drawn[part->surface];
+    const struct tl_detail_params *detail = request->detail ? request->detail : tl_detail_options.defaults;
+    const struct tl_binding binding = {&tl_detail_options, (void *)detail};
+    const struct tl_object_map key = {
+        .surface = part->surface,
+        .part = part->part,
+        .revision = surface->topology_revision,
+        .side = params->texture_size,
+        .target = params->pass_target,
+        .detail = tl_options_hash(&binding, 1, (struct tl_option_filter){.any_of = ~0ull}, TL_HASH_START)};
+    bool is_new;
+    struct tl_object_map *normals = tl_object_maps_find(&local->normals, surface, &key, &is_new);
+    bool fine = true;
+    if (is_new) {
+        const struct pass texels = {0, -1, "TEXELS\n#define NORMALS", 1};
+        tl_lit_texture_begin(&normals->texture, gpu, params->pass_target, params->texture_size, 1, 0);
+        fine = draw_pass(local, gpu, request, part, &texels, error);
+        tl_lit_texture_end(&normals->texture);
+        draw_into_light(request);
+    }
+    part->normals = normals;
+    local->lit_used = true; /* its charts */
+    return fine;
 }
 
 static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
@@ -427,10 +472,12 @@ static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local
         part->power = tl_table_textures_power(
             &local->tables, gpu,
             material->gloss.model == TL_REFLECT_BLINN_PHONG ? 4 * brdf.exponent : brdf.exponent);
-    if (is_lit_as_texture(request, material))
+    if (has_chart(request, material))
         part->chart = tl_lit_texture_chart(&local->lit, request->drawn[part->surface], part->surface,
                                            part->part, params->texture_size);
-    if (part->chart) {
+    if (part->chart && params->space == TL_SPACE_OBJECT && !find_normals(local, gpu, request, part, error))
+        return false;
+    if (part->chart && params->space == TL_SPACE_TEXTURE) {
         part->lit_scale = largest_gloss(part, &brdf, fresnel_cosine(request, part));
         return draw_as_texture(local, gpu, request, part, error);
     }
@@ -500,6 +547,7 @@ bool tl_local_draw(struct tl_local *local, tl_gpu *gpu, const struct tl_local_re
 {
     tl_table_textures_begin(&local->tables);
     local->product_used = local->lit_used = false;
+    tl_object_maps_keep(&local->normals, request->drawn, request->drawn ? request->surface_count : 0);
     draw_into_light(request);
     glDepthFunc(GL_LEQUAL);
     glDepthMask(GL_FALSE);

@@ -1,7 +1,8 @@
 #version 450 core
 // The light of one lamp on the surfaces of the G-buffer, added to the light target. TEXELS: on the texels of a part,
-// without its shadows, to be mapped to it by LIT (lit_texture.h).
-#if defined(TEXELS) || defined(LIT)
+// without its shadows, to be mapped to it by LIT (lit_texture.h). NORMALS: the normals of these texels instead, for
+// OBJECT_SPACE (object_map.h).
+#if defined(TEXELS) || defined(LIT) || defined(OBJECT_SPACE)
 layout(location = 99) uniform vec4 chart; // offset, factor on UV
 layout(location = 100) uniform float lit_scale; // of the gloss that texels hold
 layout(location = 101) uniform float texel_side; // TEXELS: -1 for the back
@@ -53,8 +54,12 @@ layout(binding = 18) uniform sampler2DArrayShadow lamp_depths;
 layout(binding = 19) uniform samplerCube normalising; // unit vectors, with 0 to 1 standing for -1 to 1
 #endif
 
-#ifdef LIT
-layout(binding = 27) uniform sampler2DArray lit_light; // gloss / lit_scale; cosine of the lamp
+#ifdef OBJECT_SPACE
+layout(location = 103) uniform mat3 object_turn;
+#endif
+#if defined(LIT) || defined(OBJECT_SPACE)
+// gloss / lit_scale, cosine of the lamp; of OBJECT_SPACE (normal + 1) / 2, cover
+layout(binding = 27) uniform sampler2DArray lit_light;
 layout(binding = 28) uniform sampler2DArray lit_cover;
 #endif
 
@@ -179,12 +184,29 @@ float plane_side(float side)
 #endif
 }
 
+#if defined(LIT) || defined(OBJECT_SPACE)
+// A texture over the UVs of the part; layer 0 is the front.
+vec4 charted(sampler2DArray map, float layer)
+{
+    vec3 at = vec3(chart.xy + place.uv * chart.zw, layer);
+#ifdef DETAIL_SHIFTED
+    return textureGrad(map, at, unmoved_across * chart.zw, unmoved_down * chart.zw);
+#else
+    return texture(map, at);
+#endif
+}
+#endif
+
 #ifndef GOURAUD
 // The normal with bumps, not normalised after interpolation and map.
 vec3 bumped_normal(vec3 smooth_normal)
 {
     if (!bumpy)
         return base_normal;
+#ifdef OBJECT_SPACE
+    vec4 held = charted(lit_light, 0.0);
+    return object_turn * (2.0 * held.rgb - held.a);
+#endif
 #if DETAIL_DERIVED
     if (detail_range.z > 0.0)
         return detail_derived(bumps.normal, smooth_normal, point, uv);
@@ -273,15 +295,9 @@ vec4 lit_here(float side, vec3 smooth_normal, vec3 kd)
 // The same from the texture.
 vec4 lit_texel(float side)
 {
-    vec3 at = vec3(chart.xy + place.uv * chart.zw, side > 0.0 ? 0.0 : 1.0);
-#ifdef DETAIL_SHIFTED
-    vec2 across = unmoved_across * chart.zw, down = unmoved_down * chart.zw;
-    vec4 light = textureGrad(lit_light, at, across, down);
-    float cover = textureGrad(lit_cover, at, across, down).r;
-#else
-    vec4 light = texture(lit_light, at);
-    float cover = texture(lit_cover, at).r;
-#endif
+    float layer = side > 0.0 ? 0.0 : 1.0;
+    vec4 light = charted(lit_light, layer);
+    float cover = charted(lit_cover, layer).r;
     return cover > 0.0 ? light * vec4(vec3(lit_scale), 1.0 / PI) / cover : vec4(0.0);
 }
 #endif
@@ -365,7 +381,10 @@ void main()
     vec3 smooth_normal = direction_or(base_normal, facet);
     mat3 frame = detail_frame(smooth_normal, tangent);
     find_detail(frame, side, smooth_normal);
-#ifdef TEXELS
+#ifdef NORMALS
+    out_light = vec4(0.5 * direction_or(bumped_normal(smooth_normal), smooth_normal) + 0.5, 1.0);
+    out_cover = 1.0;
+#elif defined(TEXELS)
     float open = bumpy ? bumps.mean_length : 1.0; // as in reflected
     vec4 lit = lit_here(side, smooth_normal, diffuse_here() * open);
     out_light = lit * vec4(vec3(1.0 / lit_scale), PI * open);

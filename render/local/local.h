@@ -16,6 +16,7 @@
 #include "render/local/lamp.h"
 #include "render/local/lamp_shadows.h"
 #include "render/local/lit_texture.h"
+#include "render/local/object_map.h"
 #include "render/local/shading.h"
 #include "render/local/table_textures.h"
 
@@ -31,10 +32,11 @@ struct tl_local {
     struct tl_local_program **programs; /* by pointer, so that the defines of a program do not move */
     struct tl_lamp_shadows shadows;
     struct tl_table_textures tables;
-    tl_target product;         /* target in which passes multiply; shares the depth of the G-buffer */
-    bool product_used;         /* in this frame */
-    struct tl_lit_texture lit; /* of TL_SPACE_TEXTURE */
-    bool lit_used;             /* in this frame */
+    tl_target product;             /* target in which passes multiply; shares the depth of the G-buffer */
+    bool product_used;             /* in this frame */
+    struct tl_lit_texture lit;     /* of TL_SPACE_TEXTURE */
+    bool lit_used;                 /* in this frame */
+    struct tl_object_maps normals; /* of TL_SPACE_OBJECT */
 };
 
 struct tl_local_request {
@@ -42,7 +44,7 @@ struct tl_local_request {
     const tl_target *light; /* with the depth of the G-buffer */
     const struct tl_view *view;
     const tl_surfaces *surfaces;
-    const tl_surface *const *drawn; /* what they were made of; NULL: none is lit in texture space */
+    const tl_surface *const *drawn; /* what they were made of; NULL: no textures over UVs */
     size_t surface_count;
     const struct tl_ground *ground; /* NULL: none; else the last of the surfaces */
     struct tl_casters casters;

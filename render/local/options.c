@@ -9,7 +9,7 @@ static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL
 static const char *const range_names[] = {"clamped", "scaled", NULL};
 const char *const tl_pass_target_names[] = {"fixed8", "float", NULL};
 static const char *const power_names[] = {"pow", "fixed8", "table", NULL};
-static const char *const space_names[] = {"world", "tangent", "texture", NULL};
+static const char *const space_names[] = {"world", "tangent", "texture", "object", NULL};
 static const char *const self_shadow_names[] = {"step", "ramp", NULL};
 
 #define AFFECTS (TL_AFFECTS_APPEARANCE | TL_AFFECTS_LAMPS)
@@ -34,7 +34,7 @@ static const struct tl_option rows[] = {
     TL_OPTION_INT(params, max_textures_per_pass, AFFECTS, 1, 4, "tables",
                   "tables multiplied in one pass; smaller: more passes for gloss with more tables"),
     TL_OPTION_ENUM(params, pass_target, AFFECTS, tl_pass_target_names,
-                   "precision of the target in which passes are multiplied, and of textures that are lit"),
+                   "precision of the target in which passes are multiplied, and of textures over UVs"),
     TL_OPTION_ENUM(
         params, normalisation, AFFECTS, tl_normalisation_names,
         "phong: renormalisation of vectors; all methods but exact start from interpolated vectors; newton, "
@@ -45,10 +45,11 @@ static const struct tl_option rows[] = {
     TL_OPTION_ENUM(
         params, space, AFFECTS, space_names,
         "space of vectors at pixels: world, or tangent space by a transformation at vertices; texture: "
-        "bumps are lit at texels over the UVs, and what is lit is mapped to the surface; parts whose UVs "
-        "overlap are lit in world space"),
+        "bumps are lit at texels over the UVs, and what is lit is mapped to the surface; object: "
+        "normals with their bumps come from a map of them in the pose in which they are first drawn, which "
+        "follows rigid motion but no bends; parts whose UVs overlap are lit in world space"),
     TL_OPTION_INT(params, texture_size, AFFECTS, 8, 4096, "texels",
-                  "texture: side of what is lit over the UVs of a part; larger: finer bumps"),
+                  "texture, object: side of what lies over the UVs of a part; larger: finer bumps"),
     TL_OPTION_ENUM(params, self_shadow, AFFECTS, self_shadow_names,
                    "end of light at the horizon of the smooth surface: a step, or a steep ramp"),
 };

@@ -21,8 +21,9 @@ enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };
 extern const char *const tl_pass_target_names[]; /* ends with NULL */
 /* The space in which bumps are lit: at pixels in world space, or by vectors taken into tangent space at
  * vertices; or at the texels of a texture over the UVs of each part with bumps, which is then mapped to it
- * (render/local/lit_texture.h). */
-enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT, TL_SPACE_TEXTURE };
+ * (render/local/lit_texture.h); or at pixels with normals from a texture over these UVs that holds them in
+ * object space (render/local/object_map.h). */
+enum tl_space { TL_SPACE_WORLD, TL_SPACE_TANGENT, TL_SPACE_TEXTURE, TL_SPACE_OBJECT };
 enum tl_self_shadow { TL_SELF_SHADOW_STEP, TL_SELF_SHADOW_RAMP };
 
 struct tl_shading_params {
@@ -37,7 +38,7 @@ struct tl_shading_params {
     int normalisation;         /* enum tl_normalisation, for PHONG: renormalisation of interpolated vectors */
     int power;                 /* enum tl_power, for DIRECT with a model that is a power */
     int space;                 /* enum tl_space, for vectors at pixels */
-    int texture_size;          /* texels, side; of TEXTURE, whose precision is pass_target */
+    int texture_size;          /* texels, side; of TEXTURE and OBJECT, whose precision is pass_target */
     int self_shadow;           /* enum tl_self_shadow */
 };
 extern const struct tl_option_table tl_shading_options;

@@ -1,6 +1,6 @@
 // Vectors that turn evenly from corner to corner of a triangle [Schroecker 2002, eq. 3]: along the edge of the last two, then
 // towards the first. On every edge that is the equation itself, so that neighbours meet; hardware interpolates along spans.
-layout(location = 102) uniform uint first_corner; // of the part, in the numbers of the surface's corners
+layout(location = 104) uniform uint first_corner; // of the part, in the numbers of the surface's corners
 layout(std430, binding = 9) readonly buffer CornerNumbers
 {
     uint corner_numbers[];

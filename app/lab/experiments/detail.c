@@ -1,5 +1,6 @@
 /* Fabric detail: heights as normals, parallax and relief, their shadows, weaves too fine to be seen, maps
- * baked of finer meshes, normal maps lit in texture space, and relief at outlines. Ids C1 to C8, C11 to C13.
+ * baked of finer meshes, normal maps lit in texture space or held in object space, and relief at outlines.
+ * Ids C1 to C8, C11 to C14.
  */
 #include "app/lab/experiments/rows_internal.h"
 
@@ -123,8 +124,9 @@ static const struct tl_technique baked[] = {
      SET("detail.normals=@normals.png", "detail.heights=@heights.exr", "detail.mode=relief")},
 };
 
-/* Normal maps lit in texture space. */
+/* Normal maps lit in texture space, and held in object space. */
 #define TEXTURE_SPACE(size) "shading.space=texture", "shading.texture_size=" size
+#define OBJECT_SPACE(size)  "shading.space=object", "shading.texture_size=" size
 #define BY_MATRIX           "shading.coordinates=matrix"
 #define POWER_8_BIT         "shading.power=table", "shading.pass_target=fixed8"
 static const struct tl_technique lit_textures[] = {
@@ -139,6 +141,11 @@ static const struct tl_technique lit_textures[] = {
      .id = "C12",
      SET(TEXTURE_SPACE("2048"), BY_MATRIX, POWER_8_BIT)},
     {.picture = "2048 texels, each texel's own vectors", .id = "C12", SET(TEXTURE_SPACE("2048"))},
+    {.picture = "512 texels", .id = "C14", SET(OBJECT_SPACE("512"))},
+    {.picture = "2048 texels", .id = "C14", SET(OBJECT_SPACE("2048"))},
+    {.picture = "2048 texels of 8 bits",
+     .id = "C14",
+     SET(OBJECT_SPACE("2048"), "shading.pass_target=fixed8")},
 };
 
 /* Relief at outlines. */
@@ -359,6 +366,26 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {CURVED("512"), "detail.refine=16"}},
      .ids = {"C13"},
      METHODS(outlines)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "c14",
+     .scene = "gallery",
+     .title = "C14  Normal maps in object space",
+     .source = "[Heidrich and Seidel 1999, 5.1]",
+     .text =
+         "The map holds the normals of a pose, which a matrix takes to where the lamps are. Cloth in that "
+         "pose is lit as by a map in tangent space, but for the size of texels. Cloth that moves has no "
+         "such matrix: the nearest rotation stands for it, and what bends afterwards keeps the light of "
+         "its pose. In the strip the sheet falls, with the map of its start.",
+     .exact_text = "the map in tangent space, taken to world space at every sample",
+     .motion = TL_MOTION_CLOTH,
+     .motion_step = 4,
+     .claims = {{"2048 texels", "512 texels", "[Heidrich and Seidel 1999, 5.1]"}},
+     .solid = "torus",
+     .base = {LAMPLIT, BUMPY, "material.specular=[0.15, 0.15, 0.15]", "detail.minify=none"},
+     .reference = {.assignments = {"shading.space=world"}},
+     .side = 384,
+     .ids = {"C14"},
+     METHODS(lit_textures)},
 };
 
 const struct tl_experiment_list tl_detail_experiments = {experiments, TL_COUNT(experiments)};

@@ -1,6 +1,6 @@
-/* Normal maps lit in texture space, as they are drawn: a square whose texels lie at the middles of pixels
- * against the formula at every texel's own normal, in double, and curved surfaces against the same matrix at
- * pixels. */
+/* Normal maps lit in texture space, and those held in object space, as they are drawn: a square whose texels
+ * lie at the middles of pixels against the formula at every texel's own normal, in double, and curved
+ * surfaces against the same matrix at pixels. */
 #include "tests/render/scenes.h"
 
 #include "config/base/memory.h"
@@ -228,10 +228,11 @@ static void smaller_texels_come_near_pixels(void **state)
  */
 static double off_pixels(struct test_scene *scene, tl_renderer *renderer, double *by_weights)
 {
+    int space = scene->settings.shading.space;
     tl_image drawn = test_scene_draw(scene, renderer);
     scene->settings.shading.space = TL_SPACE_WORLD;
     tl_image at_pixels = test_scene_draw(scene, renderer);
-    scene->settings.shading.space = TL_SPACE_TEXTURE;
+    scene->settings.shading.space = space;
     struct test_difference off = test_compare(&drawn, &at_pixels);
     tl_image_release(&at_pixels);
     tl_image_release(&drawn);
@@ -242,14 +243,14 @@ static double off_pixels(struct test_scene *scene, tl_renderer *renderer, double
 /* The back of cloth has normals and colours of its own. UVs that change have another place in the texture;
  * those that are mirrored turn a square's front over in it; those that overlap have none, and are lit at
  * pixels. */
-static void every_point_has_its_texel(void **state)
+static void has_its_texels(const struct test_device *device, int space)
 {
-    struct test_device *device = *state;
     tl_image map = make_wave_map();
     struct plane plane = planes[1];
     plane.lamp = glms_vec3_add(plane.right, glms_vec3_scale(plane.normal, -1.5f));
     struct test_scene scene;
     square_open(&scene, &plane, &map, true);
+    scene.settings.shading.space = space;
     tl_material *material = &scene.shapes[0].material;
     material->back = (struct tl_back){true, {{0.1f, 0.5f, 0.9f}}, {{0.02f, 0.3f, 0.1f}}};
     test_scene_refresh(&scene);
@@ -264,6 +265,7 @@ static void every_point_has_its_texel(void **state)
 
     static const char *const names[] = {"as they are", "moved", "mirrored", "overlapping"};
     square_open(&scene, &planes[1], &map, false);
+    scene.settings.shading.space = space;
     tl_mesh *mesh = &scene.shapes[0].mesh;
     material = &scene.shapes[0].material;
     material->normal_map.clamp_u = material->normal_map.clamp_v = false;
@@ -289,6 +291,12 @@ static void every_point_has_its_texel(void **state)
     free(own);
     test_scene_close(&scene);
     tl_image_release(&map);
+}
+
+static void every_point_has_its_texel(void **state)
+{
+    has_its_texels(*state, TL_SPACE_TEXTURE);
+    has_its_texels(*state, TL_SPACE_OBJECT);
 }
 
 static void mean_of(const tl_image *drawn, int first, int side, double mean[3])
@@ -375,9 +383,12 @@ static void parts_have_their_own(void **state)
     scene.settings.image.width = scene.settings.image.height = 4 * SIDE;
     scene.settings.shading.texture_size = 4 * SIDE;
     double by_weights, off = off_pixels(&scene, device->renderer, &by_weights);
-    print_message("two parts: off by %.4f\n", off);
+    scene.settings.shading.space = TL_SPACE_OBJECT;
+    double normals_off = off_pixels(&scene, device->renderer, &by_weights);
+    print_message("two parts: off by %.4f, in object space by %.4f\n", off, normals_off);
     assert_true(off > 0 &&
                 off < 0.02 + by_weights); /* their texels are half as wide as a pixel along one of two axes */
+    assert_true(normals_off > 0 && normals_off < 0.02 + by_weights);
     test_scene_close(&scene);
     tl_image_release(&map);
 }
@@ -414,8 +425,9 @@ static void empty_texels_have_no_weight(void **state)
     test_scene_refresh(&scene);
     struct terms terms = terms_of(&planes[0], &map, 0, false);
     static const float sizes[] = {1.3f, 5, 11}; /* so that pixels lie between texels */
-    for (size_t k = 0; k < TL_COUNT(sizes); k++) {
-        scene.frame.camera.fov_y = 2 * atanf(sizes[k] / 3);
+    for (size_t k = 0; k < 2 * TL_COUNT(sizes); k++) {
+        scene.frame.camera.fov_y = 2 * atanf(sizes[k / 2] / 3);
+        scene.settings.shading.space = k % 2 ? TL_SPACE_OBJECT : TL_SPACE_TEXTURE;
         tl_image drawn = test_scene_draw(&scene, device->renderer);
         double worst = 0;
         int covered = 0;
@@ -433,13 +445,99 @@ static void empty_texels_have_no_weight(void **state)
     tl_image_release(&map);
 }
 
+/* Moves the square without a change of its topology: z is a function of x in its own plane, even, so that the
+ * nearest rotation is that of the plane. */
+static void move_square(struct test_scene *scene, const struct plane *plane, double bend)
+{
+    tl_mesh *mesh = &scene->shapes[0].mesh;
+    struct test_shape flat = test_square((vec3s){{0, 0, 0}}, plane->right, plane->normal, 1, 4);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        double x = (double)glms_vec3_dot(flat.mesh.positions[i], plane->right), slope = -2 * bend * x;
+        float length = (float)sqrt(1 + slope * slope);
+        vec3s along = glms_vec3_add(plane->right, glms_vec3_scale(plane->normal, (float)slope));
+        vec3s normal = glms_vec3_sub(plane->normal, glms_vec3_scale(plane->right, (float)slope));
+        along = glms_vec3_scale(along, 1 / length);
+        mesh->positions[i] = glms_vec3_add(flat.mesh.positions[i],
+                                           glms_vec3_scale(plane->normal, (float)(bend * (0.5 - x * x))));
+        mesh->normals[i] = glms_vec3_scale(normal, 1 / length);
+        mesh->tangents[i] = (vec4s){{along.x, along.y, along.z, flat.mesh.tangents[i].w}};
+    }
+    test_shape_release(&flat);
+    scene->surfaces[0].motion_revision += 1000;
+    scene->frame.camera.eye = glms_vec3_scale(plane->normal, 3);
+    scene->frame.camera.up = glms_vec3_cross(plane->normal, plane->right);
+    scene->lamps[0] = test_lamp_towards(plane->lamp, 3);
+}
+
+/* A map in object space has the normals of each texel, and moves with the square wherever it turns. In bytes
+ * a normal is off by up to 2 x 0.5 x sqrt(3) / 255, which a power of 40 sees through its steepest slope,
+ * sqrt(40 / e). */
+static void normals_turn_with_the_object(void **state)
+{
+    struct test_device *device = *state;
+    tl_image map = make_random_map();
+    struct test_scene scene;
+    double peak, wrong = sqrt(3.0) / 255;
+    for (int bytes = 0; bytes < 2; bytes++) {
+        square_open(&scene, &planes[0], &map, false);
+        scene.settings.shading.space = TL_SPACE_OBJECT;
+        scene.settings.shading.pass_target = bytes ? TL_PASS_TARGET_FIXED8 : TL_PASS_TARGET_FLOAT;
+        double made = square_error(&scene, device->renderer, &planes[0], &map, false, &peak);
+        move_square(&scene, &planes[1], 0);
+        double moved = square_error(&scene, device->renderer, &planes[1], &map, false, &peak);
+        double bound = light_of(&planes[1], (struct terms){wrong, wrong * sqrt(40 / exp(1))}, 0);
+        print_message("object space, %s: off by %.1e where made, %.1e moved (bound %.1e), peak %.2f\n",
+                      bytes ? "bytes" : "float", made, moved, bound, peak);
+        assert_true(bytes ? made > 1e-3 * peak && moved < bound : made < 1e-3 * peak && moved < 1e-3 * peak);
+        test_scene_close(&scene);
+    }
+    tl_image_release(&map);
+}
+
+/* Bends come after the map was made: the light stays that of the even square, to the digits of its texels,
+ * while in world space it changes. A map made anew knows the bend. */
+static void bends_are_not_in_the_map(void **state)
+{
+    struct test_device *device = *state;
+    const struct plane plane = {.right = {{1, 0, 0}}, .normal = {{0, 0, 1}}, .lamp = {{0.2f, 0.1f, 1}}};
+    tl_image map = tl_image_create(4, 4, 3, TL_IMAGE_U8);
+    map.linear = true;
+    for (int i = 0; i < 16; i++)
+        memcpy(tl_image_bytes(&map) + 3 * i, (const uint8_t[]){160, 110, 230}, 3);
+    struct test_scene scene;
+    square_open(&scene, &plane, &map, false);
+    scene.settings.shading.space = TL_SPACE_OBJECT;
+    struct terms terms = terms_of(&plane, &map, 0, false);
+    for (int step = 0; step <= 3; step++) {
+        move_square(&scene, &plane, 0.1 * step);
+        tl_image drawn = test_scene_draw(&scene, device->renderer);
+        double by_weights, worst = 0, off = off_pixels(&scene, device->renderer, &by_weights);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            const float *pixel = test_pixel(&drawn, i % SIDE, i / SIDE);
+            worst = fmax(worst, pixel[3] == 1 ? fabs((double)pixel[0] / light_of(&plane, terms, 0) - 1) : 0);
+        }
+        print_message("bent by %4.1f degrees: off the even square by %.1e, off world space by %.3f\n",
+                      atan(0.2 * step) * 180 / M_PI, worst, off);
+        assert_true(worst < 1e-4);
+        assert_true(step == 0 ? off < 1e-4 + by_weights : off > 0.05 * step);
+        tl_image_release(&drawn);
+    }
+    scene.surfaces[0].topology_revision += 1000;
+    double by_weights, anew = off_pixels(&scene, device->renderer, &by_weights);
+    print_message("made anew: off world space by %.4f\n", anew);
+    assert_true(anew < 0.01 + by_weights);
+    test_scene_close(&scene);
+    tl_image_release(&map);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_are_lit_by_the_formula), cmocka_unit_test(smaller_texels_come_near_pixels),
         cmocka_unit_test(every_point_has_its_texel),     cmocka_unit_test(levels_average_light),
         cmocka_unit_test(parts_have_their_own),          cmocka_unit_test(large_texels_have_mean_normals),
-        cmocka_unit_test(empty_texels_have_no_weight),
+        cmocka_unit_test(empty_texels_have_no_weight),   cmocka_unit_test(normals_turn_with_the_object),
+        cmocka_unit_test(bends_are_not_in_the_map),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
