@@ -105,7 +105,6 @@ static const struct tl_technique techniques[] = {
      .group = "space",
      .id = "A11",
      SET("shading.space=tangent")},
-    {.page = "object space", .group = "space", SET("shading.space=object")},
     {.picture = "ramp", .id = "A12", SET("shading.self_shadow=ramp")},
 
     /* Tables of reflectance. */
