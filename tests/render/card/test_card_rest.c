@@ -246,6 +246,41 @@ static void test_even_light(void **state)
     test_scene_close(&scene);
 }
 
+/* Inside a matt ball that glows by 1, light is the series of its albedo, a term a bounce: three, as
+ * open_small asks for. Paths that are followed by chance stand for those that are not. */
+static void test_furnace(void **state)
+{
+    const struct test_device *device = *state;
+    struct test_scene scene;
+    struct drawn_scene settings;
+    const float albedo = 0.3f;
+    open_small(&settings);
+    test_scene_open(&scene, test_environment(64, 32, test_white), (vec3s){{0, 0, 0.1f}}, (vec3s){{0, 0, 0}},
+                    60, WIDTH, WIDTH);
+    const int side = scene.settings.image.width;
+    scene.settings = settings.plain.settings;
+    drawn_scene_close(&settings);
+    scene.settings.image.width = scene.settings.image.height = side;
+    scene.settings.image.ground = false;
+    tl_material *material = test_scene_add(&scene, test_sphere((vec3s){{0, 0, 0}}, 0.5f, 48));
+    material->double_sided = true;
+    material->diffuse = (vec3s){{albedo, albedo, albedo}};
+    material->specular = (vec3s){{0, 0, 0}};
+    material->emission = (vec3s){{1, 1, 1}};
+    test_scene_refresh(&scene);
+    scene.frame.still = true;
+    char said[160];
+    tl_renderer_describe_device(device->renderer, &scene.frame, &scene.settings, said, sizeof said);
+    assert_non_null(strstr(said, "the graphics card, by"));
+    tl_image image = test_scene_draw(&scene, device->renderer);
+    const double light = (double)light_of(&image).x / (side * side);
+    const double expected = (1 - pow((double)albedo, 4)) / (1 - (double)albedo);
+    printf("light in the furnace %.4f, expected %.4f\n", light, expected);
+    assert_near(light, expected, 0.01);
+    tl_image_release(&image);
+    test_scene_close(&scene);
+}
+
 /* ---- Rounds ---- */
 
 /* Draws frame after frame, each with one more round, from `from` rounds to `to`. */
@@ -399,8 +434,9 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pictures),       cmocka_unit_test(test_even_light),
-        cmocka_unit_test(test_noise_falls),    cmocka_unit_test(test_rounds_repeat),
-        cmocka_unit_test(test_motion_goes_on), cmocka_unit_test(test_refusals)};
+        cmocka_unit_test(test_pictures),      cmocka_unit_test(test_even_light),
+        cmocka_unit_test(test_furnace),       cmocka_unit_test(test_noise_falls),
+        cmocka_unit_test(test_rounds_repeat), cmocka_unit_test(test_motion_goes_on),
+        cmocka_unit_test(test_refusals)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
