@@ -150,6 +150,46 @@ static void test_shift(void **state)
     check_shifts(*state, 0.25f);
 }
 
+/* A ridge across a mirror, seen from +x at 45 degrees: before its near side, as far as it is high, the mirror
+ * shows the ridge, which horizons hold to be black, and behind it the sky of 1. */
+static void test_gloss_over_horizons(void **state)
+{
+    struct test_device *device = *state;
+    struct stage *stage = stage_new();
+    tl_image normals = tl_image_create(64, 64, 3, TL_IMAGE_U8);
+    memset(normals.texels, 128, (size_t)3 * 64 * 64);
+    normals.linear = true;
+    for (int i = 0; i < 64 * 64; i++) {
+        tl_image_bytes(&normals)[3 * i + 2] = 255;
+        tl_image_bytes(&stage->bumps)[i] = i % 64 >= 30 && i % 64 < 34 ? 255 : 0;
+    }
+    tl_material *material = &stage->shape.material;
+    material->normal_map.image = &normals;
+    material->height_m = 0.15f;
+    material->diffuse = (vec3s){{0, 0, 0}};
+    material->specular = (vec3s){{1, 1, 1}};
+    material->glossiness = 0.99f;
+    test_shape_refresh(&stage->shape);
+    stage->settings.detail.shadow = TL_DETAIL_SHADOW_HORIZON;
+    tl_image image = test_draw(device->renderer, &stage->frame, &stage->settings);
+    double sums[2] = {0};
+    int counts[2] = {0};
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        vec3s view, at = pixel_point(stage, i % SIZE, i / SIZE, &view);
+        if (fabsf(at.x) < 0.05f || fabsf(at.x) > 0.1f)
+            continue;
+        sums[at.x > 0] += (double)test_pixel(&image, i % SIZE, i / SIZE)[0];
+        counts[at.x > 0]++;
+    }
+    printf("behind the ridge %.3f, before it %.3f\n", sums[0] / counts[0], sums[1] / counts[1]);
+    assert_true(counts[0] > 50 && counts[1] > 50);
+    assert_near(sums[0] / counts[0], 1, 0.05);
+    assert_near(sums[1] / counts[1], 0, 0.05);
+    tl_image_release(&image);
+    tl_image_release(&normals);
+    stage_free(stage);
+}
+
 static void test_reference(void **state)
 {
     struct test_device *device = *state;
@@ -347,8 +387,9 @@ static void test_blinn(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shift), cmocka_unit_test(test_reference),
-                                       cmocka_unit_test(test_blinn), cmocka_unit_test(test_unused),
-                                       cmocka_unit_test(test_extremes)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shift),     cmocka_unit_test(test_gloss_over_horizons),
+        cmocka_unit_test(test_reference), cmocka_unit_test(test_blinn),
+        cmocka_unit_test(test_unused),    cmocka_unit_test(test_extremes)};
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }
