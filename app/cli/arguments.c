@@ -62,7 +62,7 @@ static const struct flag flags_known[] = {
     {"--avatar", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.avatar", "NAME|FILE",
      "form, figure, none, or a .glb, .gltf, .obj, .ply, .stl or .off file"},
     {"--env", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.environment", "NAME|FILE",
-     "studio, an .exr or .hdr file, a sequence of them: sky.####.exr, or a film: sky.mp4"},
+     "studio, an .exr or .hdr file, a sequence of them: sky.####.exr, or a film: sky.mp4, - for one on stdin"},
     {"--fabric", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.fabric", "NAME|FILE",
      "a fabric: `toile info fabrics` lists them"},
     {"--colourway", TL_FLAGS_SCENE | TL_FLAGS_CAPTURE, FLAG_ASSIGN, 0, "scene.colourway", "NAME",

@@ -1,6 +1,7 @@
 #include "app/scene/headless.h"
 
 #include "app/settings/command.h"
+#include "assets/environment/film.h"
 #include "config/base/interrupt.h"
 #include "config/base/log.h"
 
@@ -20,6 +21,15 @@ bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *se
     }
     tl_headless_release(headless);
     return false;
+}
+
+bool tl_headless_may_repeat(const struct tl_settings *settings, const char *what, tl_error *error)
+{
+    return !tl_film_is_live(settings->scene.environment) ||
+           tl_fail(error, TL_USAGE,
+                   "%s: draws frames more than once, for which light from stdin does not wait: save the film "
+                   "to a file",
+                   what);
 }
 
 bool tl_headless_create(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error)

@@ -17,6 +17,9 @@ struct tl_headless {
 bool tl_headless_open(struct tl_headless *headless, const struct tl_settings *settings, tl_error *error);
 /* The same for the settings of the command line. */
 bool tl_headless_create(struct tl_headless *headless, const struct tl_arguments *arguments, tl_error *error);
+/* False for live light, of which no frame comes twice; `what`: the command. Call before the scene is opened.
+ */
+bool tl_headless_may_repeat(const struct tl_settings *settings, const char *what, tl_error *error);
 void tl_headless_release(struct tl_headless *headless);
 
 /* Draws the session's current frame. */

@@ -5,16 +5,7 @@
 #include "config/base/memory.h"
 #include "render/env/convert.h"
 
-#include <math.h>
 #include <string.h>
-
-/* Positions are quotients of rates: one that should be whole may lie just below. */
-#define ROUNDING 1e-6
-
-static int frame_at(const tl_environment_sequence *sequence, double position)
-{
-    return sequence->count > 0 ? (int)fmod(floor(position + ROUNDING), sequence->count) : 0;
-}
 
 void tl_environment_warn_of_cleaning(const tl_environment *environment)
 {
@@ -100,7 +91,8 @@ static bool load_frame(struct tl_moving_light *light, tl_error *error)
     return loaded;
 }
 
-static bool load(struct tl_moving_light *light, const char *name, double position, tl_error *error)
+static bool load(struct tl_moving_light *light, const char *name, double seconds, double rate,
+                 tl_error *error)
 {
     if (tl_environment_find(name, &light->environment))
         return true;
@@ -111,9 +103,9 @@ static bool load(struct tl_moving_light *light, const char *name, double positio
         return false;
     if (light->sequence.film)
         tl_info(
-            "%s: %d frames; a film has no light above white: its lamps and suns are weaker than they were",
-            name, light->sequence.count);
-    light->shown = frame_at(&light->sequence, position);
+            "%s: %d frame%s; a film has no light above white: its lamps and suns are weaker than they were",
+            name, light->sequence.count, light->sequence.count == 1 ? " at a time" : "s");
+    light->shown = tl_environment_sequence_at(&light->sequence, seconds, rate);
     return load_frame(light, error);
 }
 
@@ -127,10 +119,11 @@ static void warn_of_shape(const char *name, const tl_environment *environment)
             name, image->width, image->height);
 }
 
-bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error)
+bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double seconds, double rate,
+                          tl_error *error)
 {
     struct tl_moving_light fresh = {.revision = light->revision + 1};
-    if (!load(&fresh, name, position, error)) {
+    if (!load(&fresh, name, seconds, rate, error)) {
         tl_moving_light_release(&fresh);
         return false;
     }
@@ -141,10 +134,10 @@ bool tl_moving_light_open(struct tl_moving_light *light, const char *name, doubl
     return true;
 }
 
-bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_error *error)
+bool tl_moving_light_follow(struct tl_moving_light *light, double seconds, double rate, tl_error *error)
 {
     tl_environment fresh;
-    int due = frame_at(&light->sequence, position);
+    int due = tl_environment_sequence_at(&light->sequence, seconds, rate);
     if (due == light->shown)
         return true;
     if (!load_numbered(&light->sequence, due, &fresh, error))

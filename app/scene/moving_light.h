@@ -15,11 +15,13 @@ struct tl_moving_light {
 };
 
 /* `name`: "studio", "white" (1 from everywhere: the furnace), "none" (black), a file or a pattern.
- * `position`: in frames of the sequence, from its start. Maps of other layouts than cube and lat-long are
- * converted to lat-long. Replaces what the light held; on failure it is as it was. */
-bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double position, tl_error *error);
-/* Shows the frame at `position`; does nothing where that is shown already. */
-bool tl_moving_light_follow(struct tl_moving_light *light, double position, tl_error *error);
+ * `seconds`: from the start of the sequence; `rate`: as tl_environment_sequence_at has it. Maps of other
+ * layouts than cube and lat-long are converted to lat-long. Replaces what the light held; on failure it is as
+ * it was. */
+bool tl_moving_light_open(struct tl_moving_light *light, const char *name, double seconds, double rate,
+                          tl_error *error);
+/* Shows the frame that is due; does nothing where that is shown already. */
+bool tl_moving_light_follow(struct tl_moving_light *light, double seconds, double rate, tl_error *error);
 /* The layout of a file's map, for render/env. */
 enum tl_layout tl_environment_layout(const tl_environment *environment);
 /* Warns when the reader of an environment had to replace values. */

@@ -165,11 +165,6 @@ static bool begin_playback(tl_session *session, tl_error *error)
     return posed;
 }
 
-double tl_session_light_position(const struct tl_settings *settings, int number)
-{
-    return number / settings->cloth.frame_rate * (double)settings->scene.environment_rate;
-}
-
 static struct tl_box box_of_moving(const struct tl_moving *moving)
 {
     return tl_box_of(moving->positions, moving->model->mesh.vertex_count);
@@ -253,7 +248,8 @@ static bool load_all(tl_session *session, tl_error *error)
 {
     const struct tl_settings *settings = &session->settings;
     if (!check_files(&settings->scene, error) ||
-        !tl_moving_light_open(&session->light, settings->scene.environment, 0, error) ||
+        !tl_moving_light_open(&session->light, settings->scene.environment, 0,
+                              (double)settings->scene.environment_rate, error) ||
         !load_models(session, error))
         return false;
     if (!session->avatar && !session->garment)
@@ -329,8 +325,9 @@ void tl_session_destroy(tl_session **handle)
 /* Poses all that follows the clock alone. */
 static bool pose_at(tl_session *session, int number, tl_error *error)
 {
-    if (!tl_moving_light_follow(&session->light, tl_session_light_position(&session->settings, number),
-                                error))
+    const struct tl_settings *settings = &session->settings;
+    if (!tl_moving_light_follow(&session->light, number / settings->cloth.frame_rate,
+                                (double)settings->scene.environment_rate, error))
         return false;
     /* Without a clip the avatar stands still: its normals and the collider need no update. */
     if (session->clip >= 0)
@@ -384,7 +381,7 @@ bool tl_session_reset(tl_session *session, tl_error *error)
 {
     if (session->ahead)
         tl_ahead_take(&session->ahead, NULL);
-    if (!tl_moving_light_follow(&session->light, 0, error))
+    if (!tl_moving_light_follow(&session->light, 0, (double)session->settings.scene.environment_rate, error))
         return false;
     if (session->garment)
         tl_moving_restart(&session->dress);

@@ -88,11 +88,12 @@ bool tl_session_restart(tl_session *session, const struct tl_settings *settings,
 static bool change_in_place(tl_session *session, const struct tl_settings *settings, uint64_t changes,
                             tl_error *error)
 {
-    double position = tl_session_light_position(settings, session->frame);
+    const double seconds = session->frame / settings->cloth.frame_rate,
+                 rate = (double)settings->scene.environment_rate;
     const char *environment = settings->scene.environment;
     if (changes & TL_AFFECTS_ENVIRONMENT
-            ? !tl_moving_light_open(&session->light, environment, position, error)
-            : !tl_moving_light_follow(&session->light, position, error))
+            ? !tl_moving_light_open(&session->light, environment, seconds, rate, error)
+            : !tl_moving_light_follow(&session->light, seconds, rate, error))
         return false;
     /* tl_cloth_set discards the contacts, so it is called only when one of its options has changed. */
     const bool same_cloth = !(changes & TL_AFFECTS_CLOTH);

@@ -67,7 +67,4 @@ struct tl_session {
     struct tl_lamp lamps[2];
 };
 
-/* The position of a sequence of environments at frame `number`, in the sequence's own frames. */
-double tl_session_light_position(const struct tl_settings *settings, int number);
-
 #endif

@@ -23,14 +23,14 @@ static const char *const garment_names[] = {"dress", "skirt",  "layers", "trouse
 static const char *const avatar_names[] = {"auto", "form", "figure", "ball", "none", NULL};
 static const char *const drape_names[] = {"auto", "authored", "settle", NULL};
 static const char *const body_detail_names[] = {"auto", "full", NULL};
-static const char *const environment_names[] = {"studio", "white", "none", NULL};
+static const char *const environment_names[] = {"studio", "white", "none", "-", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
 #define OWN "own"
 static const char *const colourways_names[] = {OWN, "dress", "skirt", "trousers", "shirt", "composed", NULL};
 
 #define TL_SCENE_DEFAULTS                                                                                    \
-    .garment = "dress", .avatar = "auto", .motion = "none", .environment = "studio", .environment_rate = 30, \
+    .garment = "dress", .avatar = "auto", .motion = "none", .environment = "studio", .environment_rate = -1, \
     .colourways = OWN, .preset = "review", .scale = 1, .smooth = true
 
 static const struct tl_option scene_rows[] = {
@@ -85,10 +85,11 @@ static const struct tl_option scene_rows[] = {
         struct tl_scene_params, smooth, TL_AFFECTS_MATERIALS,
         "draws cloth of up to 40,000 triangles as a smooth surface, each triangle as four; creases stay at "
         "seams and hard edges; files, measures and contacts have the mesh itself"),
-    TL_OPTION_NAME_OR_PATH(
-        struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
-        "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
-        "sequence of files, sky.####.exr, where each # is a digit of the frame's number; or a film, .mp4"),
+    TL_OPTION_NAME_OR_PATH(struct tl_scene_params, environment, TL_AFFECTS_ENVIRONMENT, environment_names,
+                           "light: built in (white: radiance 1 from everywhere), an .exr or .hdr file, or a "
+                           "sequence of files, sky.####.exr, where each # is a digit of the frame's number; "
+                           "or a film, .mp4; or - for "
+                           "a film on stdin, of which the newest frame is light"),
     TL_OPTION_NAME_OR_PATH(
         struct tl_scene_params, fabric, TL_AFFECTS_APPEARANCE, tl_embedded_fabrics_names,
         "fabric, which sets the tables fabric, weave and material: built in, a YAML file, a U3M file or "
@@ -111,8 +112,10 @@ static const struct tl_option scene_rows[] = {
     TL_OPTION_FLOAT(struct tl_scene_params, environment_yaw_deg, TL_AFFECTS_AT_ONCE, -3600, 3600, "degrees",
                     "rotation of the environment about the vertical, counter-clockwise seen from above; not "
                     "given: 0, but the studio's lights stand as the first view needs them"),
-    TL_OPTION_FLOAT(struct tl_scene_params, environment_rate, TL_AFFECTS_NOTHING, 0, 1000, "1/s",
-                    "frames per second of a sequence of environments; 0: its first frame only"),
+    TL_OPTION_FLOAT(
+        struct tl_scene_params, environment_rate, TL_AFFECTS_NOTHING, -1, 1000, "1/s",
+        "frames per second of a sequence of environments; 0: its first frame only; -1: a film's own, 30 "
+        "of files"),
 };
 static const struct tl_option_table scene_table =
     TL_OPTION_TABLE("scene", "garment, avatar, light, fabric and quality", scene_rows, struct tl_scene_params,

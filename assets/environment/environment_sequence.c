@@ -3,6 +3,7 @@
 #include "assets/motion/sequence.h"
 #include "config/base/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 bool tl_environment_is_sequence(const char *name)
@@ -54,6 +55,16 @@ void tl_environment_sequence_release(tl_environment_sequence *sequence)
     tl_film_close(&sequence->film);
     free(sequence->pattern);
     *sequence = (tl_environment_sequence){0};
+}
+
+int tl_environment_sequence_at(const tl_environment_sequence *sequence, double seconds, double rate)
+{
+    const double rounding = 1e-6; /* of a quotient that should be whole */
+    if (sequence->count == 0)
+        return 0;
+    if (sequence->film && (rate < 0 || tl_film_is_live(sequence->pattern)))
+        return tl_film_frame_at(sequence->film, seconds);
+    return (int)fmod(floor(seconds * (rate < 0 ? 30 : rate) + rounding), sequence->count);
 }
 
 bool tl_environment_sequence_load(const tl_environment_sequence *sequence, int index, tl_environment *out,

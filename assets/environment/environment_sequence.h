@@ -25,6 +25,10 @@ bool tl_environment_sequence_open(const char *pattern, tl_environment_sequence *
 /* Frees and zeroes; a zeroed sequence is accepted. */
 void tl_environment_sequence_release(tl_environment_sequence *sequence);
 
+/* The frame that is due, played in a loop at `rate` frames a second; -1: a film's own times, 30 for files. A
+ * live film has a rate of its own. 0 in a zeroed sequence. */
+int tl_environment_sequence_at(const tl_environment_sequence *sequence, double seconds, double rate);
+
 /* Loads frame `index`, 0 to count - 1, as tl_environment_load does. */
 bool tl_environment_sequence_load(const tl_environment_sequence *sequence, int index, tl_environment *out,
                                   tl_error *error);

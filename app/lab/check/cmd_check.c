@@ -3,6 +3,7 @@
 #include "app/lab/check/baseline.h"
 #include "app/lab/check/commands.h"
 #include "app/scene/headless.h"
+#include "app/settings/command.h"
 #include "config/base/file.h"
 
 #include <inttypes.h>
@@ -95,12 +96,14 @@ bool tl_command_check(const struct tl_arguments *arguments, tl_error *error)
                                      .budget_ms = arguments->budget_ms,
                                      .keep = arguments->keep};
     struct tl_headless headless;
+    struct tl_settings settings;
     struct tl_check_outcome outcome;
     struct tl_check_baseline baseline;
     if (params.frames > FRAMES_MAX)
         return tl_fail(error, TL_USAGE, "--frames: %d: at most %d", params.frames, FRAMES_MAX);
     if ((params.keep && !tl_folder_make(params.keep, error)) ||
-        !tl_headless_create(&headless, arguments, error))
+        !tl_settings_of_command(arguments, false, &settings, error) ||
+        !tl_headless_may_repeat(&settings, "check", error) || !tl_headless_open(&headless, &settings, error))
         return false;
     const uint64_t scene = tl_baseline_scene(&headless.settings, &params);
     if (arguments->baseline && !tl_baseline_load(arguments->baseline, scene, &baseline, error)) {

@@ -86,7 +86,8 @@ static bool load_records(struct flying *flying, tl_error *error)
             return false;
     }
     if (arguments->replay &&
-        (!tl_flight_record_load(arguments->replay, settings, &flying->replay, error) ||
+        (!tl_headless_may_repeat(settings, "--replay", error) ||
+         !tl_flight_record_load(arguments->replay, settings, &flying->replay, error) ||
          !tl_flight_record_suits(&flying->replay, arguments->replay, settings, true, error)))
         return false;
     return !arguments->against ||

@@ -442,7 +442,7 @@ bool tl_trade_headless(const struct tl_experiment *experiment, const struct tl_a
     const struct tl_experiment_appearance *appearance =
         appearance_of(experiment, options, first_appearance(experiment, options));
     return read_appearance(experiment, appearance, arguments, &settings, error) &&
-           tl_headless_open(headless, &settings, error);
+           tl_headless_may_repeat(&settings, "trade", error) && tl_headless_open(headless, &settings, error);
 }
 
 bool tl_trade_measure(const struct tl_experiment *experiment, const struct tl_arguments *arguments,

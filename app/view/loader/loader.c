@@ -72,7 +72,8 @@ static bool load(tl_loader *loader)
         loaded->session = tl_session_create(settings, &loader->error);
         return loaded->session != NULL;
     case TL_LOAD_LIGHT:
-        return tl_moving_light_open(&loaded->light, settings->scene.environment, 0, &loader->error);
+        return tl_moving_light_open(&loaded->light, settings->scene.environment, 0,
+                                    (double)settings->scene.environment_rate, &loader->error);
     case TL_LOAD_APPEARANCE:
         return tl_session_make_appearance(&loader->models, settings, &loaded->appearance, &loader->error);
     }

@@ -10,6 +10,7 @@
 #include "render/reference/reference.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- Fabrics ---- */
 
@@ -116,7 +117,9 @@ static tl_image reduce(const tl_image *map, int width, int height)
 bool tl_thumbnail_of_environment(const char *name, tl_image *out, tl_error *error)
 {
     struct tl_moving_light light = {0};
-    if (!tl_moving_light_open(&light, name, 0, error))
+    if (strcmp(name, "-") == 0) /* stdin is read for light only */
+        return tl_fail(error, TL_USAGE, "%s: a live film has no thumbnail: choose it", name);
+    if (!tl_moving_light_open(&light, name, 0, 0, error))
         return false;
     const vec3s factors = light.environment.shown;
     tl_image small = reduce(&light.environment.image, 2 * TL_THUMBNAIL_HEIGHT, TL_THUMBNAIL_HEIGHT);

@@ -123,6 +123,12 @@ refuse "missing environment" 'nowhere\.exr.*no such file' render -o a.png --env 
 refuse "text as environment" 'text\.glb' render -o a.png --env text.glb
 refuse "zero-sized image" 'zero\.hdr' render -o a.png --env zero.hdr
 refuse "sequence without frames" 'sky\.##\.exr.*no file' render -o a.png --env 'sky.##.exr'
+refuse "live light where frames are drawn twice" 'check.*light from stdin' check --env - </dev/null
+if command -v ffmpeg >/dev/null; then
+    refuse "no film on stdin" 'stdin is no film.*ffmpeg' render -o a.png --env - </dev/null
+else
+    echo "skipped: no film on stdin: ffmpeg is absent"
+fi
 refuse "sequence with a gap" 'gap\.2\.hdr.*missing' render -o a.png --env 'gap.#.hdr'
 refuse "sequence with a broken frame" 'torn\.2\.hdr' render -o a.png --env 'torn.#.hdr' --garment none --avatar ball $cheap_light --frame 1
 printf 'theta_l,phi_l,theta_v,phi_v,r,g,b\n1,2,3,4,5,6\n' >short.csv

@@ -1,5 +1,6 @@
 /* Films as light: every frame of a lossless film is, to the bit, the frame of the same number in a sequence
- * of EXR files, in any order. The bytes and their linear values are this file's own. */
+ * of EXR files, in any order, and is due when its film says so. The bytes, their linear values and the times
+ * are this file's own. */
 #include "tests/testing.h"
 
 #include "assets/environment/environment_sequence.h"
@@ -7,7 +8,9 @@
 #include "config/base/file.h"
 #include "config/base/memory.h"
 
+#include <fcntl.h>
 #include <string.h>
+#include <unistd.h>
 
 #define FOLDER TOILE_SCRATCH_DIR "/film"
 
@@ -128,6 +131,76 @@ static void test_bad_films(void **state)
     refuse(FOLDER "/nowhere.mp4", "nowhere.mp4: no such file");
 }
 
+static void make(const char *how)
+{
+    char *command =
+        tl_format("ffmpeg -nostdin -y -loglevel error -f rawvideo -pix_fmt rgb24 -s 16x8 -r 25 -i " FOLDER
+                  "/frames.rgb %s",
+                  how);
+    assert_int_equal(system(command), 0);
+    free(command);
+}
+
+/* Frame n of a flight at 60 images a second shows frame floor(25 n / 60) of a film at 25, in a loop; so does
+ * one whose frames are stored in another order than shown. A film of uneven times keeps them: n^2 / 25 s. */
+static void test_times(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_environment_sequence even, swapped, uneven, files;
+    make("-c:v mpeg4 -bf 2 -b_strategy 0 " FOLDER "/swapped.mp4");
+    make("-vf setpts=N*N/25/TB -vsync vfr -c:v ffv1 -pix_fmt bgr0 " FOLDER "/uneven.mkv");
+    assert_ok(tl_environment_sequence_open(FOLDER "/sky.mkv", &even, &error), error);
+    assert_ok(tl_environment_sequence_open(FOLDER "/swapped.mp4", &swapped, &error), error);
+    assert_ok(tl_environment_sequence_open(FOLDER "/uneven.mkv", &uneven, &error), error);
+    assert_ok(tl_environment_sequence_open(FOLDER "/sky.#.exr", &files, &error), error);
+    for (int n = 0; n < 200; n++) {
+        assert_int_equal(tl_environment_sequence_at(&even, n / 60.0, -1), 25 * n / 60 % FRAMES);
+        assert_int_equal(tl_environment_sequence_at(&swapped, n / 60.0, -1), 25 * n / 60 % FRAMES);
+        assert_int_equal(tl_environment_sequence_at(&even, n / 60.0, 60), n % FRAMES);
+        assert_int_equal(tl_environment_sequence_at(&files, n / 60.0, -1), n / 2 % FRAMES);
+        assert_int_equal(tl_environment_sequence_at(&even, n / 60.0, 0), 0);
+    }
+    for (int n = 0; n < 16; n++) {
+        int shown = 0;
+        while ((shown + 1) * (shown + 1) <= n)
+            shown++;
+        assert_int_equal(tl_environment_sequence_at(&uneven, (n + 0.5) / 25, -1), shown);
+    }
+    tl_environment_sequence_release(&even);
+    tl_environment_sequence_release(&swapped);
+    tl_environment_sequence_release(&uneven);
+    tl_environment_sequence_release(&files);
+}
+
+/* A film on stdin: its newest frame is shown, the last one when all have come, and it is opened once. */
+static void test_live(void **state)
+{
+    (void)state;
+    tl_error error = {0};
+    tl_environment_sequence film;
+    tl_environment last;
+    int stream = open(FOLDER "/sky.mkv", O_RDONLY), kept = dup(STDIN_FILENO), newest = 0;
+    assert_true(stream >= 0 && dup2(stream, STDIN_FILENO) == STDIN_FILENO);
+    assert_true(tl_environment_is_sequence("-"));
+    assert_ok(tl_environment_sequence_open("-", &film, &error), error);
+    while (newest < FRAMES - 1) {
+        int now = tl_environment_sequence_at(&film, 0, -1);
+        assert_in_range(now, newest, FRAMES - 1);
+        newest = now;
+        usleep(1000);
+    }
+    assert_ok(tl_environment_sequence_load(&film, newest, &last, &error), error);
+    for (int k = 0; k < BYTES; k++)
+        assert_near(tl_image_floats(&last.image)[k], linear_of(byte_of(FRAMES - 1, k)), 1e-6);
+    tl_environment_release(&last);
+    refuse("-", "can be opened once");
+    tl_environment_sequence_release(&film);
+    dup2(kept, STDIN_FILENO);
+    close(kept);
+    close(stream);
+}
+
 /* Without ffmpeg the message names what to install. */
 static void test_no_ffmpeg(void **state)
 {
@@ -143,7 +216,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_frames_are_those_of_files),
+        cmocka_unit_test(test_times),
         cmocka_unit_test(test_bad_films),
+        cmocka_unit_test(test_live),
         cmocka_unit_test(test_no_ffmpeg),
     };
     tl_error error = {0};
