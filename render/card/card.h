@@ -94,8 +94,10 @@ struct tl_card_rest {
     const tl_environment *environment; /* lat-long or cube */
     uint64_t environment_revision;
     float environment_yaw; /* rad */
-    int bounces;           /* as those of the reference (render/reference/request.h) */
-    int footprint;         /* samples of a pixel along each side, whose maps are as fine */
+    const struct tl_lamp *lamps;
+    size_t lamp_count;
+    int bounces;   /* as those of the reference (render/reference/request.h) */
+    int footprint; /* samples of a pixel along each side, whose maps are as fine */
     int round;
 };
 /* Draws a round of an image at rest of the view, which follows tl_card_see alone: paths from every pixel by

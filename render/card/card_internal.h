@@ -107,6 +107,9 @@ void tl_card_fit_texture(tl_graphics_card *card, tl_texture *texture, unsigned f
 void tl_card_dispatch(const tl_program *program, size_t threads, size_t group);
 void tl_card_dispatch_listed(const tl_graphics_card *card, const tl_program *program, size_t word);
 
+/* Places suns, then lamps, in the frame's values. */
+void tl_card_place_lights(tl_graphics_card *card, const struct tl_suns *suns, float yaw,
+                          const struct tl_lamp *lamps, size_t lamp_count);
 bool tl_card_send_materials(tl_graphics_card *card, const struct tl_card_surfaces *request, tl_error *error);
 void tl_card_release_materials(tl_graphics_card *card);
 /* Sends regions and lobes when they have changed; suns and directions as they are now. */

@@ -204,6 +204,21 @@ vec3 from_texels(Lobes l, vec3 start, uint item, uint bits)
     return light;
 }
 
+// Suns are in the environment's texels.
+vec3 from_lamps(Lobes l, vec3 start)
+{
+    vec3 light = vec3(0.0);
+    for (int i = 0; i < counts.y; i++) {
+        Sun lamp = sun_at(i, point_of(l.s.p), l.normal);
+        if (!(dot(lamp.towards, l.normal) > 0.0))
+            continue;
+        float share = ground_passes_from(start, lamp.towards, lamp.way);
+        if (share > 0.0 && !tree_occluded(start, lamp.towards, 0.0, lamp.way))
+            light += reflected(l, lamp.towards) * lamp.power * share;
+    }
+    return light;
+}
+
 // Follows a direction; what does not meet anything takes light from the sky, and what does goes on.
 vec3 follow(Lobes l, vec3 start, vec3 through, uint item, uint bits, inout Path path)
 {
@@ -268,7 +283,7 @@ void main()
     uint item = mixed(at, uint(kind.y));
     float cover = kind.y == 0 ? l.s.cover : 1.0;
     through *= cover;
-    vec3 light = emitted(l) + from_texels(l, start, mixed(item, 1u), bits);
+    vec3 light = emitted(l) + from_texels(l, start, mixed(item, 1u), bits) + from_lamps(l, start);
     light += follow(l, start, through, mixed(item, 2u), bits, path);
     paths[at] = path;
     vec4 before = kind.y == 0 ? vec4(vec3(0.0), cover) : imageLoad(light_image, pixel);

@@ -108,13 +108,12 @@ static int farthest_sample(const struct tl_sun *sun, const int *order, int befor
     return best;
 }
 
-/* Suns, then lamps. */
-static void place_lights(tl_graphics_card *card, const struct tl_card_light *request)
+void tl_card_place_lights(tl_graphics_card *card, const struct tl_suns *suns, float yaw,
+                          const struct tl_lamp *lamps, size_t lamp_count)
 {
     struct tl_card_frame *frame = &card->frame;
     struct tl_pixel_lights lights;
-    tl_pixel_lights_make(request->suns, request->environment_yaw, request->lamps, request->lamp_count,
-                         &lights);
+    tl_pixel_lights_make(suns, yaw, lamps, lamp_count, &lights);
     frame->counts[1] = lights.count;
     for (int i = 0; i < lights.count; i++) {
         const struct tl_sun *sun = &lights.items[i].sun;
@@ -150,7 +149,7 @@ bool tl_card_send_light(tl_graphics_card *card, const struct tl_card_light *requ
     frame->turn[0] = cosf(request->environment_yaw);
     frame->turn[1] = sinf(request->environment_yaw);
     frame->counts[0] = count;
-    place_lights(card, request);
+    tl_card_place_lights(card, request->suns, request->environment_yaw, request->lamps, request->lamp_count);
     return true;
 }
 

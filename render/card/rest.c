@@ -64,6 +64,8 @@ bool tl_card_draw_round(tl_graphics_card *card, const struct tl_card_rest *reque
     const size_t samples = (size_t)size[0] * (size_t)size[1];
     card->frame.turn[0] = cosf(request->environment_yaw);
     card->frame.turn[1] = sinf(request->environment_yaw);
+    const struct tl_suns none = {0}; /* suns are in the environment's texels */
+    tl_card_place_lights(card, &none, 0, request->lamps, request->lamp_count);
     if (!tl_buffer_reserve(&card->buffers[CARD_PATHS], card->gpu, PATH_BYTES * samples, error) ||
         !tl_card_send_frame(card, error))
         return false;

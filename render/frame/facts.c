@@ -307,14 +307,11 @@ static bool has_holes(const tl_material *material)
 /* Paths follow what ratios cannot hold: near mirrors, and light that bounces as often as it is to. */
 const char *tl_frame_rest_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
-    struct tl_lamp lamps[TL_LAMPS_MAX];
     struct tl_render_settings followed = *settings;
     if (!frame->still && !frame->smooth) /* noisy */
         return "images of one round";
     if (settings->light.bounce == TL_BOUNCE_OFF && has_mirrors(frame, &settings->light))
         return "near mirrors of a scene whose light does not bounce (light.bounce)";
-    if (tl_lamps_lit(frame, lamps) > 0)
-        return "lamps";
     if (tl_materials_have(frame->surfaces, frame->surface_count, has_holes))
         return "cloth with holes";
     if (tl_materials_have(frame->surfaces, frame->surface_count, tl_material_transmits))

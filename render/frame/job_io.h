@@ -236,7 +236,7 @@
     IO(WRITES, present)
 
 #define TL_JOB_card_rest(IO)                                                                                 \
-    IO(READS, environment) IO(READS, yaw) IO(READS, shift) IO(READS, camera)                                 \
+    IO(READS, environment) IO(READS, yaw) IO(READS, lamps) IO(READS, shift) IO(READS, camera)                \
     IO(READS, size) IO(READS, light_options) IO(READS, reference_options) IO(AFTER, TL_MADE_CARD_SURFACES)   \
     IO(AFTER, TL_INPUT_VIEW) IO(AFTER, TL_INPUT_RATIO) IO(AFTER, TL_INPUT_DEVICE) IO(USES, card)             \
     IO(USES, gpu) IO(WRITES, present)

@@ -80,6 +80,8 @@ bool tl_run_card_rest(const struct tl_card_rest_job *job, tl_error *error)
         .environment = job->environment->map,
         .environment_revision = job->environment->revision,
         .environment_yaw = *job->yaw,
+        .lamps = job->lamps->items,
+        .lamp_count = job->lamps->count,
         .bounces = tl_frame_bounces(job->light_options, job->reference_options),
         .footprint = samples_of(job->size),
     };

@@ -74,6 +74,15 @@ static void bounce_once(struct drawn_scene *drawn)
     drawn->scene.settings.light.bounce = TL_BOUNCE_ONE;
 }
 
+/* One far away, one near and below the sheet, both with shadows. */
+static void have_lamps(struct drawn_scene *drawn)
+{
+    be_glossy(drawn);
+    drawn->scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, 1, 0.3f}}, 2);
+    drawn->scene.lamps[1] = test_lamp_at((vec3s){{0.7f, 0.4f, 0.6f}}, 0.3f);
+    drawn->scene.frame.lamp_count = 2;
+}
+
 /* They show the lit scene. */
 static void be_mirrors(struct drawn_scene *drawn)
 {
@@ -179,6 +188,7 @@ static const struct rest_case cases[] = {
     {"rough", be_rough, 1, 1, 0.012, 0.12},
     {"emission", glow, 1, 1, 0.012, 0.15},
     {"mirrors", be_mirrors, 1, 1, 0.012, 0.2},
+    {"lamps", have_lamps, 1, 1, 0.012, 0.15},
     {"threads, converged", have_threads, 4, 8, 0.005, 0.06},
 };
 
@@ -387,12 +397,6 @@ static void be_open(struct drawn_scene *drawn)
     drawn_scene_cloth(drawn)->openness = 0.3f;
 }
 
-static void have_a_lamp(struct drawn_scene *drawn)
-{
-    drawn->scene.lamps[0] = test_lamp_towards((vec3s){{-0.5f, 1, 0.3f}}, 2);
-    drawn->scene.frame.lamp_count = 1;
-}
-
 static void have_dark_mirrors(struct drawn_scene *drawn)
 {
     be_mirrors(drawn);
@@ -412,7 +416,6 @@ static void test_refusals(void **state)
         editor *edit;
         const char *text;
     } refused[] = {{be_open, "cloth with holes at rest"},
-                   {have_a_lamp, "lamps at rest"},
                    {have_dark_mirrors, "near mirrors of a scene whose light does not bounce"},
                    {be_moving, "images of one round"}};
     const struct test_device *device = *state;
