@@ -143,7 +143,7 @@ static void test_a_far_knit_is_the_mean_of_near(void **state)
 static void keep_slopes_along_u(tl_weave *weave)
 {
     uint8_t *texels = tl_image_bytes(&weave->normal);
-    for (size_t i = 0; i < (size_t)(weave->normal.width * weave->normal.height); i++) {
+    for (size_t i = 0; i < (size_t)weave->normal.width * (size_t)weave->normal.height; i++) {
         float x = fminf(fmaxf((float)texels[3 * i] / 127.5f - 1, -1), 1);
         texels[3 * i + 1] = 128;
         texels[3 * i + 2] = (uint8_t)lroundf(127.5f * (1 + sqrtf(1 - x * x)));

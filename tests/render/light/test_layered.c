@@ -105,8 +105,8 @@ static void make_patches(void)
     patches = tl_image_create(TEXELS, TEXELS, 3, TL_IMAGE_U8);
     patches.linear = true;
     for (int i = 0; i < TEXELS * TEXELS; i++) {
-        const float x = 2 * GLM_PIf * (float)(i % TEXELS) / TEXELS,
-                    y = 2 * GLM_PIf * (float)(i / TEXELS) / TEXELS;
+        const int row = i / TEXELS;
+        const float x = 2 * GLM_PIf * (float)(i % TEXELS) / TEXELS, y = 2 * GLM_PIf * (float)row / TEXELS;
         const vec3s n = glms_vec3_normalize((vec3s){{0.5f * sinf(2 * x + y), 0.5f * cosf(2 * y), 1}});
         for (int c = 0; c < 3; c++)
             tl_image_bytes(&patches)[3 * i + c] = (uint8_t)lroundf(255 * (0.5f + 0.5f * n.raw[c]));

@@ -35,8 +35,8 @@ static tl_image make_wave_map(void)
 {
     tl_image map = tl_image_create(SIDE, SIDE, 3, TL_IMAGE_F32);
     for (int i = 0; i < SIDE * SIDE; i++) {
-        double u = 2 * M_PI * 4 * (i % SIDE + 0.5) / SIDE,
-               v = 2 * M_PI * 3 * ((double)(i / SIDE) + 0.5) / SIDE;
+        const int row = i / SIDE;
+        double u = 2 * M_PI * 4 * (i % SIDE + 0.5) / SIDE, v = 2 * M_PI * 3 * (row + 0.5) / SIDE;
         const double n[3] = {0.4 * cos(u), 0.3 * cos(v), 1};
         for (int c = 0; c < 3; c++)
             tl_image_floats(&map)[3 * i + c] =
@@ -401,7 +401,7 @@ static void empty_texels_have_no_weight(void **state)
     tl_image map = tl_image_create(4, 4, 3, TL_IMAGE_U8);
     map.linear = true;
     for (int i = 0; i < 16; i++)
-        memcpy(tl_image_bytes(&map) + 3 * i, (const uint8_t[]){160, 110, 230}, 3);
+        memcpy(tl_image_bytes(&map) + (size_t)3 * (size_t)i, (const uint8_t[]){160, 110, 230}, 3);
     struct test_scene scene;
     square_open(&scene, &planes[0], &map, false);
     struct test_shape *shape = &scene.shapes[0];
@@ -503,7 +503,7 @@ static void bends_are_not_in_the_map(void **state)
     tl_image map = tl_image_create(4, 4, 3, TL_IMAGE_U8);
     map.linear = true;
     for (int i = 0; i < 16; i++)
-        memcpy(tl_image_bytes(&map) + 3 * i, (const uint8_t[]){160, 110, 230}, 3);
+        memcpy(tl_image_bytes(&map) + (size_t)3 * (size_t)i, (const uint8_t[]){160, 110, 230}, 3);
     struct test_scene scene;
     square_open(&scene, &plane, &map, false);
     scene.settings.shading.space = TL_SPACE_OBJECT;
