@@ -53,10 +53,11 @@ static inline const char *test_data(const char *relative)
         }                                                                                                    \
     } while (0)
 
-/* What GL leaves to a driver, as hardware does it: vertices are placed to 1/256 of a pixel (SUBPIXEL_BITS of
- * 8), so that a sample shows what lies up to TEST_PLACE of a pixel beside it along each axis; weights of
- * linear filters have steps of 1/256, so that each errs by up to TEST_WEIGHT of what two texels differ by;
- * and a float may be cut to a half, not rounded. tests/render/hardware draws all but the last in software. */
+/* How precise graphics cards are where GL does not say: vertices are placed to 1/256 of a pixel
+ * (SUBPIXEL_BITS of 8), so that a sample shows what lies up to TEST_PLACE of a pixel beside it along each
+ * axis; weights of linear filters have steps of 1/256, so that each errs by up to TEST_WEIGHT of what two
+ * texels differ by; and a float may be cut to a half, not rounded. tests/render/hardware draws all but the
+ * last in software. */
 #define TEST_PLACE  (1.0 / 512)
 #define TEST_WEIGHT (1.0 / 512)
 

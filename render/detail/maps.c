@@ -90,18 +90,15 @@ static void fill_channels(const tl_texture *texture, int layer, const tl_image *
 static tl_texture upload_moments(tl_gpu *gpu, const tl_image *normals, const struct tl_detail_params *params)
 {
     const bool is_lean = params->minify == TL_DETAIL_MINIFY_LEAN;
-    const bool is_offset = tl_detail_has_offsets(params) && params->minify == TL_DETAIL_MINIFY_NONE;
     const bool offsets = tl_detail_has_offsets(params);
+    const bool has_squares = !offsets || params->minify != TL_DETAIL_MINIFY_NONE;
     tl_image moments = tl_bake_moments(normals, offsets);
     int width = moments.width, height = moments.height;
     GLenum format = width <= FLOAT_MOMENTS_SIDE && height <= FLOAT_MOMENTS_SIDE ? GL_RG32F : GL_RG16F;
     tl_texture texture = tl_texture_create(gpu, GL_TEXTURE_2D_ARRAY, format, width, height,
-                                           is_lean     ? 3
-                                           : is_offset ? 1
-                                                       : 2,
-                                           tl_texture_full_levels(width, height));
+                                           1 + has_squares + is_lean, tl_texture_full_levels(width, height));
     fill_channels(&texture, 0, &moments, 0, 2);
-    if (!is_offset)
+    if (has_squares)
         fill_channels(&texture, 1, &moments, 2, 2);
     tl_image_release(&moments);
     if (is_lean) {

@@ -1,5 +1,5 @@
-// What hardware does otherwise than GL in software, within what GL leaves to it: weights of linear filters with steps of
-// 1/256. The functions stand in for those of GLSL in every shader (shaders.cmake).
+// Linear filters of graphics cards: their weights have steps of 1/256, where GL in software has floats. GL does not state
+// how precise they are. These functions replace those of GLSL in every shader (shaders.cmake).
 vec2 hardware_place(vec2 p, vec2 size)
 {
     size = max(size, vec2(1.0)); // of a map that is not bound

@@ -1,4 +1,4 @@
-# cmake -D FROM=render -D TO=folder -P shaders.cmake: writes the shaders of FROM as hardware would run them, for
+# cmake -D FROM=render -D TO=folder -P shaders.cmake: writes the shaders of FROM with filters and vertices of graphics cards, for
 # TOILE_SHADER_DIR=TO. Files that are included have the functions as well, for shaders of tests.
 file(REMOVE_RECURSE ${TO})
 file(GLOB shaders RELATIVE ${FROM} ${FROM}/*/*.vert ${FROM}/*/*.frag ${FROM}/*/*.comp ${FROM}/*/*.glsl)

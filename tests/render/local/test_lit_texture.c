@@ -495,7 +495,7 @@ static void normals_turn_with_the_object(void **state)
 }
 
 /* Bends come after the map was made: the light stays that of the even square, to the digits of its texels,
- * while in world space it changes. A map made anew knows the bend. */
+ * while in world space it changes. A map of the bent shape has the bend. */
 static void bends_are_not_in_the_map(void **state)
 {
     struct test_device *device = *state;
@@ -523,9 +523,9 @@ static void bends_are_not_in_the_map(void **state)
         tl_image_release(&drawn);
     }
     scene.surfaces[0].topology_revision += 1000;
-    double by_weights, anew = off_pixels(&scene, device->renderer, &by_weights);
-    print_message("made anew: off world space by %.4f\n", anew);
-    assert_true(anew < 0.01 + by_weights);
+    double by_weights, renewed = off_pixels(&scene, device->renderer, &by_weights);
+    print_message("a new map: off world space by %.4f\n", renewed);
+    assert_true(renewed < 0.01 + by_weights);
     test_scene_close(&scene);
     tl_image_release(&map);
 }
