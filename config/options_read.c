@@ -279,7 +279,8 @@ static char *read_path(const struct tl_option *row, const char *text, const char
                        const char **field)
 {
     bool name = row->choices && !tl_option_is_file_name(text);
-    if (name && !is_choice(row->choices, text))
+    const bool is_stdin = strcmp(text, "-") == 0; /* whoever opens it refuses it, where it is no file's place */
+    if (name && !is_stdin && !is_choice(row->choices, text))
         return refuse(row, text, "is no name known here");
     if (name || text[0] == '\0')
         return read_text(row, text, field);

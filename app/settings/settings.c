@@ -23,7 +23,7 @@ static const char *const garment_names[] = {"dress", "skirt",  "layers", "trouse
 static const char *const avatar_names[] = {"auto", "form", "figure", "ball", "none", NULL};
 static const char *const drape_names[] = {"auto", "authored", "settle", NULL};
 static const char *const body_detail_names[] = {"auto", "full", NULL};
-static const char *const environment_names[] = {"studio", "white", "none", "-", NULL};
+static const char *const environment_names[] = {"studio", "white", "none", NULL};
 static const char *const motion_names[] = {"none", NULL};
 
 #define OWN "own"

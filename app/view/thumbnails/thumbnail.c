@@ -117,8 +117,6 @@ static tl_image reduce(const tl_image *map, int width, int height)
 bool tl_thumbnail_of_environment(const char *name, tl_image *out, tl_error *error)
 {
     struct tl_moving_light light = {0};
-    if (strcmp(name, "-") == 0) /* stdin is read for light only */
-        return tl_fail(error, TL_USAGE, "%s: a live film has no thumbnail: choose it", name);
     if (!tl_moving_light_open(&light, name, 0, 0, error))
         return false;
     const vec3s factors = light.environment.shown;
