@@ -5,6 +5,8 @@
 
 #include "tests/testing.h"
 
+#include <string.h>
+
 #define TEXELS 64 /* a side of the maps */
 
 /* A dim blue sky, a warm wide lamp on one side, a sun on the other: nothing is the same when it is turned.
@@ -181,6 +183,39 @@ void be_voile(struct drawn_scene *drawn)
     drawn_scene_cloth(drawn)->transmission = (vec3s){{0.4f, 0.3f, 0.2f}};
 }
 
+void have_warp_threads(struct drawn_scene *drawn)
+{
+    be_satin(drawn);
+    drawn_scene_cloth(drawn)->thread_count = 1;
+    drawn_scene_cloth(drawn)->threads[0] = (struct tl_thread){{{0.9f, 0.6f, 0.4f}}, 0.5f, 0.15f};
+}
+
+void have_threads(struct drawn_scene *drawn)
+{
+    have_warp_threads(drawn);
+    drawn_scene_cloth(drawn)->thread_count = 2;
+    drawn_scene_cloth(drawn)->threads[1] = (struct tl_thread){{{0.3f, 0.5f, 0.9f}}, 0.15f, 0.5f};
+}
+
+void have_ggx_facets(struct drawn_scene *drawn)
+{
+    have_threads(drawn);
+    drawn_scene_cloth(drawn)->gloss.model = TL_REFLECT_TORRANCE_SPARROW;
+    drawn_scene_cloth(drawn)->gloss.facets = TL_FACETS_GGX;
+}
+
+void be_open(struct drawn_scene *drawn)
+{
+    drawn_scene_cloth(drawn)->openness = 0.3f;
+}
+
+/* The ball shines on the sheet. */
+void glow(struct drawn_scene *drawn)
+{
+    be_satin(drawn);
+    drawn->scene.shapes[0].material.emission = (vec3s){{0.5f, 0.3f, 0.2f}};
+}
+
 void look_up(struct drawn_scene *drawn)
 {
     drawn->scene.frame.camera.eye = (vec3s){{0.9f, 0.25f, 0.9f}};
@@ -209,4 +244,20 @@ double drawn_scene_cover_difference(const tl_image *a, const tl_image *b)
         largest =
             fmax(largest, fabs((double)(tl_image_floats(a)[4 * i + 3] - tl_image_floats(b)[4 * i + 3])));
     return largest;
+}
+
+void drawn_scene_expect_device(const tl_renderer *renderer, const struct drawn_scene *drawn, const char *text)
+{
+    char said[160];
+    tl_renderer_describe_device(renderer, &drawn->scene.frame, &drawn->scene.settings, said, sizeof said);
+    if (!strstr(said, text))
+        print_error("%s\n", said);
+    assert_non_null(strstr(said, text));
+}
+
+void drawn_scene_expect_same(const tl_image *a, const tl_image *b)
+{
+    assert_int_equal(a->width, b->width);
+    assert_int_equal(a->height, b->height);
+    assert_memory_equal(a->texels, b->texels, 16 * (size_t)a->width * (size_t)a->height);
 }

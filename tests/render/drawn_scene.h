@@ -25,11 +25,16 @@ struct tl_map drawn_scene_map(const tl_image *image);
 typedef void editor(struct drawn_scene *drawn);
 void drawn_scene_edit(struct drawn_scene *drawn, editor *change);
 editor be_matt, be_glossy, be_satin, be_fuzzy, be_woven, be_streaked, be_mapped, be_voile;
+editor have_warp_threads, have_threads, have_ggx_facets, be_open, glow;
 editor look_up; /* from below the sheet */
 
 /* 1 where a shape, not the ground, is seen. */
 tl_image drawn_scene_mask(const struct test_device *device, const struct drawn_scene *drawn);
 /* Largest difference of cover. GL computes the ground's fading in a shader of its own. */
 double drawn_scene_cover_difference(const tl_image *a, const tl_image *b);
+
+/* What the renderer says of the device that draws the scene holds `text`. */
+void drawn_scene_expect_device(const tl_renderer *renderer, const struct drawn_scene *drawn, const char *text);
+void drawn_scene_expect_same(const tl_image *a, const tl_image *b); /* every bit */
 
 #endif

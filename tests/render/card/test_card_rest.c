@@ -16,21 +16,6 @@
 
 /* ---- Editors ---- */
 
-static void have_threads(struct drawn_scene *drawn)
-{
-    be_satin(drawn);
-    drawn_scene_cloth(drawn)->thread_count = 2;
-    drawn_scene_cloth(drawn)->threads[0] = (struct tl_thread){{{0.9f, 0.6f, 0.4f}}, 0.5f, 0.15f};
-    drawn_scene_cloth(drawn)->threads[1] = (struct tl_thread){{{0.3f, 0.5f, 0.9f}}, 0.15f, 0.5f};
-}
-
-static void have_ggx_facets(struct drawn_scene *drawn)
-{
-    be_satin(drawn);
-    drawn_scene_cloth(drawn)->gloss.model = TL_REFLECT_TORRANCE_SPARROW;
-    drawn_scene_cloth(drawn)->gloss.facets = TL_FACETS_GGX;
-}
-
 static void blinn_phong(struct drawn_scene *drawn)
 {
     be_glossy(drawn);
@@ -48,12 +33,6 @@ static void be_rough(struct drawn_scene *drawn)
 {
     for (int i = 0; i < 2; i++)
         drawn->scene.shapes[i].material.diffuse_roughness = 0.7f;
-}
-
-static void glow(struct drawn_scene *drawn)
-{
-    be_satin(drawn);
-    drawn->scene.shapes[0].material.emission = (vec3s){{0.5f, 0.3f, 0.2f}};
 }
 
 static void turn(struct drawn_scene *drawn)
@@ -111,15 +90,6 @@ static void open_small(struct drawn_scene *drawn)
     settings->reference.lobe_samples = settings->reference.bounce_samples = 2;
 }
 
-static void expect_device(const tl_renderer *renderer, const struct drawn_scene *drawn, const char *text)
-{
-    char said[160];
-    tl_renderer_describe_device(renderer, &drawn->scene.frame, &drawn->scene.settings, said, sizeof said);
-    if (!strstr(said, text))
-        print_error("%s\n", said);
-    assert_non_null(strstr(said, text));
-}
-
 static tl_image draw_anew(tl_renderer *renderer, struct drawn_scene *drawn)
 {
     tl_error error = {0};
@@ -157,12 +127,6 @@ static double light_difference(const tl_image *made, const tl_image *expected)
     return largest;
 }
 
-static void expect_same(const tl_image *a, const tl_image *b)
-{
-    assert_int_equal(a->width, b->width);
-    assert_memory_equal(a->texels, b->texels, 16 * (size_t)a->width * (size_t)a->height);
-}
-
 /* ---- Pictures ---- */
 
 /* Light, by the mean of all pixels; and every pixel, against the reference. Both are noise, and edges, where
@@ -197,7 +161,7 @@ static bool check_picture(tl_renderer *renderer, struct drawn_scene *drawn, cons
     drawn_scene_edit(drawn, item->edit);
     drawn->scene.settings.light.rounds = item->rounds;
     tl_image made = draw_anew(renderer, drawn);
-    expect_device(renderer, drawn, "the graphics card, by");
+    drawn_scene_expect_device(renderer, drawn, "the graphics card, by");
     tl_image expected = draw_reference(renderer, drawn, item->replicates);
     const double light = light_difference(&made, &expected);
     const struct test_difference difference = test_compare(&made, &expected);
@@ -359,10 +323,10 @@ static void test_rounds_repeat(void **state)
     tl_image_release(&other);
     other = draw_rounds(renderer, &drawn, 0, 1);
     assert_true(tl_renderer_is_at_rest(renderer));
-    expect_same(&other, &first);
+    drawn_scene_expect_same(&other, &first);
     tl_image_release(&other);
     other = draw_rounds(renderer, &drawn, 0, 1); /* nothing is drawn any more */
-    expect_same(&other, &first);
+    drawn_scene_expect_same(&other, &first);
     tl_image_release(&other);
     tl_image_release(&first);
     drawn_scene_close(&drawn);
@@ -384,18 +348,13 @@ static void test_motion_goes_on(void **state)
     tl_image_release(&other);
     drawn.scene.settings.light.ratio_at = TL_RATIO_AT_VERTICES;
     other = test_scene_draw(&drawn.scene, renderer);
-    expect_same(&other, &first);
+    drawn_scene_expect_same(&other, &first);
     tl_image_release(&other);
     tl_image_release(&first);
     drawn_scene_close(&drawn);
 }
 
 /* ---- What the card does not draw ---- */
-
-static void be_open(struct drawn_scene *drawn)
-{
-    drawn_scene_cloth(drawn)->openness = 0.3f;
-}
 
 static void have_dark_mirrors(struct drawn_scene *drawn)
 {
@@ -423,11 +382,11 @@ static void test_refusals(void **state)
     open_small(&drawn);
     for (size_t i = 0; i < TL_COUNT(refused); i++) {
         drawn_scene_edit(&drawn, refused[i].edit);
-        expect_device(device->renderer, &drawn, refused[i].text);
+        drawn_scene_expect_device(device->renderer, &drawn, refused[i].text);
         tl_image instead = draw_anew(device->renderer, &drawn);
         drawn.scene.settings.light.device = TL_DEVICE_CPU;
         tl_image expected = draw_anew(device->renderer, &drawn);
-        expect_same(&instead, &expected);
+        drawn_scene_expect_same(&instead, &expected);
         tl_image_release(&expected);
         tl_image_release(&instead);
     }

@@ -184,6 +184,8 @@ static vec3s expected_light(const struct scene *scene, const struct tl_lobes *lo
     vec3s gloss = tl_lobes_fetch(lobes, mirror, tl_exponent_blend(tl_lobe_exponent(0.9f)));
     vec3s diffuse = tl_lobes_fetch(lobes, n, tl_exponent_blend(1));
     vec3s light = glms_vec3_add(gloss, glms_vec3_mul(scene->sheet.material.diffuse, diffuse));
+    vec3s under = tl_lobes_fetch(lobes, glms_vec3_negate(n), tl_exponent_blend(1));
+    light = glms_vec3_add(light, glms_vec3_mul(scene->sheet.material.transmission, under));
     return coated(scene, lobes, glms_vec3_normalize(hit->normal), viewer, light);
 }
 
@@ -233,13 +235,17 @@ static void mirrors_and_gloss_follow_the_sheet(void **state)
         const char *name;
         int mode;
         float coat;
-    } kinds[] = {
-        {"surface", TL_MAPS_SURFACE, 0}, {"coat", TL_MAPS_SURFACE, 1}, {"mirror", TL_MAPS_MIRROR, 0}};
+        vec3s transmission;
+    } kinds[] = {{"surface", TL_MAPS_SURFACE, 0, {{0}}},
+                 {"coat", TL_MAPS_SURFACE, 1, {{0}}},
+                 {"thin sheet", TL_MAPS_SURFACE, 0, {{0.9f, 0.6f, 0.8f}}},
+                 {"mirror", TL_MAPS_MIRROR, 0, {{0}}}};
     for (size_t kind = 0; kind < TL_COUNT(kinds); kind++)
         for (int moment = 0; moment < 3; moment++) {
             double worst;
             scene.settings.maps.mode = kinds[kind].mode;
             scene.sheet.material.coat = kinds[kind].coat;
+            scene.sheet.material.transmission = kinds[kind].transmission;
             scene.sheet.material.coat_glossiness = 0.9f;
             deform(&scene, 0.6f * (float)moment, true);
             double error = compare(&scene, device->renderer, &lobes, &worst);

@@ -123,13 +123,14 @@ static void what_is_met_looks_itself(void **state)
     (void)state;
     const vec3s f0 = {{0.1f, 0.2f, 0.3f}}, back_f0 = {{0.05f, 0.5f, 0.02f}},
                 back_colour = {{0.1f, 0.2f, 0.6f}};
-    for (int turned = 0; turned < 3; turned++) { /* front; a back like it; a back of its own */
+    for (int look = 0; look < 4; look++) { /* front and back that are alike; those that are not */
+        const bool turned = look & 1, own = look == 3;
         tl_material wall = matt_wall();
         wall.specular = f0;
         wall.glossiness = 0.7f;
         wall.openness = 0.3f;
         wall.double_sided = true;
-        wall.back = (struct tl_back){turned == 2, back_colour, back_f0};
+        wall.back = (struct tl_back){look >= 2, back_colour, back_f0};
         struct stage stage;
         stage_open_with(&stage, 1, &wall);
         if (turned) { /* the mirror lies on the wall's other side, which the rays meet */
@@ -145,7 +146,6 @@ static void what_is_met_looks_itself(void **state)
         assert_in_range(hits, SAMPLES / 2, SAMPLES);
         for (size_t i = SAMPLES; i < stage.samples.count; i++) {
             const tl_sample *seen = &stage.samples.items[i];
-            const bool own = turned == 2;
             const double share = pow(1 - sqrt(0.5), 5);
             assert_near(seen->normal.x, turned ? 1 : -1, 1e-5);
             assert_near(seen->smooth.x, turned ? 1 : -1, 1e-5);
@@ -153,7 +153,7 @@ static void what_is_met_looks_itself(void **state)
             assert_near(seen->mirror.y, sqrt(0.5), 1e-5);
             assert_near(seen->cover, 0.7, 1e-6);
             assert_near(seen->glossiness, 0.7, 1e-6);
-            assert_true(((seen->triangle & TL_SAMPLE_BACK) != 0) == (turned != 0));
+            assert_true(((seen->triangle & TL_SAMPLE_BACK) != 0) == turned);
             for (int c = 0; c < 3; c++) {
                 const double r = (double)(own ? back_f0 : f0).raw[c];
                 assert_near(seen->diffuse.raw[c], (own ? back_colour : wall.diffuse).raw[c], 1e-6);
