@@ -406,17 +406,17 @@ static void choose_role(struct tl_scene_params *scene)
     }
 }
 
-/* Parts of a material beyond two lobes: those that environment maps do not show, and those that they do. */
-static bool is_more_than_maps_show(const struct tl_material_params *material)
-{
-    return material->model != TL_REFLECT_PHONG || material->openness > 0 || material->fuzz > 0 ||
-           material->diffuse_roughness > 0;
-}
-
-/* ... and what no pass over shadow maps shows: those that read nothing but filter chains draw any gloss. */
+/* Parts of a material that no pass over shadow maps shows ... */
 static bool is_more_than_chains_show(const struct tl_material_params *material)
 {
     return material->openness > 0 || material->fuzz > 0 || material->diffuse_roughness > 0;
+}
+
+/* ... and those beyond two lobes: environment maps do not show them; what reads nothing but filter chains
+ * draws any gloss. */
+static bool is_more_than_maps_show(const struct tl_material_params *material)
+{
+    return material->model != TL_REFLECT_PHONG || is_more_than_chains_show(material);
 }
 
 static bool is_layered(const struct tl_material_params *material)

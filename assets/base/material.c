@@ -39,9 +39,14 @@ bool tl_material_transmits(const tl_material *material)
     return material->transmission.x > 0 || material->transmission.y > 0 || material->transmission.z > 0;
 }
 
+bool tl_material_is_lambert(const tl_material *material)
+{
+    return !(material->diffuse_roughness > 0);
+}
+
 bool tl_material_is_layered(const tl_material *material)
 {
-    return material->gloss.model != TL_REFLECT_PHONG || material->diffuse_roughness > 0 ||
+    return material->gloss.model != TL_REFLECT_PHONG || !tl_material_is_lambert(material) ||
            material->coat > 0 || material->openness > 0 || tl_material_has_fuzz(material) ||
            tl_material_transmits(material);
 }

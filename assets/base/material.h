@@ -168,8 +168,10 @@ typedef struct tl_material {
 /* Matt mid-grey, no maps. */
 tl_material tl_material_default(const char *name);
 
+/* Whether it reflects diffusely by Lambert's law; else by render/brdf/layers_terms.glsl. */
+bool tl_material_is_lambert(const tl_material *material);
 /* Whether the material has more than two cosine lobes about the normal and the mirror direction: microfacets,
- * a coat, fuzz, or transmission. */
+ * a diffuse lobe of its own, a coat, fuzz, or transmission. */
 bool tl_material_is_layered(const tl_material *material);
 /* The even light and that of the threads over the even light: 1 where there are no threads. Who draws no
  * lobes of threads multiplies the diffuse colour by it. */

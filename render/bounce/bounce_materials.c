@@ -48,7 +48,7 @@ static vec3s albedo_of(vec3s diffuse, vec3s specular, float glossiness)
 static struct tl_bounce_material material_of(const tl_material *material)
 {
     const struct tl_back *back = &material->back;
-    const float matt = matt_albedo_mean(material->diffuse_roughness);
+    const float matt = matt_albedo_mean(tl_material_law(material));
     const vec3s front = glms_vec3_scale(mean_colour(&material->diffuse_map, material->diffuse), matt);
     struct tl_bounce_material read = {
         .diffuse = {front, back->is_given ? glms_vec3_scale(back->diffuse, matt) : front},
@@ -62,7 +62,8 @@ static struct tl_bounce_material material_of(const tl_material *material)
                                    ? back->diffuse
                                    : mean_colour(&material->diffuse_map, tl_material_colour(material));
         read.has_lobes = read.has_lobes || glms_vec3_max(read.specular[side]) > glms_vec3_max(coloured);
-        read.whole[side] = albedo_of(glms_vec3_scale(coloured, matt), read.specular[side], material->glossiness);
+        read.whole[side] =
+            albedo_of(glms_vec3_scale(coloured, matt), read.specular[side], material->glossiness);
     }
     for (int side = 0; side < 2; side++)
         read.albedo[side] =

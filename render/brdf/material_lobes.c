@@ -1,12 +1,22 @@
 #include "render/brdf/material_lobes.h"
 
-MaterialLayers tl_material_layers(const struct tl_material_sample *sample)
+vec4s tl_material_law(const tl_material *material)
+{
+    return (vec4s){{material->diffuse_roughness, 0, 0, 0}};
+}
+
+static MaterialLayers layers_of(const struct tl_material_sample *sample, vec3s thread)
 {
     const tl_material *material = sample->material;
-    return material_layers(material->diffuse_roughness, material->coat,
+    return material_layers(tl_material_law(material), material->coat,
                            tl_lobe_exponent(material->coat_glossiness), material->fuzz.colour,
                            material->fuzz.roughness, material->fuzz.follow, sample->smooth, sample->normal,
-                           sample->viewer);
+                           thread, sample->viewer);
+}
+
+float tl_material_base(const struct tl_material_sample *sample)
+{
+    return layers_of(sample, glms_vec3_zero()).base;
 }
 
 static struct tl_brdf_sum gloss_of(const struct tl_material_sample *sample)
@@ -32,13 +42,12 @@ int tl_material_gloss_fit(const struct tl_material_sample *sample, int max_count
 struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *sample)
 {
     const tl_material *material = sample->material;
-    struct tl_material_lobes lobes = {.viewer = sample->viewer,
-                                      .over = tl_material_layers(sample),
-                                      .is_faceted = material->gloss.model != TL_REFLECT_PHONG};
+    struct tl_material_lobes lobes = {.is_faceted = material->gloss.model != TL_REFLECT_PHONG};
     if (lobes.is_faceted)
         lobes.gloss = gloss_of(sample);
     if (lobes.is_faceted || material->measured)
         lobes.frame = frame_of(sample);
+    lobes.over = layers_of(sample, lobes.frame.tangent);
     return lobes;
 }
 
@@ -47,7 +56,7 @@ int tl_material_lobes_fit(const struct tl_material_lobes *lobes, int max_count,
 {
     int count = 0;
     if (lobes->is_faceted)
-        count = tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->viewer, max_count, items);
+        count = tl_lobe_fit_sum(&lobes->gloss, &lobes->frame, lobes->over.viewer, max_count, items);
     for (int k = 0; k < count; k++)
         items[k].weight = glms_vec3_scale(items[k].weight, lobes->over.base);
     *facets = count;
@@ -62,12 +71,7 @@ vec3s tl_material_facets(const struct tl_material_lobes *lobes, vec3s l, float r
 {
     vec3s gloss = {{0, 0, 0}};
     for (int k = 0; lobes->is_faceted && k < lobes->gloss.count; k++)
-        gloss = glms_vec3_add(
-            gloss, tl_brdf_gloss_under_disc(&lobes->gloss.items[k], &lobes->frame, l, lobes->viewer, radius));
+        gloss = glms_vec3_add(gloss, tl_brdf_gloss_under_disc(&lobes->gloss.items[k], &lobes->frame, l,
+                                                              lobes->over.viewer, radius));
     return gloss;
-}
-
-vec3s tl_material_over(const struct tl_material_lobes *lobes, vec3s below, vec3s l, float radius)
-{
-    return material_over(lobes->over, below, l, lobes->viewer, radius);
 }

@@ -36,7 +36,6 @@ struct tl_material_sample {
 };
 
 struct tl_material_lobes {
-    vec3s viewer;
     MaterialLayers over;
     bool is_faceted; /* the gloss is this, and no lobe about the mirror direction: */
     struct tl_brdf_sum gloss;
@@ -48,8 +47,10 @@ struct tl_material_lobes tl_material_lobes_of(const struct tl_material_sample *s
  * Returns how many. */
 int tl_material_gloss_fit(const struct tl_material_sample *sample, int max_count,
                           struct tl_fitted_lobe items[TL_LOBE_FIT_SUM_MAX]);
-/* The layers alone, for which nothing of facets is read. */
-MaterialLayers tl_material_layers(const struct tl_material_sample *sample);
+/* The share that the layers leave of what is below them; nothing of facets is read. */
+float tl_material_base(const struct tl_material_sample *sample);
+/* Its law of diffuse reflectance (layers_terms.glsl). */
+vec4s tl_material_law(const tl_material *material);
 
 /* The lobes for which prefiltered light can be looked up: those that stand for facets, at most `max_count`
  * for each gloss, then the coat. Returns how many; *facets: of facets. */
@@ -57,9 +58,8 @@ MaterialLayers tl_material_layers(const struct tl_material_sample *sample);
 int tl_material_lobes_fit(const struct tl_material_lobes *lobes, int max_count,
                           struct tl_fitted_lobe items[TL_MATERIAL_LOBES_MAX], int *facets);
 
-/* f_r cos for a light that is a disc of angular radius `radius` (rad; 0: a point) about l: of facets alone, 0
- * without; and of coat and fibres over what is below them, `below`. */
+/* f_r cos of facets alone, 0 without, for a light that is a disc of angular radius `radius` (rad; 0: a point)
+ * about l. */
 vec3s tl_material_facets(const struct tl_material_lobes *lobes, vec3s l, float radius);
-vec3s tl_material_over(const struct tl_material_lobes *lobes, vec3s below, vec3s l, float radius);
 
 #endif

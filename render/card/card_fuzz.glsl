@@ -1,11 +1,6 @@
 // The layers over a material (render/brdf/material_lobes.h), and the sheen of its fibres.
 #include "layers_terms.glsl"
 
-MaterialLayers layers_over(Part part, vec3 normal, vec3 shown, vec3 viewer)
-{
-    return material_layers(part.fuzz_more.y, part.optics.z, part.optics.w, part.fuzz.rgb, part.fuzz.a, part.fuzz_more.x, normal, shown, viewer);
-}
-
 // The unshadowed light of the environment.
 vec3 exact_fibres(MaterialLayers m, vec3 viewer)
 {

@@ -21,7 +21,8 @@ struct Part {
     vec4 sizes, rows;      // of the construction
     vec4 sewing_thread;
     vec4 fuzz;             // colour, roughness
-    vec4 fuzz_more;        // how far it follows the bumps; roughness of the diffuse reflectance
+    vec4 fuzz_more;        // how far it follows the bumps
+    vec4 law;              // of the diffuse reflectance
     vec4 table;            // of lobe sets: glossiness at both ends, lobes, steps of glossiness
     uvec4 table_first;     // its first vector; enum tl_facets, tl_masking; tl_reflectance, tl_fresnel << 4
     vec4 optics;           // index, extinction; share under a coat, exponent of its lobe

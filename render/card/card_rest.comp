@@ -8,7 +8,6 @@
 #include "spread_terms.glsl"
 #include "card_sky.glsl"
 #include "card_see.glsl"
-#include "card_fuzz.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(location = 0) uniform ivec4 kind; // class, bounces before, bounces at largest, round
 layout(location = 1) uniform vec2 more;  // side of what a pixel shows, in pixels; number of the ground's first triangle
@@ -76,9 +75,9 @@ Lobes lobes_of_place(Seen s)
     l.s = s;
     l.normal = s.side * s.surface.smooth_normal;
 #ifdef RICH
-    l.over = layers_over(s.part, l.normal, s.surface.shown, s.viewer);
+    l.over = layers_over(s);
 #else
-    l.over = material_layers(0.0, 0.0, 1.0, vec3(0.0), 0.5, 0.0, l.normal, l.normal, s.viewer);
+    l.over = material_layers(vec4(0.0), 0.0, 1.0, vec3(0.0), 0.5, 0.0, l.normal, l.normal, vec3(0.0), s.viewer);
 #endif
     l.has_facets = s.is_faceted && s.facets.viewer.z > 0.0;
     l.glosses = l.has_facets ? 1 + int(s.part.flags.w) : !s.is_faceted && (s.part.flags.x & IS_GLOSSY) != 0u ? 1 : 0;
@@ -89,11 +88,10 @@ Lobes lobes_of_place(Seen s)
 // f_r cos for light from a direction above the surface.
 vec3 reflected(Lobes l, vec3 d)
 {
-    vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI) *
-             material_matt(l.over, l.s.surface.shown, d, l.s.viewer);
+    vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI) * material_matt(l.over, d);
     if (l.s.is_faceted ? l.has_facets && dot(d, l.s.facets.frame[2]) > 0.0 : l.glosses > 0)
         f += gloss_under(l.s, d, 0.0);
-    return material_over(l.over, f, d, l.s.viewer, 0.0);
+    return material_over(l.over, f, d, 0.0);
 }
 
 vec3 emitted(Lobes l)

@@ -2,6 +2,7 @@
 #include "card_pixel.glsl"
 #include "card_lobes.glsl"
 #include "card_material.glsl"
+#include "card_fuzz.glsl"
 #ifdef RICH
 #include "card_construction.glsl"
 #include "card_maps.glsl"
@@ -51,7 +52,7 @@ Seen see_place(Place p, uint part_number)
 #endif
     s.mirror = s.reflectance = vec3(0.0);
     s.exponent = 1.0;
-    s.facets.viewer = vec3(0.0);
+    s.facets = Facets(mat3(0.0), vec3(0.0));
     s.is_faceted = (s.part.flags.x & IS_FACETED) != 0u;
     if (s.is_faceted) {
         s.facets = facets_of(s.part, s.surface.shown, s.tangent, s.side, s.viewer);
@@ -66,6 +67,12 @@ Seen see_place(Place p, uint part_number)
 Seen see(uint id, uint part_number, ivec2 pixel)
 {
     return see_place(place_of(id, pixel), part_number);
+}
+
+MaterialLayers layers_over(Seen s)
+{
+    return material_layers(s.part.law, s.part.optics.z, s.part.optics.w, s.part.fuzz.rgb, s.part.fuzz.a, s.part.fuzz_more.x,
+                           s.side * s.surface.smooth_normal, s.surface.shown, s.facets.frame[0], s.viewer);
 }
 
 #ifdef RICH

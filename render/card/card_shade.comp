@@ -23,7 +23,6 @@ layout(std430, binding = CARD_RATIOS) restrict readonly buffer Ratios
     vec4 ratios[];
 };
 layout(binding = 6) uniform sampler2DArray sun_seen;
-#include "card_fuzz.glsl"
 
 // The light that the pixel sends to the viewer.
 vec3 light_of(Seen s, ivec2 pixel)
@@ -39,7 +38,7 @@ vec3 light_of(Seen s, ivec2 pixel)
     }
     vec3 matt = s.surface.diffuse;
 #ifdef RICH
-    MaterialLayers over = layers_over(s.part, s.side * s.surface.smooth_normal, s.surface.shown, s.viewer);
+    MaterialLayers over = layers_over(s);
     matt *= over.matt_albedo;
 #endif
     vec3 light = matt * exact_diffuse(into_environment(s.surface.shown)) *
@@ -77,8 +76,8 @@ vec3 light_of(Seen s, ivec2 pixel)
         float cosine = max(dot(sun.towards, s.surface.shown), 0.0);
         vec3 sent = s.surface.diffuse * (cosine / PI), shine = gloss_under(s, sun.towards, sun.radius);
 #ifdef RICH
-        sent *= material_matt(over, s.surface.shown, sun.towards, s.viewer);
-        light += seen * sun.power * material_over(over, sent + shine, sun.towards, s.viewer, sun.radius);
+        sent *= material_matt(over, sun.towards);
+        light += seen * sun.power * material_over(over, sent + shine, sun.towards, sun.radius);
 #else
         light += seen * sun.power * (sent + shine);
 #endif

@@ -17,6 +17,7 @@ struct card_part {
     float mean_colour[4], mean_specular[4], mean_gloss[4], mean_own[4], mean_weave[4];
     float sizes[4], rows[4], sewing_thread[4];
     float fuzz[4], fuzz_more[4];
+    vec4s law;
     float table[4];
     uint32_t table_first[4];
     float optics[4], emission[4], transmission[4];
@@ -166,8 +167,7 @@ static bool add_class(tl_graphics_card *card, const struct tl_shade_part *part, 
 static int class_of(tl_graphics_card *card, const struct tl_shade_part *part, tl_error *error)
 {
     if (!part->transmits && !part->has_maps && !part->has_bumps && !part->is_faceted && !part->has_fuzz &&
-        !(part->material->coat > 0) && !(part->material->diffuse_roughness > 0) &&
-        !tl_material_emits(part->material))
+        !(part->material->coat > 0) && part->is_lambert && !tl_material_emits(part->material))
         return 1;
     for (int i = 2; i < card->class_count; i++)
         if (same_maps(card->classes[i].part, part))
@@ -377,7 +377,7 @@ static void fill_part(const struct tl_shade_materials *materials, const struct t
     tl_card_put(to->sewing_thread, material->construction.thread, 0);
     tl_card_put(to->fuzz, material->fuzz.colour, material->fuzz.roughness);
     to->fuzz_more[0] = material->fuzz.follow;
-    to->fuzz_more[1] = material->diffuse_roughness;
+    to->law = part->law;
     to->flags[0] = flags_of(materials, part, is_ground);
     to->flags[1] = first_triangle;
     to->flags[3] = (uint32_t)material->thread_count;

@@ -172,9 +172,7 @@ static void add_suns(const struct block *block, size_t index, const struct frame
         float values[2] = {lobe_cosine(1, glms_vec3_dot(sun->direction, frame->normal)),
                            lobe_cosine(exponent, glms_vec3_dot(sun->direction, frame->gloss))};
         if (lobes)
-            values[DIFFUSE] *=
-                material_matt(lobes->of.over, frame->normal, sun->direction, lobes->of.viewer) /
-                lobes->of.over.matt_albedo;
+            values[DIFFUSE] *= material_matt(lobes->of.over, sun->direction) / lobes->of.over.matt_albedo;
         for (int kind = 0; kind < 2; kind++) {
             vec3s arriving = glms_vec3_scale(sun->power, values[kind]);
             light->unshadowed[kind] = glms_vec3_add(light->unshadowed[kind], arriving);
@@ -318,7 +316,7 @@ static void split_material_lobes(const struct block *block, const tl_material *m
     lobes->count = tl_material_lobes_fit(&lobes->of, request->params->lobes, lobes->items, &lobes->facets);
     lobes->has_fuzz = tl_material_has_fuzz(material);
     if (lobes->has_fuzz)
-        fuzz_lobes(material->fuzz.roughness, glms_vec3_dot(lobes->of.over.fuzz_axis, lobes->of.viewer),
+        fuzz_lobes(material->fuzz.roughness, glms_vec3_dot(lobes->of.over.fuzz_axis, lobes->of.over.viewer),
                    lobes->fibres);
     sample->diffuse = glms_vec3_scale(sample->diffuse, lobes->of.over.base * lobes->of.over.matt_albedo);
     sample->specular = glms_vec3_scale(sample->specular, lobes->of.over.base);
@@ -334,7 +332,7 @@ static vec3s sun_on_lobes(const struct block *block, size_t index, const struct 
         const struct tl_sun *sun = &request->suns->items[i];
         const float *visibility = request->sun_visibility[i];
         const vec3s facets = tl_material_facets(&lobes->of, sun->direction, sun->radius);
-        const vec3s sent = tl_material_over(&lobes->of, facets, sun->direction, sun->radius);
+        const vec3s sent = material_over(lobes->of.over, facets, sun->direction, sun->radius);
         float above = light_above(false, sun->radius, glms_vec3_dot(sun->direction, smooth));
         float seen = shadowed && visibility ? above * visibility[index] : 1;
         light = glms_vec3_add(light, glms_vec3_scale(glms_vec3_mul(sun->power, sent), seen));
@@ -493,7 +491,7 @@ static const tl_material *rich_material(const struct tl_compose_request *request
         return NULL;
     const tl_material *material =
         tl_triangle_material(request->ranges, samples->items[index].triangle & ~TL_SAMPLE_BACK);
-    const bool is_rich = material->coat > 0 || material->diffuse_roughness > 0 ||
+    const bool is_rich = material->coat > 0 || !tl_material_is_lambert(material) ||
                          material->gloss.model != TL_REFLECT_PHONG || tl_material_has_fuzz(material);
     return is_rich ? material : NULL;
 }

@@ -117,7 +117,7 @@ static tl_sample other_side(const tl_sample *sample, const tl_material *material
     other.smooth = glms_vec3_negate(sample->smooth);
     other.mirror = other.normal;
     other.glossiness = 0;
-    other.diffuse = glms_vec3_scale(material->transmission, tl_material_layers(&seen).base);
+    other.diffuse = glms_vec3_scale(material->transmission, tl_material_base(&seen));
     other.specular = (vec3s){{0, 0, 0}};
     return other;
 }

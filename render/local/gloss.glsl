@@ -7,7 +7,7 @@ const float PI = 3.14159265;
 #include "layers_terms.glsl"
 
 layout(location = 71) uniform vec2 gloss_optics; // index, extinction
-layout(location = 102) uniform float matt_roughness; // of the diffuse reflectance, rad
+layout(location = 102) uniform vec4 matt_law; // of the diffuse reflectance
 #ifdef THREADS
 layout(location = 88) uniform vec2 thread_widths[THREADS]; // along weft and warp without maps
 layout(location = 90) uniform vec3 thread_ratios[THREADS]; // of their light to the diffuse colour
@@ -53,7 +53,7 @@ vec3 gloss(Cosines c, vec3 f0, float s, vec3 widening)
 // f_r cos a of a white diffuse colour.
 float matt(Cosines c)
 {
-    return max(c.a, 0.0) / PI * (matt_roughness > 0.0 ? matt_factor(matt_roughness, c.a, c.b, 2.0 * c.t * c.t - 1.0) : 1.0);
+    return max(c.a, 0.0) / PI * matt_factor(matt_law, c.a, c.b, 2.0 * c.t * c.t - 1.0, c.thread.x);
 }
 
 // Light that has been inside threads (tl_brdf_sum_of of brdf.h); `widening` along weft and warp as Ward's facets have it.

@@ -37,9 +37,7 @@ static vec3s reflected(const struct lit *lit, vec3s l)
 {
     const tl_sample *sample = lit->sample;
     const float lambert = fmaxf(glms_vec3_dot(sample->normal, l), 0) / (float)M_PI;
-    const float matt = lit->has_two
-                           ? lambert
-                           : lambert * material_matt(lit->lobes.over, sample->normal, l, lit->lobes.viewer);
+    const float matt = lit->has_two ? lambert : lambert * material_matt(lit->lobes.over, l);
     const float shine =
         tl_lobe_cosine(tl_lobe_exponent(sample->glossiness), glms_vec3_dot(sample->mirror, l));
     const vec3s gloss = lit->lobes.is_faceted ? tl_material_facets(&lit->lobes, l, 0)
@@ -48,9 +46,10 @@ static vec3s reflected(const struct lit *lit, vec3s l)
     if (lit->has_two)
         return sent;
     const struct tl_measured *measured = lit->material->measured;
-    return tl_material_over(
-        &lit->lobes,
-        measured ? tl_measured_reflected(measured, &lit->lobes.frame, l, lit->lobes.viewer) : sent, l, 0);
+    return material_over(
+        lit->lobes.over,
+        measured ? tl_measured_reflected(measured, &lit->lobes.frame, l, lit->lobes.over.viewer) : sent, l,
+        0);
 }
 
 /* The order of local.frag: emission times its map, below the coat. */

@@ -2,6 +2,7 @@
 
 #include "config/base/hash.h"
 #include "config/base/memory.h"
+#include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
 #include "render/gpu/shaders.h"
 
@@ -33,7 +34,7 @@ enum {
     THREAD_WIDTHS = 88, /* two of each */
     THREAD_RATIOS = 90,
     LAMP_FUZZ_FOLLOW = 93,
-    MATT_ROUGHNESS = 102,
+    MATT_LAW = 102,
     TABLE_AXES = 94, /* four */
     MEASURED_DIFFUSE = 98,
     CHART,
@@ -251,7 +252,7 @@ static void set_gloss(const tl_material *material)
     const struct tl_gloss *gloss = &brdf.gloss;
     glUniform4f(GLOSS_WIDTHS, gloss->width_weft, gloss->width_warp, cosf(gloss->rotation),
                 sinf(gloss->rotation));
-    glUniform1f(MATT_ROUGHNESS, material->diffuse_roughness);
+    glUniform4fv(MATT_LAW, 1, tl_material_law(material).raw);
     glUniform3f(LAMP_LAYERS, material->coat, tl_lobe_exponent(material->coat_glossiness),
                 1 - material->openness);
     glUniform2f(GLOSS_OPTICS, gloss->index, gloss->extinction);

@@ -214,8 +214,7 @@ static void gather_stratum(struct gather *gather, const struct tl_sky_sample *sk
         if (gather->diffuse[i] && angles.normal[i] > 0)
             diffuse = angles.normal[i] / (float)M_PI / sample_pdf;
         if (points->layered[i])
-            diffuse *= material_matt(points->layers[i].lobes.over, tl_shading_lane(points->normal, i),
-                                     sky->direction, points->viewer[i]);
+            diffuse *= material_matt(points->layers[i].lobes.over, sky->direction);
         if (gather->glossy[i]) {
             float lobe = tl_lobe_value(points->exponent[i], angles.off_axis[i]);
             glossy = lobe / (sample_pdf + (float)gather->request->lobe_samples * lobe);

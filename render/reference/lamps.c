@@ -27,12 +27,12 @@ static vec3s reflected(const struct tl_shading_point *point, const struct tl_brd
 {
     float matt = fmaxf(glms_vec3_dot(point->normal, l), 0) / (float)M_PI;
     if (point->layered)
-        matt *= material_matt(point->layers.lobes.over, point->normal, l, point->viewer);
+        matt *= material_matt(point->layers.lobes.over, l);
     vec3s gloss = tl_brdf_sum_gloss(brdfs, frame, l, point->viewer);
     vec3s sent = point->material->measured
                      ? tl_measured_reflected(point->material->measured, frame, l, point->viewer)
                      : glms_vec3_add(glms_vec3_scale(point->albedo, matt), gloss);
-    return point->layered ? tl_material_over(&point->layers.lobes, sent, l, 0) : sent;
+    return point->layered ? material_over(point->layers.lobes.over, sent, l, 0) : sent;
 }
 
 vec3s tl_reference_lamps(const struct tl_reference_scene *scene, const struct tl_shading_point *point,

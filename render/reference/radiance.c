@@ -131,11 +131,9 @@ static void follow_diffuse(struct paths *paths, int i, int sample)
     float off;
     double height = share_of_sample(paths, sample), turn = tl_random_unit(&paths->random);
     vec3s weight = glms_vec3_divs(tl_shading_lane(paths->points->diffuse, i), (float)paths->samples);
-    const vec3s normal = tl_shading_lane(paths->points->normal, i);
-    vec3s direction = tl_lobe_sample(normal, 1, height, turn, &off);
+    vec3s direction = tl_lobe_sample(tl_shading_lane(paths->points->normal, i), 1, height, turn, &off);
     if (paths->points->layered[i])
-        weight = glms_vec3_scale(weight, material_matt(paths->points->layers[i].lobes.over, normal, direction,
-                                                       paths->points->viewer[i]));
+        weight = glms_vec3_scale(weight, material_matt(paths->points->layers[i].lobes.over, direction));
     if (glms_vec3_max(weight) > 0)
         follow_above(paths, i, direction, weight);
 }

@@ -1,6 +1,7 @@
 #include "render/shade/materials.h"
 
 #include "config/base/memory.h"
+#include "render/brdf/material_lobes.h"
 #include "render/detail/bake.h"
 #include "render/detail/detail.h"
 
@@ -63,7 +64,8 @@ static struct tl_texels pack(const tl_image *image, enum packed kind, const tl_w
         return pack_weave(weave);
     if (kind != PACKED_MOMENTS && kind != PACKED_CROSS)
         return tl_texels_make(image, kind == PACKED_COLOUR);
-    tl_image moments = kind == PACKED_CROSS ? tl_bake_cross_moments(image, false) : tl_bake_moments(image, false);
+    tl_image moments =
+        kind == PACKED_CROSS ? tl_bake_cross_moments(image, false) : tl_bake_moments(image, false);
     struct tl_texels texels = tl_texels_make(&moments, false);
     tl_image_release(&moments);
     return texels;
@@ -228,6 +230,8 @@ static struct tl_shade_part make_part(struct tl_shade_materials *materials, cons
     part.has_bumps = woven || part.own_moments || part.borders || part.maps[TL_MAP_NORMAL].texels;
     part.is_glossy = glms_vec3_max(material->specular) > 0;
     part.transmits = tl_material_transmits(material);
+    part.is_lambert = tl_material_is_lambert(material);
+    part.law = tl_material_law(material);
     part.has_fuzz = tl_material_has_fuzz(material);
     materials->have_fuzz |= part.has_fuzz;
     materials->openness = fmaxf(materials->openness, material->openness);

@@ -38,6 +38,8 @@ struct tl_shade_part {
     float turn_cosine, turn_sine;             /* of gloss.rotation */
     bool has_maps;                            /* UV is read */
     bool has_bumps;                           /* the tangent is read */
+    bool is_lambert;                          /* its diffuse reflectance; else by `law`: */
+    vec4s law;                                /* tl_material_law */
     bool is_glossy;                           /* something is reflected */
     bool transmits;                           /* light comes through from the other side */
     bool has_fuzz;                            /* fibres stand on it */

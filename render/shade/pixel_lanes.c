@@ -82,20 +82,11 @@ TL_INLINE tl_quad fetch_pair(const struct blend_lanes *blends, int lane, const s
     return low + blends->weight[lane] * (fetch_lane(blends->high[lane], &pair->high, lane) - low);
 }
 
-/* The factor on Lambert's value for light from l; NULL: on that of an environment. */
-TL_INLINE float matt_of(const struct tl_pixel_lanes *lanes, int lane, const vec3s *l)
-{
-    const struct tl_look_lanes *seen = &lanes->look;
-    const vec3s n = tl_lane_vector(seen->shown, lane), v = tl_lane_vector(seen->viewer, lane);
-    const float roughness = seen->part->material->diffuse_roughness, cosine = glms_vec3_dot(n, v);
-    return l ? matt_factor(roughness, glms_vec3_dot(n, *l), cosine, glms_vec3_dot(*l, v))
-             : matt_albedo(roughness, cosine);
-}
-
 TL_INLINE void add_diffuse(const struct tl_pixel_scene *scene, const struct tl_pixel_lanes *lanes,
                            tl_quad light[TL_LANES])
 {
     const struct tl_look_lanes *seen = &lanes->look;
+    const struct tl_shade_part *part = seen->part;
     const struct tl_lobe_map *map = &scene->request->lobes->maps[0];
     struct fetch_lanes fetch;
     for (int i = 0; i < TL_LANES; i++) {
@@ -104,8 +95,9 @@ TL_INLINE void add_diffuse(const struct tl_pixel_scene *scene, const struct tl_p
     }
     for (int i = 0; i < seen->count; i++)
         light[i] = seen->diffuse[i] * fetch_lane(map, &fetch, i) * lanes->diffuse_ratio[i];
-    for (int i = 0; seen->part->material->diffuse_roughness > 0 && i < seen->count; i++)
-        light[i] *= matt_of(lanes, i, NULL);
+    for (int i = 0; !part->is_lambert && i < seen->count; i++)
+        light[i] *= matt_albedo(
+            part->law, glms_vec3_dot(tl_lane_vector(seen->shown, i), tl_lane_vector(seen->viewer, i)));
 }
 
 /* The light that comes through from the other side. */
@@ -441,9 +433,10 @@ TL_INLINE void add_light(const struct tl_pixel_scene *scene, const struct tl_pix
         lobe[i] = tl_pixel_diffuse_lobe(shown);
         other_lobe[i] = tl_pixel_diffuse_lobe(-shown);
     }
-    for (int i = 0; part->material->diffuse_roughness > 0 && i < TL_LANES; i++) {
-        const vec3s direction = tl_lane_vector(towards, i);
-        lobe[i] *= matt_of(lanes, i, &direction);
+    for (int i = 0; !part->is_lambert && i < TL_LANES; i++) {
+        const vec3s thread = part->is_faceted ? tl_lane_vector(gloss->tangent, i) : glms_vec3_zero();
+        lobe[i] *= matt_under(part->law, tl_lane_vector(look->shown, i), thread, tl_lane_vector(towards, i),
+                              tl_lane_vector(look->viewer, i));
     }
     for (int i = 0; i < look->count; i++) {
         float visible = tl_pixel_light_seen(scene, number, lanes->pixel[i]);

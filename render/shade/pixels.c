@@ -104,8 +104,8 @@ static void begin_run(const struct tl_pixel_scene *scene, const struct tl_pixel_
     run->is_mixed = covered > 0 && covered < 3;
     run->is_fading = fades(request, triangle);
     run->is_flat = !run->part->has_maps && !run->part->is_glossy && !run->part->is_faceted &&
-                   !(run->part->material->diffuse_roughness > 0) && !run->part->transmits &&
-                   !run->part->has_fuzz && !request->lights->are_near && has_one_normal(run);
+                   run->part->is_lambert && !run->part->transmits && !run->part->has_fuzz &&
+                   !request->lights->are_near && has_one_normal(run);
     if (run->is_flat)
         flatten(scene, run);
 }

@@ -90,10 +90,11 @@ static void test_what_is_left_below(void **state)
 {
     (void)state;
     const vec3s n = {{0, 0, 1}}, none = {{0, 0, 0}}, colour = {{0.5f, 0.25f, 0.1f}};
+    const vec4s lambert = {{0, 0, 0, 0}};
     for (size_t i = 0; i < VIEWS; i++) {
         const vec3s v = {{sqrtf(1 - cosines[i] * cosines[i]), 0, cosines[i]}};
-        assert_near(material_layers(0, 0, 1, none, 0.6f, 0, n, n, v).base, 1, 0);
-        assert_near(material_layers(0, 0, 1, colour, 0.6f, 0, n, n, v).base,
+        assert_near(material_layers(lambert, 0, 1, none, 0.6f, 0, n, n, none, v).base, 1, 0);
+        assert_near(material_layers(lambert, 0, 1, colour, 0.6f, 0, n, n, none, v).base,
                     1 - 0.5f * fuzz_albedo(cosines[i], 0.6f), 1e-6);
     }
 }

@@ -99,8 +99,8 @@ TERM float one_text(int number, uint trial)
     WardValues node = ward_node(facets, nodes, int(5.0f * e.y));
     WardLobe ward = ward_lobe_of(facets, set, 1.0f);
     FacetReflected thread_light = thread_reflected(vec3(0.1f * a.x, a.y, 0.04f), vec3(b.x, b.y, 1.0f), vec3(0.5f, 1.5f, c.x));
-    MaterialLayers over = material_layers(b.y, a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x, b.x - 0.2f, n, v,
-                                          direction_or(vec3(d.x, d.y, e.y), n));
+    MaterialLayers over = material_layers(vec4(b.y, e.y - 0.5f, 0.0f, 0.0f), a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x,
+                                          b.x - 0.2f, n, v, direction_or(vec3(a.y, b.y, c.y), v), direction_or(vec3(d.x, d.y, e.y), n));
     vec2 on_map = latlong_place(n), on_face = cube_place(cube_face(v), n);
     vec3 in_row = latlong_direction(a.x, int(18.99f * b.x), 19, b.y), on_cube = cube_direction(int(5.99f * a.x), b.x, c.y);
     vec3 bounced = bounce_direction(n, vec3_scale(v, e.y < 0.1f ? 0.0f : 1.0f), d.x, d.y);
@@ -116,8 +116,8 @@ TERM float one_text(int number, uint trial)
                : number == 101 ? lamp_falloff(lamp, v)
                               : light_above(e.y < 0.5f, 0.02f * e.x, 0.05f * (d.x - 0.5f)) + cube_stretch(1.0f + 2.0f * c.x);
     if (number > 92)
-        return number == 93 ? over.base + over.coat + over.matt_albedo + material_matt(over, n, v, direction_or(vec3(d.x, d.y, e.x), n))
-                            : min(material_over(over, v, direction_or(vec3(c.x, c.y, e.y), n), v, 0.1f * b.y).z, 10.0f);
+        return number == 93 ? over.base + over.coat + over.matt_albedo + material_matt(over, direction_or(vec3_add(v, vec3(d.x, d.y, e.x)), n))
+                            : min(material_over(over, v, direction_or(vec3(c.x, c.y, e.y), n), 0.1f * b.y).z, 10.0f);
     if (number > 84)
         return number == 85   ? coat_share(a.x - 0.1f, cosine)
                : number == 86 ? fresnel_by_index(facets.fresnel, facets.index, facets.extinction, max(cosine, 0.0f))

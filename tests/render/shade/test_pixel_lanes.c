@@ -286,8 +286,7 @@ static vec3s transmitted(const struct one_pixel *one, const struct tl_trace_hit 
 static float lambert(const struct tl_shading_point *point, vec3s l)
 {
     const float cosine = fmaxf(glms_vec3_dot(l, point->normal), 0) / (float)M_PI;
-    return point->layered ? cosine * material_matt(point->layers.lobes.over, point->normal, l, point->viewer)
-                          : cosine;
+    return point->layered ? cosine * material_matt(point->layers.lobes.over, l) : cosine;
 }
 
 /* The lamps' light that a point of a layer sends back or lets through. */
