@@ -409,7 +409,8 @@ static void choose_role(struct tl_scene_params *scene)
 /* Parts of a material that no pass over shadow maps shows ... */
 static bool is_more_than_chains_show(const struct tl_material_params *material)
 {
-    return material->openness > 0 || material->fuzz > 0 || material->diffuse_roughness > 0;
+    return material->openness > 0 || material->fuzz > 0 || material->diffuse_roughness > 0 ||
+           material->model == TL_REFLECT_BANKS;
 }
 
 /* ... and those beyond two lobes: environment maps do not show them; what reads nothing but filter chains

@@ -41,7 +41,7 @@ bool tl_material_transmits(const tl_material *material)
 
 bool tl_material_is_lambert(const tl_material *material)
 {
-    return !(material->diffuse_roughness > 0);
+    return !(material->diffuse_roughness > 0) && material->gloss.model != TL_REFLECT_BANKS;
 }
 
 bool tl_material_is_layered(const tl_material *material)

@@ -2,7 +2,7 @@
 
 vec4s tl_material_law(const tl_material *material)
 {
-    return (vec4s){{material->diffuse_roughness, 0, 0, 0}};
+    return (vec4s){{material->diffuse_roughness, material->gloss.model == TL_REFLECT_BANKS, 0, 0}};
 }
 
 static MaterialLayers layers_of(const struct tl_material_sample *sample, vec3s thread)

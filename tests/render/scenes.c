@@ -376,7 +376,9 @@ static vec3s light_of(const struct tl_shading_point *shaded, vec3s point, const 
     float fall = is_point ? 1 / glms_vec3_norm2(to_lamp) : 1;
     vec3s l = glms_vec3_normalize(to_lamp), gloss = tl_brdf_sum_gloss(&brdfs, &frame, l, shaded->viewer),
           sent;
-    float cosine = fmaxf(glms_vec3_dot(shaded->normal, l), 0);
+    float cosine = fmaxf(glms_vec3_dot(shaded->normal, l), 0), along = glms_vec3_dot(frame.tangent, l);
+    if (shaded->material->gloss.model == TL_REFLECT_BANKS) /* [Heidrich and Seidel 1999, eq. 4] */
+        cosine *= sqrtf(1 - along * along);
     float ramp = fminf(fmaxf(32 * glms_vec3_dot(shaded->horizon, l), 0), 1);
     for (int c = 0; c < 3; c++)
         sent.raw[c] = ramp * fall * lamp->irradiance.raw[c] *

@@ -170,6 +170,7 @@ static const struct tl_technique techniques[] = {
     {.picture = "threads along the warp", .id = "A5", SET("material.rotation_deg=90", TABLE)},
     {.picture = "threads along the weft", .id = "A5", SET("material.model=banks", TABLE)},
     {.picture = "threads along the weft, 8 bit", .id = "A5", SET(TABLE, FIXED8)},
+    {.picture = "no gloss", .id = "A5", SET("material.specular=[0, 0, 0]", TABLE)},
 };
 
 static const struct tl_experiment_appearance edges[] = {
@@ -288,8 +289,9 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "A5  Banks's threads",
      .source = "[Heidrich and Seidel 1999, 3.2, eq. 4 and figure 3]",
-     .text = "A thread has a circle of normals; the normal in the plane of thread and lamp is used. "
-             "All are read from a table.",
+     .text = "A thread has a circle of normals; the normal n' in the plane of thread and lamp is used, for the "
+             "gloss and for the diffuse light, which gets the factor n'.l: it fades where threads point at "
+             "the lamp, as the last picture shows alone. The gloss is read from a table.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "sphere",
      .base = {LAMPLIT, UNSEWN, "material.model=banks", SPECULAR},

@@ -1,5 +1,5 @@
-/* The diffuse reflectance of rough cloth: against the angles of the paper, by brute force over the
- * hemisphere, in double. */
+/* The diffuse reflectance of rough cloth and of threads: against the angles of the papers, by brute force
+ * over the hemisphere, in double. */
 #include "render/brdf/material_lobes.h"
 
 #include "config/base/memory.h"
@@ -109,10 +109,37 @@ static void test_mean_albedo(void **state)
     }
 }
 
+static vec4s threads_law(void)
+{
+    tl_material material = tl_material_default("threads");
+    material.gloss.model = TL_REFLECT_BANKS;
+    return tl_material_law(&material);
+}
+
+/* n'.l of [Heidrich and Seidel 1999, eq. 4] as it stands there, n' being l projected into the plane across t;
+ * and its mean over an even hemisphere, for any viewer and as it bounces. */
+static void test_threads(void **state)
+{
+    (void)state;
+    const vec3s n = {{0, 0, 1}}, t = {{0.6f, 0.8f, 0}};
+    double sum = 0;
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++) {
+            const vec3s l = direction(asin(sqrt((row + 0.5) / ROWS)), 2 * M_PI * (column + 0.5) / COLUMNS);
+            const vec3s across = glms_vec3_sub(l, glms_vec3_scale(t, glms_vec3_dot(t, l)));
+            const float expected = glms_vec3_dot(glms_vec3_normalize(across), l);
+            assert_near(matt_under(threads_law(), n, t, l, n), expected, 1e-4);
+            sum += (double)expected / ((double)ROWS * COLUMNS);
+        }
+    assert_near(matt_albedo(threads_law(), 0.3f), sum, 1e-4);
+    assert_near(matt_albedo_mean(threads_law()), sum, 1e-4);
+    assert_false(tl_material_is_lambert(&(tl_material){.gloss.model = TL_REFLECT_BANKS}));
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cosines_stand_for_angles),
-                                       cmocka_unit_test(test_smooth_is_lambert),
-                                       cmocka_unit_test(test_albedo), cmocka_unit_test(test_mean_albedo)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_cosines_stand_for_angles), cmocka_unit_test(test_smooth_is_lambert),
+        cmocka_unit_test(test_albedo), cmocka_unit_test(test_mean_albedo), cmocka_unit_test(test_threads)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -179,6 +179,12 @@ static void be_rough(struct drawn_scene *drawn)
         drawn->scene.shapes[i].material.diffuse_roughness = 0.7f;
 }
 
+static void be_threads_under_lamps(struct drawn_scene *drawn)
+{
+    have_lamps(drawn);
+    drawn_scene_cloth(drawn)->gloss.model = TL_REFLECT_BANKS;
+}
+
 static void have_a_lamp_below(struct drawn_scene *drawn)
 {
     have_lamps(drawn);
@@ -372,6 +378,7 @@ static const struct picture_case pictures[] = {
     {"lamp", have_a_lamp, 0.035, 0.0015, 0, NULL},
     {"three lamps", have_lamps, 0.035, 0.0015, 0, NULL},
     {"rough", be_rough, 0.035, 0.0015, 0, NULL},
+    {"Banks's, lamps", be_threads_under_lamps, 0.035, 0.0015, 0, NULL},
     {"lamps, from below", have_a_lamp_below, 0.035, 0.0015, 0, NULL},
     {"lamps through voile", have_lamps_and_voile, 0.035, 0.006, 10, NULL},
     {"holes", have_holes, 0.06, 0.0015, 10, NULL},

@@ -35,6 +35,12 @@ static void be_rough(struct drawn_scene *drawn)
         drawn->scene.shapes[i].material.diffuse_roughness = 0.7f;
 }
 
+static void be_threads(struct drawn_scene *drawn)
+{
+    be_glossy(drawn);
+    drawn_scene_cloth(drawn)->gloss.model = TL_REFLECT_BANKS;
+}
+
 static void turn(struct drawn_scene *drawn)
 {
     be_satin(drawn);
@@ -150,6 +156,7 @@ static const struct rest_case cases[] = {
     {"maps", be_mapped, 1, 1, 0.012, 0.15},
     {"coat on fuzz", have_a_coat, 1, 1, 0.012, 0.15},
     {"rough", be_rough, 1, 1, 0.012, 0.12},
+    {"Banks's threads", be_threads, 1, 1, 0.012, 0.12},
     {"emission", glow, 1, 1, 0.012, 0.15},
     {"mirrors", be_mirrors, 1, 1, 0.012, 0.2},
     {"lamps", have_lamps, 1, 1, 0.012, 0.15},

@@ -149,12 +149,14 @@ static void shadows_equal_the_reference(void **state)
 static void layers_equal_the_reference(void **state)
 {
     struct test_device *device = *state;
-    for (int kind = 0; kind < 5; kind++) {
+    for (int kind = 0; kind < 6; kind++) {
         struct test_scene scene;
         test_scene_open_lamplit(&scene, shiny_sphere(32), 96, 96);
         tl_material *ball = &scene.shapes[0].material;
         if (kind == 4)
             ball->diffuse_roughness = 0.7f;
+        if (kind == 5)
+            ball->gloss = (struct tl_gloss){.model = TL_REFLECT_BANKS, .rotation = 0.5f, .index = 1.5f};
         if (kind == 3) /* fibres over a coat */
             ball->fuzz = (struct tl_fuzz){{{1, 0.8f, 0.5f}}, 0.5f, 0};
         if (kind == 0 || kind == 3) { /* a coat over Ward */
@@ -190,7 +192,7 @@ static void layers_equal_the_reference(void **state)
         tl_image expected = test_scene_draw(&scene, device->renderer);
         scene.settings.light.method = TL_METHOD_PEM;
         struct test_difference off = test_scene_error(&scene, device->renderer, &expected);
-        static const char *const names[] = {"coat", "voile", "mirror", "fuzz", "rough"};
+        static const char *const names[] = {"coat", "voile", "mirror", "fuzz", "rough", "threads"};
         print_message("%s: rel. RMSE %.4f, largest %.3f of the peak, %zu pixels\n", names[kind], off.rel_rmse,
                       off.largest, off.pixels);
         assert_true(off.pixels > 2000);

@@ -191,6 +191,11 @@ static void make_rough(tl_material *material)
     material->diffuse_roughness = 0.5f;
 }
 
+static void make_threads(tl_material *material)
+{
+    material->gloss.model = TL_REFLECT_BANKS;
+}
+
 static void make_sheer(tl_material *material)
 {
     material->transmission = (vec3s){{0.4f, 0.4f, 0.4f}};
@@ -217,11 +222,8 @@ static void test_sphere_for_sky(void **state)
     const struct {
         const char *name;
         void (*make)(tl_material *);
-    } cases[] = {{"gloss", make_gloss},
-                 {"ward", make_ward},
-                 {"coat", make_coated},
-                 {"fuzz", make_fuzzy},
-                 {"rough", make_rough},
+    } cases[] = {{"gloss", make_gloss}, {"ward", make_ward},   {"coat", make_coated},
+                 {"fuzz", make_fuzzy},  {"rough", make_rough}, {"threads", make_threads},
                  {"sheer", make_sheer}};
     for (size_t i = 0; i < TL_COUNT(cases); i++) {
         struct test_scene *open = slanted_scene(test_white, cases[i].make);

@@ -133,6 +133,17 @@ static void test_furnace(void **state)
         }
 }
 
+/* Threads that are matt send back the mean sine of their angle to the light, by n.l: 8 / 3 pi. */
+static void test_threads_in_even_light(void **state)
+{
+    (void)state;
+    struct test_scene *scene = scene_new(tl_environment_constant(1, 1, 1), (vec3s){{0, 0, 2}}, origin, 0.5f);
+    tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
+    material->gloss.model = TL_REFLECT_BANKS;
+    check(scene, 0.5 * 8 / (3 * M_PI));
+    scene_free(scene);
+}
+
 /* The same seen obliquely with s = 1: the part of the lobe below the surface is lost. A cosine lobe whose
  * axis is at an angle a to the normal keeps (1 + cos a) / 2. */
 static void test_lobe_below_the_horizon(void **state)
@@ -555,6 +566,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_interrupt_keeps_what_is_done),
         cmocka_unit_test(test_furnace),
+        cmocka_unit_test(test_threads_in_even_light),
         cmocka_unit_test(test_lobe_below_the_horizon),
         cmocka_unit_test(test_geometric_terminator),
         cmocka_unit_test(test_under_a_disc),

@@ -282,10 +282,13 @@ static vec3s transmitted(const struct one_pixel *one, const struct tl_trace_hit 
     return glms_vec3_mul(point->material->transmission, light);
 }
 
-/* Lambert's law at a point of a layer; of rough cloth by [Oren and Nayar 1994, eq. 30]. */
+/* Lambert's law at a point of a layer; of rough cloth by [Oren and Nayar 1994, eq. 30], of threads by
+ * [Heidrich and Seidel 1999, eq. 4]. */
 static float lambert(const struct tl_shading_point *point, vec3s l)
 {
     const float cosine = fmaxf(glms_vec3_dot(l, point->normal), 0) / (float)M_PI;
+    if (point->material->gloss.model == TL_REFLECT_BANKS)
+        return cosine * sinf(acosf(glms_vec3_dot(l, point->layers.lobes.frame.tangent)));
     return point->layered ? cosine * material_matt(point->layers.lobes.over, l) : cosine;
 }
 
@@ -327,7 +330,9 @@ static vec3s evaluate_layer(const struct one_pixel *one, const struct tl_ray_dif
     evaluate_gloss(one, hit, &point, &gloss, glints);
     vec3s colour =
         glms_vec3_mul(glms_vec3_mul(point.albedo, exact_light(one, point.normal, 1)), diffuse_ratio);
-    if (point.layered)
+    if (point.material->gloss.model == TL_REFLECT_BANKS)
+        colour = glms_vec3_scale(colour, 8 / (3 * GLM_PIf));
+    else if (point.layered)
         colour = glms_vec3_scale(colour, point.layers.lobes.over.matt_albedo);
     colour = glms_vec3_add(colour, glms_vec3_mul(gloss, glossy_ratio));
     for (int i = 0; i < 2; i++) {
@@ -400,6 +405,12 @@ static void be_satin(struct lanes_scene *scene)
     cloth->gloss.width_weft = 0.3f;
     cloth->gloss.width_warp = 0.15f;
     cloth->gloss.rotation = 0.3f;
+}
+
+static void be_threads(struct lanes_scene *scene)
+{
+    be_satin(scene);
+    scene->shapes[1].material.gloss.model = TL_REFLECT_BANKS;
 }
 
 /* Its widths follow the glossiness, which a map changes. */
@@ -519,6 +530,8 @@ static const struct lanes_case cases[] = {
     {"matt, a far lamp", be_matt, TL_DETAIL_MINIFY_NONE, 0, false, 1},
     {"rough", be_rough, TL_DETAIL_MINIFY_NONE, 0.7f, false, 0},
     {"rough, lamps", be_rough, TL_DETAIL_MINIFY_NONE, 0, false, 2},
+    {"threads", be_threads, TL_DETAIL_MINIFY_NONE, 0.7f, false, 0},
+    {"threads, lamps", be_threads, TL_DETAIL_MINIFY_NONE, 0, true, 2},
     {"satin, lamps", be_satin, TL_DETAIL_MINIFY_LEAN, 0.4f, false, 2},
     {"ggx, lamps", be_ggx, TL_DETAIL_MINIFY_NONE, 0, false, 2},
     {"maps, lamps, from below", be_mapped, TL_DETAIL_MINIFY_LEAN, 1, true, 2},
