@@ -26,6 +26,7 @@ add_library(toile_light STATIC
   brdf/tables/factor.c
   brdf/tables/factor_solve.c
   brdf/tables/measured.c
+  brdf/tables/measured_lobes.c
   brdf/tables/model_samples.c
   brdf/tables/table_error.c
   brdf/tables/tables.c

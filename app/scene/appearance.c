@@ -177,21 +177,6 @@ static bool take_weave(struct tl_appearance *appearance, const struct tl_weave_p
     return true;
 }
 
-/* The measured reflectance of a material, if it has any. */
-static bool take_measured(struct tl_appearance *appearance, const struct tl_material_params *params,
-                          tl_material *material, tl_error *error)
-{
-    if (!tl_text_is_given(params->samples))
-        return true;
-    if (!tl_measured_take(params->samples, &material->measured, error))
-        return false;
-    appearance->measured =
-        tl_resize((void *)appearance->measured, appearance->measured_count + 1,
-                  sizeof *appearance->measured); // NOLINT(bugprone-sizeof-expression): of a pointer
-    appearance->measured[appearance->measured_count++] = material->measured;
-    return true;
-}
-
 /* Adds an image that the appearance owns. */
 static const tl_image *keep_image(struct tl_appearance *appearance, const tl_image *image)
 {
@@ -214,6 +199,24 @@ static void drop_print(struct tl_appearance *appearance, tl_material *material)
     for (size_t i = 0; i < texels; i++)
         tl_image_bytes(&plain)[4 * i + 3] = tl_image_bytes(print)[4 * i + 3];
     material->diffuse_map.image = keep_image(appearance, &plain);
+}
+
+/* The measured reflectance of a material, if it has any. It is of the whole cloth, on both sides: no map and
+ * no back changes it. */
+static bool take_measured(struct tl_appearance *appearance, const struct tl_material_params *params,
+                          tl_material *material, tl_error *error)
+{
+    if (!tl_text_is_given(params->samples))
+        return true;
+    if (!tl_measured_take(params->samples, material, error))
+        return false;
+    appearance->measured =
+        tl_resize((void *)appearance->measured, appearance->measured_count + 1,
+                  sizeof *appearance->measured); // NOLINT(bugprone-sizeof-expression): of a pointer
+    appearance->measured[appearance->measured_count++] = material->measured;
+    drop_print(appearance, material);
+    material->gloss_map.image = material->specular_map.image = NULL;
+    return true;
 }
 
 /* A fabric replaces how the surface reflects, and a print, unless it is to be tinted or kept. */
@@ -291,9 +294,9 @@ static bool finish(struct tl_appearance *appearance, const struct tl_settings *s
         drop_print(appearance, &made);
     if (making->is_dyed || making->is_plain)
         made.diffuse = even_colour(&making->params);
+    set_back(&making->params, &made);
     if (!take_measured(appearance, &making->params, &made, error))
         return false;
-    set_back(&making->params, &made);
     set_construction(&settings->construction, &made);
     if (making->is_changed)
         match_stitches(settings->material.diffuse, making->params.diffuse, &made);

@@ -101,15 +101,22 @@ static const struct tl_measured *take_made(const char *path, const struct stat *
 
 static void report(const char *path, size_t count, const struct tl_measured *made)
 {
-    tl_info("%s: %zu samples in tables of %d x %d texels, relative RMSE %.1f %%", path, count,
-            made->tables.tables[TL_MEASURED_HALF].width, made->tables.tables[TL_MEASURED_HALF].height,
-            100 * made->rel_rmse);
+    tl_info("%s: %zu samples in tables of %d x %d texels, relative RMSE %.1f %%; for light that no lamp "
+            "sends, in "
+            "a material of lobes, %.1f %%",
+            path, count, made->tables.tables[TL_MEASURED_HALF].width,
+            made->tables.tables[TL_MEASURED_HALF].height, 100 * made->rel_rmse, 100 * made->lobes.rel_rmse);
+    if (made->lobes.rel_rmse > TL_MEASURED_LOBES_GOOD)
+        tl_warn(
+            "%s: no material of lobes reflects as the samples do; under an environment the cloth is drawn "
+            "otherwise; judge it under lamps (lamp.kind), whose light the tables reflect",
+            path);
     if (made->bridged > 0.3)
         tl_warn("%s: no sample lies in %.0f %% of the directions, which are filled from those around them",
                 path, 100 * made->bridged);
 }
 
-bool tl_measured_take(const char *path, const struct tl_measured **out, tl_error *error)
+static bool take(const char *path, const struct tl_measured **out, tl_error *error)
 {
     struct tl_reflectance_samples samples;
     struct stat found = {0};
@@ -121,6 +128,14 @@ bool tl_measured_take(const char *path, const struct tl_measured **out, tl_error
     report(path, samples.count, &made);
     tl_reflectance_samples_release(&samples);
     *out = take_made(path, &found, &made);
+    return true;
+}
+
+bool tl_measured_take(const char *path, tl_material *material, tl_error *error)
+{
+    if (!take(path, &material->measured, error))
+        return false;
+    tl_measured_lobes_set(&material->measured->lobes, material);
     return true;
 }
 

@@ -10,8 +10,9 @@
 
 #define TL_MEASURED_KEPT 4
 
-/* Logs how well the tables fit the samples. Give them back with tl_measured_give. */
-bool tl_measured_take(const char *path, const struct tl_measured **out, tl_error *error);
+/* Sets `measured` of the material, and what it reflects of light that no lamp sends. Logs how well both fit
+ * the samples. Give `measured` back with tl_measured_give. */
+bool tl_measured_take(const char *path, tl_material *material, tl_error *error);
 void tl_measured_give(const struct tl_measured *measured); /* NULL is accepted */
 
 #endif

@@ -88,8 +88,9 @@ static const struct tl_option material_rows[] = {
         "that its patches shine by turns"),
     TL_OPTION_PATH(
         material_params, samples, AFFECTS,
-        "measured reflectance, a text file of samples: under lamps tables that are factored out of it "
-        "take the place of diffuse, thread, specular and model; empty: none"),
+        "measured reflectance, a text file of samples, in place of diffuse, thread, specular, model and "
+        "back: "
+        "under lamps tables that are factored out of it, for other light lobes that are fitted; empty: none"),
     TL_OPTION_ENUM(
         material_params, on_print, AFFECTS, on_print_names,
         "what becomes of a printed picture of the garment's file under a fabric: replace: the fabric's "

@@ -45,6 +45,6 @@ foreach(name
   toile_test(${name} unit toile_light)
 endforeach()
 target_sources(test_ggx_lobes PRIVATE ./brdf/ggx/ggx_fitter.c)
-foreach(name brdf/brdf env/convert brdf/factor brdf/lobe_fit env/lobes)
+foreach(name brdf/brdf env/convert brdf/factor brdf/lobe_fit brdf/measured_lobes env/lobes)
   toile_test(${name} slow toile_light)
 endforeach()

@@ -65,6 +65,7 @@ struct tl_measured tl_measured_make(const struct tl_reflectance_samples *samples
         .hash = tl_hash(TL_HASH_START, samples->items, samples->count * sizeof *samples->items) | 1};
     made.tables = tl_brdf_tables_factor(&rest, tl_factor_size(rest.count), &made.bridged);
     made.rel_rmse = error_of(&made, samples);
+    made.lobes = tl_measured_lobes_fit(samples);
     tl_reflectance_samples_release(&rest);
     return made;
 }

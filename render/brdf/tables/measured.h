@@ -1,12 +1,13 @@
-/* Measured reflectance as a material refers to it: even light, and tables for the rest. Of cloth both are
- * there, and their sum has not the form of the tables' product, which the rest may have. Immutable; threads:
- * any.
+/* Measured reflectance as a material refers to it. Lamps read even light, and tables for the rest: of cloth
+ * both are there, and their sum has not the form of the tables' product, which the rest may have. All other
+ * light reads the material of lobes. Immutable; threads: any.
  *
  *     f_r(l, v) = diffuse / pi + p(l) p(v) q(h) r(h.l, n.h)                        (factor.h) */
 #ifndef TOILE_RENDER_BRDF_TABLES_MEASURED_H
 #define TOILE_RENDER_BRDF_TABLES_MEASURED_H
 
 #include "render/brdf/tables/factor.h"
+#include "render/brdf/tables/measured_lobes.h"
 
 #include <stdint.h>
 
@@ -18,6 +19,7 @@ struct tl_measured {
     uint64_t hash;   /* of the samples: the key of copies on the GPU; never 0 */
     double rel_rmse; /* of f_r cos a over the samples, all channels together */
     double bridged;  /* share of directions that no sample reaches */
+    struct tl_measured_lobes lobes;
 };
 
 /* Makes tables of the size that the samples determine (tl_factor_size). Release it. */
