@@ -1,4 +1,11 @@
 #include "render/brdf/brdf.h"
+#include "render/gpu/vectors.h"
+
+#include "render/gpu/terms_begin.h"
+
+#include "render/brdf/sample_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 #include <math.h>
 
@@ -23,6 +30,18 @@ static float gaussian_share(float width)
     return 1 - expf(-end * end);
 }
 
+static bool has_gaussian_slopes(const struct tl_gloss *gloss)
+{
+    return gloss->model == TL_REFLECT_WARD ||
+           (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_BECKMANN);
+}
+
+static vec3s squares_of(const struct tl_gloss *gloss)
+{
+    const float across = gloss->model == TL_REFLECT_WARD ? gloss->width_warp : gloss->width_weft;
+    return (vec3s){{gloss->width_weft * gloss->width_weft, across * across, 0}};
+}
+
 /* Samples a half vector, in the frame, by inverting the cumulative distribution of each model. Slopes are
  * Gaussian for Ward and Beckmann facets, and follow a distribution with long tails for GGX; the angle is
  * Gaussian for Gaussian facets; Blinn-Phong is a power of the cosine. */
@@ -30,6 +49,10 @@ static vec3s sample_half_vector(const struct tl_brdf *brdf, float u1, float u2)
 {
     const struct tl_gloss *gloss = &brdf->gloss;
     float c = cosf(2 * PI * u2), s = sinf(2 * PI * u2), x, y, z;
+    if (has_gaussian_slopes(gloss)) {
+        const vec2s slope = facet_slope(squares_of(gloss), u1, u2);
+        return glms_vec3_normalize((vec3s){{slope.x, slope.y, 1}});
+    }
     if (gloss->model == TL_REFLECT_BLINN_PHONG) {
         z = powf(1 - u1, 1 / (4 * brdf->exponent + 1));
         float radius = sqrtf(
@@ -39,12 +62,9 @@ static vec3s sample_half_vector(const struct tl_brdf *brdf, float u1, float u2)
         float angle = gloss->width_weft * sqrtf(-log1pf(-u1 * gaussian_share(gloss->width_weft)));
         x = sinf(angle) * c, y = sinf(angle) * s, z = cosf(angle);
     } else {
-        bool round = gloss->model == TL_REFLECT_TORRANCE_SPARROW;
-        bool is_ggx = round && gloss->facets == TL_FACETS_GGX;
-        float slope = sqrtf(is_ggx ? u1 / (1 - u1) : -log1pf(-u1));
-        x = gloss->width_weft * slope * c, y = (round ? gloss->width_weft : gloss->width_warp) * slope * s;
-        z = 1 / sqrtf(1 + x * x + y * y);
-        x *= z, y *= z;
+        float slope = gloss->width_weft * sqrtf(u1 / (1 - u1));
+        z = 1 / sqrtf(1 + slope * slope);
+        x = slope * z * c, y = slope * z * s;
     }
     return (vec3s){{x, y, z}};
 }
@@ -60,17 +80,16 @@ static float half_vector_pdf(const struct tl_brdf *brdf, vec3s h)
         vec3s up = {{0, 0, 1}};
         return (4 * brdf->exponent + 1) / (2 * PI) * tl_brdf_cosine_power(h, up, 4 * brdf->exponent);
     }
+    if (has_gaussian_slopes(gloss))
+        return facet_slope_pdf(squares_of(gloss), h);
     float u = gloss->width_weft;
-    if (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GAUSSIAN) {
+    if (gloss->facets == TL_FACETS_GAUSSIAN) {
         float angle = atan2f(sine, h.z);
         float spread = sine > 1e-4f ? angle / sine : 1;
         return spread * expf(-angle * angle / (u * u)) / (PI * u * u * gaussian_share(u));
     }
-    float v = gloss->model == TL_REFLECT_TORRANCE_SPARROW ? u : gloss->width_warp;
-    float x = h.x / (u * h.z), y = h.y / (v * h.z), square = 1 + x * x + y * y, fall = expf(1 - square);
-    if (gloss->model == TL_REFLECT_TORRANCE_SPARROW && gloss->facets == TL_FACETS_GGX)
-        fall = 1 / (square * square);
-    return fall > 0 ? fall / (PI * u * v * h.z * h.z * h.z) : 0;
+    float slope = sine / (u * h.z), square = 1 + slope * slope, fall = 1 / (square * square);
+    return fall > 0 ? fall / (PI * u * u * h.z * h.z * h.z) : 0;
 }
 
 /* Distribution of the angle from a thread's mirror cone: logistic, of width 0.6/sqrt(s), truncated where the
@@ -133,14 +152,6 @@ float tl_brdf_pdf(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
     return (s + 1) / (2 * PI) * tl_brdf_cosine_power(tl_brdf_mirror(frame->normal, v), l, s);
 }
 
-/* Samples K_s about an axis: cos = (1 - u)^(1 / (s + 1)). */
-static vec3s sample_lobe(float exponent, vec3s axis, float u1, float u2)
-{
-    struct tl_brdf_frame around = tl_brdf_frame_make(axis, (vec3s){{0, 0, 0}}, 1, 2 * PI * u2);
-    float log_cosine = log1pf(-u1) / (exponent + 1);
-    return from_frame(&around, sqrtf(fmaxf(-expm1f(2 * log_cosine), 0)), 0, expf(log_cosine));
-}
-
 vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s v, float u1,
                      float u2, float *pdf)
 {
@@ -156,7 +167,7 @@ vec3s tl_brdf_sample(const struct tl_brdf *brdf, const struct tl_brdf_frame *fra
         if (glms_vec3_dot(h, v) <= 0)
             l = glms_vec3_negate(frame->normal);
     } else {
-        l = sample_lobe(brdf->exponent, tl_brdf_mirror(frame->normal, v), u1, u2);
+        l = lobe_direction(tl_brdf_mirror(frame->normal, v), lobe_off_axis(brdf->exponent, u1), u2);
     }
     l = glms_vec3_normalize(l);
     *pdf = tl_brdf_pdf(brdf, frame, l, v);

@@ -95,17 +95,16 @@ bool sky_sample(vec2 at, out vec3 d)
 
 // ---- Hits ----
 
-// Radiance that a place of the ground's mesh sends (render/surfaces/ground.c): polar, between two rings and two segments.
+// Radiance that a place of the ground's mesh sends: between two rings and two segments.
 vec3 sent_by_ground(vec3 point)
 {
-    vec2 from = point.xz - disc.xz;
-    float ring = asinh(length(from) / disc.w * sinh(4.0)) * 8.0, segment = fract(atan(from.y, from.x) / (2.0 * PI)) * 48.0;
-    uint r = uint(min(ring, 30.999)), s = uint(segment) % 48u, next = (s + 1u) % 48u, first = numbers.x;
-    float across = fract(segment);
+    vec2 at = ground_place(disc, point.x, point.z);
+    uint r = uint(min(at.x, 30.999)), s = uint(at.y) % 48u, next = (s + 1u) % 48u, first = numbers.x;
+    float across = fract(at.y);
     vec3 inner = sent[own[first]].rgb, outer = mix(sent[own[first + 1u + r * 48u + s]].rgb, sent[own[first + 1u + r * 48u + next]].rgb, across);
     if (r > 0u)
         inner = mix(sent[own[first + 1u + (r - 1u) * 48u + s]].rgb, sent[own[first + 1u + (r - 1u) * 48u + next]].rgb, across);
-    return mix(inner, outer, min(ring - float(r), 1.0));
+    return mix(inner, outer, min(at.x - float(r), 1.0));
 }
 
 struct Arrival {

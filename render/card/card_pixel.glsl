@@ -1,5 +1,6 @@
 // The place of a pixel on the triangle that its ID names, by planes through the eye and an edge, which need no clipping.
 #include "card_geometry.glsl"
+#include "spread_terms.glsl"
 layout(binding = 0) uniform usampler2D ids;
 
 struct Place {
@@ -50,9 +51,7 @@ vec3 point_of(Place p)
 vec3 ray_start(Place p, vec3 normal)
 {
     vec3 point = point_of(p), moved = point;
-    for (int i = 0; i < 3; i++) {
-        vec3 n = normal_of(p.corners[i]) * (p.back ? -1.0 : 1.0);
-        moved -= n * (p.weights[i] * min(dot(point - p.points[i], n), 0.0));
-    }
+    for (int i = 0; i < 3; i++)
+        moved += smooth_shift(point, p.points[i], normal_of(p.corners[i]) * (p.back ? -1.0 : 1.0), p.weights[i]);
     return moved + normal * eye.w;
 }

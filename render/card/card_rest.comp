@@ -5,6 +5,7 @@
 #include "card_frame.glsl"
 #define TREE_BINDING CARD_NODES
 #include "trace.glsl"
+#include "sample_terms.glsl"
 #include "spread_terms.glsl"
 #include "card_sky.glsl"
 #include "card_see.glsl"
@@ -105,13 +106,6 @@ vec3 emitted(Lobes l)
 
 // ---- Directions ----
 
-vec3 lobe_direction(vec3 axis, float exponent, vec2 at)
-{
-    vec3 along = normalize(cross(axis, abs(axis.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-    float cosine = pow(1.0 - at.x, 1.0 / (exponent + 1.0)), radius = sqrt(max(1.0 - cosine * cosine, 0.0)), angle = 2.0 * PI * at.y;
-    return normalize(axis * cosine + along * (radius * cos(angle)) + cross(axis, along) * (radius * sin(angle)));
-}
-
 // Facets by normal slopes, whose squared widths along weft and warp, and product, these are. Lobes about the mirror
 // direction are as wide as slopes of half their angles.
 vec3 slopes_of(Seen s, int gloss)
@@ -130,20 +124,15 @@ vec3 slopes_of(Seen s, int gloss)
 
 vec3 facet_direction(Seen s, vec3 squares, vec2 at)
 {
-    float r = sqrt(-2.0 * log(1.0 - at.x)), angle = 2.0 * PI * at.y, a = sqrt(0.5 * squares.x), b = 0.5 * squares.z / a;
-    float c = sqrt(max(0.5 * squares.y - b * b, 1e-12)), x = r * cos(angle), y = r * sin(angle);
-    vec3 h = normalize(vec3(a * x, b * x + c * y, 1.0)), v = s.facets.viewer;
+    vec3 h = normalize(vec3(facet_slope(squares, at.x, at.y), 1.0)), v = s.facets.viewer;
     return s.facets.frame * (2.0 * dot(h, v) * h - v);
 }
 
 float facet_pdf(Seen s, vec3 squares, vec3 d)
 {
     vec3 world = direction_or(d + s.viewer, d), h = world * s.facets.frame;
-    float towards = dot(world, s.viewer), determinant = max(squares.x * squares.y - squares.z * squares.z, 1e-16);
-    if (!(h.z > 1e-4 && towards > 1e-4))
-        return 0.0;
-    float e = (h.x * h.x * squares.y - 2.0 * h.x * h.y * squares.z + h.y * h.y * squares.x) / (determinant * h.z * h.z);
-    return exp(-e) * inversesqrt(determinant) / (4.0 * PI * h.z * h.z * h.z * towards);
+    float towards = dot(world, s.viewer);
+    return h.z > 1e-4 && towards > 1e-4 ? facet_slope_pdf(squares, h) / (4.0 * towards) : 0.0;
 }
 
 float hemisphere_exponent(Lobes l)
@@ -172,10 +161,11 @@ vec3 choose_direction(Lobes l, uint choice, vec2 at)
 {
     int lobe = l.glosses == 0 ? -1 : int(choice % uint(2 * l.glosses)) - l.glosses;
     if (lobe < 0)
-        return lobe_direction(l.s.surface.shown, hemisphere_exponent(l), at);
+        return lobe_direction(l.s.surface.shown, lobe_off_axis(hemisphere_exponent(l), at.x), at.y);
     if (l.over.coat > 0.0 && lobe == l.glosses - 1)
-        return lobe_direction(l.over.coat_axis, l.over.coat_exponent, at);
-    return l.has_facets ? facet_direction(l.s, slopes_of(l.s, lobe), at) : lobe_direction(l.s.mirror, l.s.exponent, at);
+        return lobe_direction(l.over.coat_axis, lobe_off_axis(l.over.coat_exponent, at.x), at.y);
+    return l.has_facets ? facet_direction(l.s, slopes_of(l.s, lobe), at)
+                        : lobe_direction(l.s.mirror, lobe_off_axis(l.s.exponent, at.x), at.y);
 }
 
 // ---- Light ----

@@ -13,9 +13,7 @@
 
 #define RADIUS_ORDINARY   0.5f /* metres */
 #define RADIUS_PER_FIGURE 3.0f /* the disc's radius over the figure's height */
-/* Rings lie at sinh(GROWTH t) / sinh(GROWTH): under a figure of 1.8 m they are 2 to 3 cm apart, at the rim
- * 70 cm. */
-#define GROWTH 4.0f
+_Static_assert(TL_GROUND_RINGS == GROUND_RINGS && TL_GROUND_SEGMENTS == GROUND_SEGMENTS, "of ground.glsl");
 
 bool tl_casters_measure(const tl_surface *surfaces, size_t count, struct tl_casters *out, tl_error *error)
 {
@@ -46,12 +44,13 @@ float tl_casters_scale(const struct tl_casters *casters)
     return fminf(casters->radius / RADIUS_ORDINARY, 1);
 }
 
-/* One vertex in the middle, then ring by ring outwards. The last ring goes round the disc. */
+/* One vertex in the middle, then ring by ring outwards, under a figure of 1.8 m 2 to 3 cm apart, at the rim
+ * 70 cm. The last ring goes round the disc. */
 static void place_vertices(struct tl_ground *ground)
 {
     ground->uvs[0] = (vec2s){{0, 0}};
     for (int ring = 1; ring <= TL_GROUND_RINGS; ring++) {
-        float share = sinhf(GROWTH * (float)ring / TL_GROUND_RINGS) / sinhf(GROWTH);
+        float share = ground_ring_radius((float)ring);
         if (ring == TL_GROUND_RINGS)
             share /= cosf((float)M_PI / TL_GROUND_SEGMENTS);
         for (int segment = 0; segment < TL_GROUND_SEGMENTS; segment++) {
@@ -185,11 +184,12 @@ bool tl_ground_meet(const struct tl_ground *ground, vec3s origin, vec3s directio
     point->y = ground->centre.y;
     if (!(tl_ground_cover(ground, point->x, point->z) > 0))
         return false;
-    /* The triangles of a segment follow each other from the middle outwards. */
-    float turn = atan2f(point->z - ground->centre.z, point->x - ground->centre.x) / (2 * (float)M_PI);
-    uint32_t in_segment = 2 * TL_GROUND_RINGS - 1;
-    uint32_t segment = (uint32_t)((turn < 0 ? turn + 1 : turn) * TL_GROUND_SEGMENTS) % TL_GROUND_SEGMENTS;
-    for (uint32_t i = 0; i < in_segment; i++) {
+    /* The triangles of a segment follow each other from the middle outwards, two a ring. Chords lie inside
+     * their circles, so that the next ring may have the point. */
+    const vec2s place = ground_place(disc_of(ground), point->x, point->z);
+    const uint32_t in_segment = 2 * TL_GROUND_RINGS - 1, ring = (uint32_t)place.x;
+    const uint32_t segment = (uint32_t)place.y % TL_GROUND_SEGMENTS;
+    for (uint32_t i = ring > 1 ? 2 * ring - 3 : 0; i < in_segment; i++) {
         *triangle = segment * in_segment + i;
         if (weigh(ground, *triangle, point->x, point->z, weights))
             return true;

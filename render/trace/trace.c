@@ -2,6 +2,7 @@
 
 #include "config/base/memory.h"
 #include "render/trace/cutout.h"
+#include "render/trace/spread.h"
 
 #include <embree3/rtcore.h>
 
@@ -417,10 +418,8 @@ void tl_trace_transmittance_packet(const tl_trace *trace, const struct tl_ray_pa
 vec3s tl_smooth_point(vec3s point, const vec3s corners[3], const vec3s normals[3], const float weights[3])
 {
     vec3s moved = point;
-    for (int i = 0; i < 3; i++) {
-        float height = glms_vec3_dot(glms_vec3_sub(point, corners[i]), normals[i]);
-        moved = glms_vec3_add(moved, glms_vec3_scale(normals[i], -weights[i] * fminf(height, 0)));
-    }
+    for (int i = 0; i < 3; i++)
+        moved = glms_vec3_add(moved, smooth_shift(point, corners[i], normals[i], weights[i]));
     return moved;
 }
 

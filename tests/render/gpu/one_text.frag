@@ -8,6 +8,7 @@
 #include "ground.glsl"
 #include "lobes_terms.glsl"
 #include "normalise_terms.glsl"
+#include "sample_terms.glsl"
 #include "spread_terms.glsl"
 #include "surface_terms.glsl"
 #include "terms.glsl"

@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 103
+#define ONE_TEXT_NUMBERS 110
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -100,12 +100,25 @@ TERM float one_text(int number, uint trial)
     WardLobe ward = ward_lobe_of(facets, set, 1.0f);
     FacetReflected thread_light = thread_reflected(vec3(0.1f * a.x, a.y, 0.04f), vec3(b.x, b.y, 1.0f), vec3(0.5f, 1.5f, c.x));
     MaterialLayers over = material_layers(vec4(b.y, e.y - 0.5f, 0.0f, 0.0f), a.x, s, vec3(d.x, d.y, e.x), 0.1f + 0.8f * e.x,
-                                          b.x - 0.2f, n, v, direction_or(vec3(a.y, b.y, c.y), v), direction_or(vec3(d.x, d.y, e.y), n));
+                                          b.x - 0.2f, n, v, direction_or(vec3(a.y, b.y, c.y), v),
+                                          direction_or(vec3(d.x, d.y, e.y), n));
     vec2 on_map = latlong_place(n), on_face = cube_place(cube_face(v), n);
     vec3 in_row = latlong_direction(a.x, int(18.99f * b.x), 19, b.y), on_cube = cube_direction(int(5.99f * a.x), b.x, c.y);
     vec3 bounced = bounce_direction(n, vec3_scale(v, e.y < 0.1f ? 0.0f : 1.0f), d.x, d.y);
     vec4 lamp = vec4(a.x, b.x, c.x, e.y < 0.5f ? 0.0f : 1.0f);
     vec3 towards = towards_lamp(lamp, v, n);
+    vec3 squares = vec3(weft * weft, warp * warp, 0.5f * weft * warp);
+    vec2 chosen = facet_slope(squares, a.x, a.y), on_ground = ground_place(disc, 3.0f * b.x, 3.0f * b.y);
+    vec3 about = lobe_direction(n, lobe_off_axis(s * s, c.x), c.y);
+    vec3 moved = smooth_shift(v, n, direction_or(vec3(d.x, d.y, e.x), n), e.y);
+    if (number > 102)
+        return number == 103   ? lobe_off_axis(s * s, c.x)
+               : number == 104 ? about.x + about.y - about.z
+               : number == 105 ? chosen.x + chosen.y
+               : number == 106 ? min(facet_slope_pdf(squares, vec3(x, y, z)), 10.0f)
+               : number == 107 ? moved.x + moved.y - moved.z
+               : number == 108 ? 0.01f * (on_ground.x + on_ground.y) // a driver may err in its inverse functions
+                               : ground_ring_radius(31.0f * a.x);
     if (number > 94)
         return number == 95   ? 0.3f * (on_map.x + on_map.y) // a driver may err in its inverse functions
                : number == 96 ? min(max(on_face.x - on_face.y, -10.0f), 10.0f)
@@ -116,7 +129,8 @@ TERM float one_text(int number, uint trial)
                : number == 101 ? lamp_falloff(lamp, v)
                               : light_above(e.y < 0.5f, 0.02f * e.x, 0.05f * (d.x - 0.5f)) + cube_stretch(1.0f + 2.0f * c.x);
     if (number > 92)
-        return number == 93 ? over.base + over.coat + over.matt_albedo + material_matt(over, direction_or(vec3_add(v, vec3(d.x, d.y, e.x)), n))
+        return number == 93 ? over.base + over.coat + over.matt_albedo +
+                                  material_matt(over, direction_or(vec3_add(v, vec3(d.x, d.y, e.x)), n))
                             : min(material_over(over, v, direction_or(vec3(c.x, c.y, e.y), n), 0.1f * b.y).z, 10.0f);
     if (number > 84)
         return number == 85   ? coat_share(a.x - 0.1f, cosine)

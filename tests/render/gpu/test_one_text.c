@@ -24,6 +24,8 @@
 
 #include "render/gpu/terms_begin.h"
 
+#include "render/brdf/sample_terms.glsl"
+
 #include "render/surfaces/ground.glsl"
 
 #include "tests/render/gpu/one_text.glsl"
