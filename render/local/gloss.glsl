@@ -39,8 +39,12 @@ float lobe(Cosines c, float s, vec3 widening)
 }
 
 // f_r cos a of a material whose maps give f0, s and `widening`. Tables are made for constant values and ignore the maps.
+// FOLDED: with the diffuse light.
 vec3 gloss(Cosines c, vec3 f0, float s, vec3 widening)
 {
+#ifdef FOLDED
+    return tables_folded(c);
+#endif
     if (!(c.a > 0.0 && c.b > 0.0 && c.half_normal > 0.0))
         return vec3(0.0);
 #if TABLES > 0
@@ -50,9 +54,12 @@ vec3 gloss(Cosines c, vec3 f0, float s, vec3 widening)
 #endif
 }
 
-// f_r cos a of a white diffuse colour.
+// f_r cos a of a white diffuse colour, unless that is in a table.
 float matt(Cosines c)
 {
+#ifdef FOLDED
+    return 0.0;
+#endif
     return max(c.a, 0.0) / PI * matt_factor(matt_law, c.a, c.b, 2.0 * c.t * c.t - 1.0, c.thread.x);
 }
 

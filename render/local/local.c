@@ -1,6 +1,7 @@
 #include "render/local/local.h"
 
 #include "config/base/hash.h"
+#include "config/base/log.h"
 #include "config/base/memory.h"
 #include "render/brdf/material_lobes.h"
 #include "render/env/exponent.h"
@@ -41,7 +42,9 @@ enum {
     LIT_SCALE,
     TEXEL_SIDE,
     OBJECT_TURN = 103,
-    FIRST_CORNER
+    FIRST_CORNER,
+    TABLE_AMBIENT,
+    LAMP_AMBIENT
 };
 enum {
     TRIANGLE_UNIT = 16,
@@ -148,6 +151,8 @@ static void define_tables(const struct tl_gloss_tables *tables, const struct pas
         define(defines, "TIMES_COS_A");
     if (tables && tables->measured)
         define(defines, "MEASURED");
+    if (tables && tables->folded)
+        define(defines, "FOLDED");
 }
 
 static void define_all(const struct tl_local_request *request, const struct lit_part *part,
@@ -166,6 +171,8 @@ static void define_all(const struct tl_local_request *request, const struct lit_
         define(defines, "COSINES");
     else
         define_vectors(params, defines);
+    if (params->ambient > 0)
+        define(defines, "AMBIENT");
     if (params->self_shadow == TL_SELF_SHADOW_STEP)
         define(defines, "STEP");
     if (!part->tables && params->power != TL_POWER_POW)
@@ -241,6 +248,7 @@ static void set_lamp(const struct tl_local *local, const struct tl_local_request
     glUniform3fv(CONSTANT_EYE, 1, constant_v.raw);
     glUniformMatrix4fv(LAMP_VIEW, 1, GL_FALSE, local->shadows.views[index].raw[0]);
     glUniform1f(LAMP_BIAS, request->depth_bias_m);
+    glUniform1f(LAMP_AMBIENT, request->params->ambient);
     glUniform1i(LAMP_LAYER, (GLint)index);
     glUniform4f(LAMP_GROUND, stops ? ground->centre.x : 0, stops ? ground->centre.y : 0,
                 stops ? ground->centre.z : 0, stops ? ground->radius : 0);
@@ -278,7 +286,7 @@ static void bind_shadow(const struct tl_lamp_shadows *shadows, enum tl_lamp_shad
         glBindTextureUnit(SHADOW_UNIT, shadows->depths.id);
 }
 
-static void set_tables(const struct lit_part *part)
+static void set_tables(const struct lit_part *part, const struct tl_shading_params *params)
 {
     static const GLuint units[] = {TABLE_UNIT, TABLE_UNIT + 1, TABLE_UNIT + 2, TABLE_3_UNIT};
     float axes[TL_GLOSS_TABLES_MAX][4] = {{0}}, scales[TL_GLOSS_TABLES_MAX] = {1, 1, 1, 1};
@@ -290,6 +298,8 @@ static void set_tables(const struct lit_part *part)
     }
     glUniform4fv(TABLE_AXES, TL_GLOSS_TABLES_MAX, axes[0]);
     glUniform4fv(TABLE_SCALES, 1, scales);
+    const vec3s even = tl_table_ambient(part->material, params);
+    glUniform3fv(TABLE_AMBIENT, 1, even.raw);
     if (part->power)
         glBindTextureUnit(POWER_UNIT, part->power->id);
 }
@@ -321,7 +331,7 @@ static bool draw_pass(struct tl_local *local, tl_gpu *gpu, const struct tl_local
     glUseProgram(program->id);
     set_lamp(local, request, part->lamp);
     set_gloss(part->material);
-    set_tables(part);
+    set_tables(part, request->params);
     if (part->chart) {
         set_chart(part);
         glUniform1f(TEXEL_SIDE, pass->texel_side);
@@ -459,16 +469,29 @@ static bool find_normals(struct tl_local *local, tl_gpu *gpu, const struct tl_lo
     return fine;
 }
 
+/* Reports the first material whose light no single table can hold. */
+static void report_refusal(struct tl_local *local, const tl_material *material)
+{
+    const char *refusal = material->measured ? "measured reflectance" : tl_table_terms_refusal(material);
+    if (refusal && !local->has_reported)
+        tl_warn("shading.table_terms: \"%s\" has %s, and a table holds one even colour: its table, and those "
+                "of others like it, hold gloss alone",
+                material->name, refusal);
+    local->has_reported |= refusal != NULL;
+}
+
 static bool draw_part(struct tl_local *local, tl_gpu *gpu, const struct tl_local_request *request,
                       struct lit_part *part, tl_error *error)
 {
     const struct tl_shading_params *params = request->params;
     const tl_material *material = part->material;
     const struct tl_brdf brdf = tl_brdf_of(material, material->specular, material->glossiness);
+    if (params->reflectance == TL_REFLECTANCE_TABLE && params->table_terms == TL_TERMS_ALL)
+        report_refusal(local, material);
     if (material->measured)
         part->tables = tl_table_textures_measured(&local->tables, gpu, material->measured);
     else if (params->reflectance != TL_REFLECTANCE_DIRECT)
-        part->tables = tl_table_textures_gloss(&local->tables, gpu, &brdf, params);
+        part->tables = tl_table_textures_gloss(&local->tables, gpu, material, params);
     else if (params->power == TL_POWER_TABLE)
         part->power = tl_table_textures_power(
             &local->tables, gpu,

@@ -24,6 +24,7 @@ layout(location = 74) uniform float lamp_bias; // metres
 layout(location = 75) uniform int lamp_layer;
 layout(location = 76) uniform vec4 lamp_ground; // disc of the ground, if it can block the light of this lamp
 
+layout(location = 106) uniform float lamp_ambient; // share of the irradiance
 layout(location = 77) uniform vec3 lamp_layers; // coverage of the coat, exponent of its lobe, 1 - openness
 
 #ifdef FUZZ
@@ -368,6 +369,20 @@ vec3 under_fuzz(vec3 light, vec3 l, float side, vec3 smooth_normal)
     return light;
 }
 
+// Light that leaves in all directions below the coat and the fibres.
+vec3 under_layers(vec3 sent, float side, vec3 smooth_normal)
+{
+#ifdef COAT
+    vec3 n = side * smooth_normal;
+    sent *= 1.0 - coat_share(lamp_layers.x, dot(n, direction_or(eye - point, n)));
+#endif
+#ifdef FUZZ
+    vec3 up = fibre_axis(side, smooth_normal);
+    sent *= fuzz_under(lamp_fuzz.rgb, lamp_fuzz.w, dot(up, direction_or(eye - point, up)));
+#endif
+    return sent;
+}
+
 void main()
 {
     vec3 facet = direction_or(cross(dFdx(point), dFdy(point)), vec3(0.0, 1.0, 0.0));
@@ -409,20 +424,20 @@ void main()
     c.hand = plane_side(side);
     out_light = vec4(tables_product(c), 1.0);
 #elif defined(EMISSION)
-#ifdef COAT
-    vec3 n = side * smooth_normal;
-    sent *= 1.0 - coat_share(lamp_layers.x, dot(n, direction_or(eye - point, n)));
-#endif
-#ifdef FUZZ
-    vec3 up = fibre_axis(side, smooth_normal);
-    sent *= fuzz_under(lamp_fuzz.rgb, lamp_fuzz.w, dot(up, direction_or(eye - point, up)));
-#endif
-    out_light = vec4(texelFetch(seen_point, texel, 0).w * lamp_layers.z * sent, 0.0);
+    out_light = vec4(texelFetch(seen_point, texel, 0).w * lamp_layers.z * under_layers(sent, side, smooth_normal), 0.0);
 #else
     float shown = texelFetch(seen_point, texel, 0).w * lamp_layers.z * visibility(l) * own_shadow;
     vec3 light = under_coat(reflected(side, smooth_normal), l, side * smooth_normal);
     light = under_fuzz(light, l, side, smooth_normal);
     out_light = vec4(shown * lamp_irradiance * lamp_falloff(lamp, point) * light, 0.0);
+#ifdef AMBIENT
+    vec3 even = lamp_ambient / PI * diffuse_here();
+#ifdef THREADS
+    even *= thread_gain;
+#endif
+    out_light.rgb += texelFetch(seen_point, texel, 0).w * lamp_layers.z * lamp_irradiance * lamp_falloff(lamp, point) *
+                     under_layers(even, side, smooth_normal);
+#endif
 #endif
 #endif
 }

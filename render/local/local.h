@@ -5,7 +5,8 @@
  *     c += cover E(x) V(x) s(n0.l) [ kd/pi max(0, n.l) + f_r(l, v) n.l ]
  *
  * with the gloss f_r cos of render/brdf/brdf.h, the normal n0 without bumps and the self-shadow s; below the
- * coat of the material, and multiplied by 1 - openness. What a material emits is added alike, once:
+ * coat of the material, and multiplied by 1 - openness. To that comes E ambient kd/pi, which nothing shadows
+ * (tl_shading_params). What a material emits is added alike, once:
  * c += cover (1 - openness) (1 - coat) emission. lamp_samples.h adds the light of lamps behind open
  * cloth, through cloth and in mirrors. Lamps always use two lobes; light.lobe applies to the environment.
  * Resources are made when they are first used, and none without lamps. Needs the GL context of its tl_gpu. */
@@ -34,6 +35,7 @@ struct tl_local {
     struct tl_table_textures tables;
     tl_target product;             /* target in which passes multiply; shares the depth of the G-buffer */
     bool product_used;             /* in this frame */
+    bool has_reported;             /* a material that refuses shading.table_terms */
     struct tl_lit_texture lit;     /* of TL_SPACE_TEXTURE */
     bool lit_used;                 /* in this frame */
     struct tl_object_maps normals; /* of TL_SPACE_OBJECT */

@@ -5,6 +5,7 @@
 static const char *const frequency_names[] = {"gouraud", "fast_phong", "phong", NULL};
 static const char *const coordinates_names[] = {"matrix", "vertex", "pixel", NULL};
 static const char *const reflectance_names[] = {"direct", "table", "factored", NULL};
+static const char *const terms_names[] = {"gloss", "all", NULL};
 static const char *const precision_names[] = {"fixed8", "fixed16", "float", NULL};
 static const char *const range_names[] = {"clamped", "scaled", NULL};
 const char *const tl_pass_target_names[] = {"fixed8", "float", NULL};
@@ -26,6 +27,11 @@ static const struct tl_option rows[] = {
         params, reflectance, AFFECTS, reflectance_names,
         "gloss by its formula; or from tables of the material, which ignore gloss maps: factors of the "
         "formula, or factored numerically out of samples of it"),
+    TL_OPTION_ENUM(
+        params, table_terms, AFFECTS, terms_names,
+        "reflectance=table: what a table holds: gloss, which the diffuse light is added to; or all "
+        "light of a phong, blinn_phong or cosine_lobe material of one even colour, Fresnel's term "
+        "being that at normal incidence; others keep gloss"),
     TL_OPTION_INT(params, table_size, AFFECTS, 8, 512, "texels", "side of a table; larger: more exact"),
     TL_OPTION_ENUM(params, table_precision, AFFECTS, precision_names, "precision of the values of a table"),
     TL_OPTION_ENUM(params, table_range, AFFECTS, range_names,
@@ -50,6 +56,9 @@ static const struct tl_option rows[] = {
         "follows rigid motion but no bends; parts whose UVs overlap are lit in world space"),
     TL_OPTION_INT(params, texture_size, AFFECTS, 8, 4096, "texels",
                   "texture, object: side of what lies over the UVs of a part; larger: finer bumps"),
+    TL_OPTION_FLOAT(params, ambient, AFFECTS, 0, 1, "",
+                    "light from all around that a lamp stands for, as a share of its irradiance; no shadow "
+                    "takes it away; 0: none"),
     TL_OPTION_ENUM(params, self_shadow, AFFECTS, self_shadow_names,
                    "end of light at the horizon of the smooth surface: a step, or a steep ramp"),
 };

@@ -17,6 +17,9 @@ enum tl_frequency { TL_FREQUENCY_GOURAUD, TL_FREQUENCY_FAST_PHONG, TL_FREQUENCY_
  * and Seidel 1999, eq. 2 and 3]; computed at vertices and interpolated; from vectors at pixels. */
 enum tl_coordinates { TL_COORDINATES_MATRIX, TL_COORDINATES_VERTEX, TL_COORDINATES_PIXEL };
 enum tl_reflectance_by { TL_REFLECTANCE_DIRECT, TL_REFLECTANCE_TABLE, TL_REFLECTANCE_FACTORED };
+/* The terms that a table of one material holds: its gloss; or its ambient and diffuse light as well, where
+ * one table can (tl_table_terms_refusal). */
+enum tl_table_terms { TL_TERMS_GLOSS, TL_TERMS_ALL };
 enum tl_pass_target { TL_PASS_TARGET_FIXED8, TL_PASS_TARGET_FLOAT };
 extern const char *const tl_pass_target_names[]; /* ends with NULL */
 /* The space in which bumps are lit: at pixels in world space, or by vectors taken into tangent space at
@@ -30,6 +33,7 @@ struct tl_shading_params {
     int frequency;             /* enum tl_frequency */
     int coordinates;           /* enum tl_coordinates */
     int reflectance;           /* enum tl_reflectance_by */
+    int table_terms;           /* enum tl_table_terms, for TABLE */
     int table_size;            /* texels, side */
     int table_precision;       /* enum tl_precision (render/brdf/tables/tables.h) */
     int table_range;           /* enum tl_table_range: treatment of the singular factor */
@@ -39,7 +43,8 @@ struct tl_shading_params {
     int power;                 /* enum tl_power, for DIRECT with a model that is a power */
     int space;                 /* enum tl_space, for vectors at pixels */
     int texture_size;          /* texels, side; of TEXTURE and OBJECT, whose precision is pass_target */
-    int self_shadow;           /* enum tl_self_shadow */
+    float ambient;   /* share of a lamp's irradiance that arrives evenly from all directions; [0, 1] */
+    int self_shadow; /* enum tl_self_shadow */
 };
 extern const struct tl_option_table tl_shading_options;
 

@@ -6,6 +6,7 @@
 #include <epoxy/gl.h>
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -122,8 +123,13 @@ static void upload_all(tl_gpu *gpu, const struct tl_brdf_tables *tables, struct 
 
 static void make_gloss(tl_gpu *gpu, struct tl_gloss_tables *gloss)
 {
-    const struct tl_brdf_table_params wanted = {
-        .size = gloss->size, .precision = gloss->precision, .range = gloss->range, .angles = true};
+    const struct tl_brdf_table_params wanted = {.size = gloss->size,
+                                                .precision = gloss->precision,
+                                                .range = gloss->range,
+                                                .angles = true,
+                                                .folded = gloss->folded,
+                                                .ambient = gloss->ambient,
+                                                .diffuse = gloss->diffuse};
     struct tl_brdf_tables tables = gloss->reflectance == TL_REFLECTANCE_FACTORED
                                        ? tl_brdf_tables_refactor(&gloss->brdf, gloss->size)
                                        : tl_brdf_tables_make(&gloss->brdf, &wanted);
@@ -131,12 +137,18 @@ static void make_gloss(tl_gpu *gpu, struct tl_gloss_tables *gloss)
     tl_brdf_tables_release(&tables);
 }
 
+static bool is_same_colour(vec3s a, vec3s b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 /* A bitwise comparison: values that are equal but differ in their bits (0 and -0) only cause an additional
  * table. */
 static bool is_same(const struct tl_gloss_tables *a, const struct tl_gloss_tables *b)
 {
     return a->measured == b->measured && a->reflectance == b->reflectance && a->size == b->size &&
-           a->precision == b->precision && a->range == b->range &&
+           a->precision == b->precision && a->range == b->range && a->folded == b->folded &&
+           is_same_colour(a->ambient, b->ambient) && is_same_colour(a->diffuse, b->diffuse) &&
            memcmp(&a->brdf, &b->brdf, sizeof a->brdf) == 0; // NOLINT(bugprone-suspicious-memory-comparison)
 }
 
@@ -161,15 +173,41 @@ static struct tl_gloss_tables *add_gloss(struct tl_table_textures *textures,
     return added;
 }
 
+vec3s tl_table_ambient(const tl_material *material, const struct tl_shading_params *params)
+{
+    return glms_vec3_scale(material->diffuse, params->ambient / (float)M_PI);
+}
+
+const char *tl_table_terms_refusal(const tl_material *material)
+{
+    if (material->gloss.model > TL_REFLECT_COSINE_LOBE)
+        return "a reflectance of several tables";
+    if (material->diffuse_map.image || material->specular_map.image || material->occlusion_map.image)
+        return "maps of colour";
+    if (material->weave || material->normal_map.image || material->height_map.image)
+        return "threads or bumps";
+    if (tl_material_is_sewn(material))
+        return "seams or hems";
+    if (material->back.is_given)
+        return "a back of its own";
+    return tl_material_is_lambert(material) ? NULL : "a diffuse reflectance that is not Lambert's";
+}
+
 const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
-                                                      const struct tl_brdf *brdf,
+                                                      const tl_material *material,
                                                       const struct tl_shading_params *params)
 {
-    const struct tl_gloss_tables key = {.brdf = *brdf,
-                                        .reflectance = params->reflectance,
-                                        .size = params->table_size,
-                                        .precision = params->table_precision,
-                                        .range = params->table_range};
+    struct tl_gloss_tables key = {.brdf = tl_brdf_of(material, material->specular, material->glossiness),
+                                  .reflectance = params->reflectance,
+                                  .size = params->table_size,
+                                  .precision = params->table_precision,
+                                  .range = params->table_range};
+    key.folded = params->reflectance == TL_REFLECTANCE_TABLE && params->table_terms == TL_TERMS_ALL &&
+                 !tl_table_terms_refusal(material);
+    if (key.folded) {
+        key.ambient = tl_table_ambient(material, params);
+        key.diffuse = material->diffuse;
+    }
     struct tl_gloss_tables *found = find_gloss(textures, &key);
     if (!found) {
         found = add_gloss(textures, &key);

@@ -20,10 +20,12 @@ struct tl_gloss_table {
 
 /* The tables of a material with constant gloss, or of a measured one. */
 struct tl_gloss_tables {
-    struct tl_brdf brdf; /* the key, with the next two lines */
+    struct tl_brdf brdf; /* the key, with the next four lines */
     int reflectance, size, precision, range;
-    uint64_t measured; /* its hash; 0: not measured, else the rest of the key is 0 */
-    bool used;         /* in this frame */
+    bool folded;            /* ambient, diffuse and gloss in one table */
+    vec3s ambient, diffuse; /* ... of these colours, times the irradiance; else 0 */
+    uint64_t measured;      /* its hash; 0: not measured, else the rest of the key is 0 */
+    bool used;              /* in this frame */
     int count;
     struct tl_gloss_table tables[TL_GLOSS_TABLES_MAX];
     bool times_cos_a;
@@ -51,10 +53,15 @@ size_t tl_table_textures_bytes(const struct tl_table_textures *textures);
 void tl_table_textures_begin(struct tl_table_textures *textures);
 void tl_table_textures_end(struct tl_table_textures *textures);
 
+/* Why one table cannot hold all light of a material, which changes from texel to texel or has a part that
+ * depends on more than two cosines; NULL: it can. */
+const char *tl_table_terms_refusal(const tl_material *material);
+/* The even light that a lamp of irradiance 1 stands for, reflected. */
+vec3s tl_table_ambient(const tl_material *material, const struct tl_shading_params *params);
 /* The tables of a material, factors of the formula or factored numerically; the pointer is valid until the
  * next call of a function of this header. */
 const struct tl_gloss_tables *tl_table_textures_gloss(struct tl_table_textures *textures, tl_gpu *gpu,
-                                                      const struct tl_brdf *brdf,
+                                                      const tl_material *material,
                                                       const struct tl_shading_params *params);
 /* The same of a material that was measured. */
 const struct tl_gloss_tables *tl_table_textures_measured(struct tl_table_textures *textures, tl_gpu *gpu,

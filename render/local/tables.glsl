@@ -2,6 +2,7 @@
 // TABLE0_X and so on are numbers of enum tl_table_input; TABLE0_ANGLES: the axes are angles.
 layout(location = 94) uniform vec4 table_axes[4]; // scale and bias of x, of y: the texture matrix
 layout(location = 83) uniform vec4 table_scales;
+layout(location = 105) uniform vec3 table_ambient; // FOLDED: even light that is in all of the table
 
 layout(binding = 20) uniform sampler2D table0;
 layout(binding = 21) uniform sampler2D table1;
@@ -67,4 +68,15 @@ vec3 tables_gloss(Cosines c, vec3 product)
 #endif
     return scale * product;
 }
+
+#ifdef FOLDED
+// Diffuse light and gloss from a table that holds the ambient light, too, without that: it stays where the lamp's is
+// shadowed. Where only the back would shine the table is read beside its lobe.
+vec3 tables_folded(Cosines c)
+{
+    if (!(c.b > 0.0))
+        c.mirror = c.half_normal = -1.0;
+    return c.a > 0.0 ? table_scales.x * tables_product(c) - table_ambient : vec3(0.0);
+}
+#endif
 #endif

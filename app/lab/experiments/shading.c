@@ -4,6 +4,7 @@
 
 #define TABLE       "shading.reflectance=table"
 #define FIXED8      "shading.table_precision=fixed8"
+#define ALL_TERMS   TABLE, "shading.table_terms=all"
 #define ONE_A_PASS  "shading.max_textures_per_pass=1"
 #define BUMPY       WOVEN("8", "2")
 #define ACROSS_WARP "material.width_weft=0.4", "material.width_warp=0.1"
@@ -153,6 +154,17 @@ static const struct tl_technique techniques[] = {
     {.picture = "cosine lobe, 64, 8 bit",
      .id = "A3",
      SET("material.model=cosine_lobe", FIXED8, "shading.table_size=64")},
+    {.picture = "Phong, all terms", .id = "A3", SET(ALL_TERMS)},
+    {.picture = "Phong, all terms, 8 bit", .id = "A3", SET(ALL_TERMS, FIXED8)},
+    {.picture = "Blinn-Phong, all terms, 8 bit",
+     .id = "A3",
+     SET(ALL_TERMS, FIXED8, "material.model=blinn_phong")},
+    {.picture = "cosine lobe, all terms, 8 bit",
+     .id = "A3",
+     SET(ALL_TERMS, FIXED8, "material.model=cosine_lobe")},
+    {.picture = "Phong under Schlick's term, all terms",
+     .id = "A3",
+     SET(ALL_TERMS, "material.fresnel=schlick")},
     {.picture = "one pass", .id = "A7", SET("material.model=torrance_sparrow", TABLE)},
     {.picture = "two passes, float target",
      .golden = "local_passes",
@@ -263,10 +275,16 @@ static const struct tl_experiment experiments[] = {
      .scene = "gallery",
      .title = "A3  Phong, Blinn-Phong and cosine lobe",
      .source = "[Heidrich and Seidel 1999, 3.1]",
-     .text = "Each model is read from one table.",
+     .text =
+         "Each model is read from one table, to which the shader adds ambient and diffuse light; or a table "
+         "holds all three terms [Heidrich and Seidel 1999, 3.1], and one look-up is all. The material is a "
+         "metal, whose Fresnel term is nearly the same at all angles, as these models know none. Under "
+         "Schlick's term the table of gloss alone keeps it; a table of all terms has it for normal "
+         "incidence.",
      .exact_text = "the formula itself, evaluated in float at every sample",
      .solid = "torus",
-     .base = {LAMPLIT, UNSEWN, "shading.reflectance=table", SPECULAR},
+     .base = {LAMPLIT, UNSEWN, "shading.reflectance=table", "shading.ambient=0.2",
+              "material.fresnel=conductor", "material.index=1", "material.extinction=20", SPECULAR},
      .reference = {.assignments = {"shading.reflectance=direct"}},
      .ids = {"A3"},
      METHODS(techniques)},

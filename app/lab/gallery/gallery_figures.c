@@ -102,12 +102,11 @@ static void add_folded(cJSON *figures)
     cJSON *series = tl_report_add_plot(
         figures, &(const struct tl_report_plot){"texels a side", "relative RMSE, %", true, true,
                                                 "Ambient, diffuse and gloss folded into one table, one "
-                                                "look-up for all three, against the formula. A "
-                                                "folded table holds one colour: cloth whose yarns and prints "
-                                                "differ from texel to texel would need a "
-                                                "table for each, so the shaders keep the diffuse term out of "
-                                                "the table, where it costs one product, and "
-                                                "no option folds it."});
+                                                "look-up for all three, against the formula "
+                                                "(shading.table_terms=all). A table holds one "
+                                                "colour: cloth whose yarns and prints differ from texel to "
+                                                "texel would need a table for each, so its diffuse light "
+                                                "stays out of the table, where it costs one product."});
     for (size_t t = 0; t < TL_COUNT(kinds); t++) {
         struct tl_brdf brdf = brdf_of(kinds[t].model, 0.9f);
         cJSON *points = tl_report_add_series(series, kinds[t].name, false);

@@ -55,7 +55,8 @@ static vec3s direct_gloss(const struct tl_brdf *brdf, const struct tl_brdf_table
     white.gloss.fresnel = TL_FRESNEL_SCHLICK; /* Schlick's term is 1 at every angle for f0 = 1 */
     vec3s lobe = tl_brdf_gloss(&white, frame, l, v);
     vec3s diffuse = glms_vec3_scale(params->diffuse, fmaxf(glms_vec3_dot(frame->normal, l), 0) / (float)M_PI);
-    return glms_vec3_add(params->ambient, glms_vec3_add(diffuse, glms_vec3_mul(brdf->f0, lobe)));
+    return glms_vec3_add(params->ambient,
+                         glms_vec3_add(diffuse, glms_vec3_mul(tl_brdf_fresnel(brdf, 1), lobe)));
 }
 
 struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,

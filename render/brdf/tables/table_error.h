@@ -20,7 +20,7 @@ struct tl_table_error {
     size_t bytes; /* size of the tables */
 };
 /* Errors of the tables made with these parameters. Folded tables are compared with ambient + diffuse n.l / pi
- * + f0 times the white lobe. */
+ * + F at normal incidence times the white lobe. */
 struct tl_table_error tl_brdf_table_error(const struct tl_brdf *brdf,
                                           const struct tl_brdf_table_params *params);
 

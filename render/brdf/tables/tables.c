@@ -51,11 +51,12 @@ static void folded(const struct factor *factor, float x, float n_dot_l, float ou
 {
     const struct tl_brdf *brdf = factor->brdf;
     const struct tl_brdf_table_params *params = factor->params;
+    const vec3s fresnel = tl_brdf_fresnel(brdf, 1);
     float gloss = n_dot_l > 0 ? lobe_at(brdf, x) : 0;
     if (brdf->gloss.model == TL_REFLECT_COSINE_LOBE)
         gloss *= n_dot_l;
     for (int c = 0; c < 3; c++)
-        out[c] = params->ambient.raw[c] + params->diffuse.raw[c] * n_dot_l / PI + brdf->f0.raw[c] * gloss;
+        out[c] = params->ambient.raw[c] + params->diffuse.raw[c] * n_dot_l / PI + fresnel.raw[c] * gloss;
 }
 
 static void fresnel_and_facets(const struct factor *factor, float h_dot_l, float n_dot_h, float out[3])

@@ -22,8 +22,8 @@
  * resolve the angles of so narrow a lobe (8 to 20 % at s = 1e6); WARD is not affected, because its axes are
  * sines. BANKS, whose ridge runs diagonally across its table, keeps 0.5 % up to s = 500.
  *
- * Folded (PHONG, BLINN_PHONG, COSINE_LOBE): ambient + diffuse n.l / pi + f0 K [n.l], over (r.l or n.h, n.l),
- * in one table: F stays f0. Where n.l <= 0 the table holds the ambient part, so that the caller tests n.v
+ * Folded (PHONG, BLINN_PHONG, COSINE_LOBE): ambient + diffuse n.l / pi + F K [n.l], over (r.l or n.h, n.l),
+ * in one table: F stays that of normal incidence. Where n.l <= 0 the table holds the ambient part, so that the caller tests n.v
  * only.
  *
  * `texels` are rows from v = 0 up, without padding (GL_UNPACK_ALIGNMENT 1), `channels` 1 (GL_RED: swizzle to

@@ -22,6 +22,7 @@ static void figures_are_plots(void **state)
         const char *part;
     } all[] = {{"a1", 2, 6, "Tables in float"},
                {"a2", 1, 3, "divided by its greatest value"},
+               {"a3", 1, 4, "shading.table_terms=all"},
                {"a9", 1, 5, "beats the cube map of 8 bits up to 38 degrees"},
                {"a10", 3, 3, "it has 6 levels"},
                {"b6", 1, 2, "index 200"},
