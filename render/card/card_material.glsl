@@ -197,5 +197,3 @@ vec3 ward_scale(WardSet w, FacetReflected r, float sum_plain, float sum_away)
     vec3 sum = r.plain * sum_plain + r.away * sum_away;
     return (r.plain * w.albedo.plain + r.away * w.albedo.away) / max(sum, 1e-20);
 }
-
-#include "card_table.glsl"

@@ -5,7 +5,8 @@
 #include "card_geometry.glsl"
 #include "card_lobes.glsl"
 #include "card_material.glsl"
-#include "card_fuzz.glsl"
+#include "card_table.glsl"
+#include "layers_terms.glsl"
 #include "card_bounced.glsl"
 layout(local_size_x = 32, local_size_y = 8) in;
 layout(std430, binding = CARD_TANGENTS) restrict readonly buffer Tangents

@@ -4,6 +4,7 @@
 // balance heuristic [Veach 1997]. A dispatch lights the places of one class of materials after so many bounces.
 #include "card_frame.glsl"
 #define TREE_BINDING CARD_NODES
+#define HOLES_BINDING CARD_HOLES
 #include "trace.glsl"
 #include "sample_terms.glsl"
 #include "spread_terms.glsl"
@@ -12,7 +13,9 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(location = 0) uniform ivec4 kind; // class, bounces before, bounces at largest, round
 layout(location = 1) uniform vec2 more;  // side of what a pixel shows, in pixels; number of the ground's first triangle
+layout(location = 3) uniform int layers; // 1: no cloth is open
 layout(rgba32f, binding = 0) restrict uniform image2D light_image;
+layout(r32ui, binding = 1) restrict readonly uniform uimage2D behind[4]; // IDs of the layers behind the nearest
 layout(std430, binding = CARD_TRIANGLE_PARTS) restrict readonly buffer TriangleParts
 {
     uint triangle_parts[];
@@ -28,6 +31,7 @@ layout(std430, binding = CARD_PATHS) restrict buffer Paths
     Path paths[]; // by sample
 };
 const uint BACK = 0x80000000u, NOWHERE = 0xffffffffu;
+const int LAYERS_BEHIND = 4;  // TL_TRANSPARENCY_LAYERS: the last counts as closed
 const float FOLLOWED = 0.25; // paths that carry less are followed by chance [Arvo and Kirk 1990]
 
 uint mixed(uint a, uint b)
@@ -66,7 +70,8 @@ struct Lobes {
     Seen s;
     vec3 normal; // on the viewer's side
     MaterialLayers over;
-    bool has_facets;
+    vec3 through; // the share of light that a thin sheet scatters through from the other side
+    bool has_facets, transmits;
     int glosses; // lobes that directions are chosen by, beside the hemisphere
 };
 
@@ -80,19 +85,37 @@ Lobes lobes_of_place(Seen s)
 #else
     l.over = material_layers(vec4(0.0), 0.0, 1.0, vec3(0.0), 0.5, 0.0, l.normal, l.normal, vec3(0.0), s.viewer);
 #endif
+    l.transmits = (s.part.flags.x & TRANSMITS) != 0u;
+    l.through = l.transmits ? l.over.base * s.part.transmission.rgb : vec3(0.0);
     l.has_facets = s.is_faceted && s.facets.viewer.z > 0.0;
     l.glosses = l.has_facets ? 1 + int(s.part.flags.w) : !s.is_faceted && (s.part.flags.x & IS_GLOSSY) != 0u ? 1 : 0;
     l.glosses += l.over.coat > 0.0 ? 1 : 0;
     return l;
 }
 
-// f_r cos for light from a direction above the surface.
-vec3 reflected(Lobes l, vec3 d)
+// f cos for light from a direction; from below it is what comes through.
+vec3 sent(Lobes l, vec3 d)
 {
+    if (!(dot(d, l.normal) > 0.0))
+        return l.through * (max(-dot(d, l.s.surface.shown), 0.0) / PI);
     vec3 f = l.s.surface.diffuse * (max(dot(d, l.s.surface.shown), 0.0) / PI) * material_matt(l.over, d);
     if (l.s.is_faceted ? l.has_facets && dot(d, l.s.facets.frame[2]) > 0.0 : l.glosses > 0)
         f += gloss_under(l.s, d, 0.0);
     return material_over(l.over, f, d, 0.0);
+}
+
+// Whether light from a direction is sent to the viewer, and from where its ray starts.
+bool is_lit_from(Lobes l, vec3 d)
+{
+    return l.transmits || dot(d, l.normal) > 0.0;
+}
+
+vec3 start_towards(Lobes l, vec3 d)
+{
+    bool is_above = dot(d, l.normal) > 0.0;
+    Place p = l.s.p;
+    p.back = p.back == is_above;
+    return ray_start(p, is_above ? l.normal : -l.normal);
 }
 
 vec3 emitted(Lobes l)
@@ -140,8 +163,8 @@ float hemisphere_exponent(Lobes l)
     return fuzz_strength(l.over.fuzz) > 0.0 ? 0.0 : 1.0; // fibres do not follow the cosine
 }
 
-// Half of the directions are chosen by the hemisphere, the others by one lobe like the other.
-float direction_pdf(Lobes l, vec3 d)
+// Half of the directions above are chosen by the hemisphere, the others by one lobe like the other.
+float above_pdf(Lobes l, vec3 d)
 {
     float cosine = dot(d, l.s.surface.shown), sum = 0.0;
     float pdf = cosine > 0.0 ? lobe_cosine(hemisphere_exponent(l), cosine) : 0.0;
@@ -157,8 +180,19 @@ float direction_pdf(Lobes l, vec3 d)
     return 0.5 * (pdf + sum / float(l.glosses));
 }
 
+// A thin sheet chooses half of them on its other side.
+float direction_pdf(Lobes l, vec3 d)
+{
+    return l.transmits ? 0.5 * (above_pdf(l, d) + lobe_cosine(1.0, -dot(d, l.s.surface.shown))) : above_pdf(l, d);
+}
+
 vec3 choose_direction(Lobes l, uint choice, vec2 at)
 {
+    if (l.transmits) {
+        if ((choice & 1u) != 0u)
+            return lobe_direction(-l.s.surface.shown, lobe_off_axis(1.0, at.x), at.y);
+        choice >>= 1;
+    }
     int lobe = l.glosses == 0 ? -1 : int(choice % uint(2 * l.glosses)) - l.glosses;
     if (lobe < 0)
         return lobe_direction(l.s.surface.shown, lobe_off_axis(hemisphere_exponent(l), at.x), at.y);
@@ -176,50 +210,71 @@ vec2 numbers_of(uint item, int bounces, int round)
     return bounces == 0 ? spread_place(item, uint(round)) : spread_place(mixed(item, uint(round)), 0u);
 }
 
-vec3 from_texels(Lobes l, vec3 start, uint item, uint bits)
+vec3 from_texels(Lobes l, uint item, uint bits)
 {
     vec3 light = vec3(0.0);
     for (uint i = 0u; i < 1u << bits; i++) {
         uint within = uint(numbers_of(mixed(item, i), kind.y, kind.w).x * 16777216.0) << 8;
         SkySample sky = sky_sample(i << (32u - bits) | within >> bits);
-        if (!(dot(sky.direction, l.normal) > 0.0))
+        if (!is_lit_from(l, sky.direction))
             continue;
-        vec3 f = reflected(l, sky.direction) * sky.radiance;
+        vec3 f = sent(l, sky.direction) * sky.radiance, start = start_towards(l, sky.direction);
         float share = ground_passes(disc, start, sky.direction);
-        if (f.r + f.g + f.b > 0.0 && share > 0.0 && !tree_occluded(start, sky.direction, 0.0, 1e30))
-            light += f * (share / (float(1u << bits) * sky.pdf + direction_pdf(l, sky.direction)));
+        if (f.r + f.g + f.b > 0.0 && share > 0.0)
+            light += f * (share * tree_transmittance(start, sky.direction, 0.0, 1e30) /
+                          (float(1u << bits) * sky.pdf + direction_pdf(l, sky.direction)));
     }
     return light;
 }
 
 // Suns are in the environment's texels.
-vec3 from_lamps(Lobes l, vec3 start)
+vec3 from_lamps(Lobes l)
 {
     vec3 light = vec3(0.0);
     for (int i = 0; i < counts.y; i++) {
         Sun lamp = sun_at(i, point_of(l.s.p), l.normal);
-        if (!(dot(lamp.towards, l.normal) > 0.0))
+        if (!is_lit_from(l, lamp.towards))
             continue;
+        vec3 start = start_towards(l, lamp.towards);
         float share = ground_passes_from(start, lamp.towards, lamp.way);
-        if (share > 0.0 && !tree_occluded(start, lamp.towards, 0.0, lamp.way))
-            light += reflected(l, lamp.towards) * lamp.power * share;
+        if (share > 0.0)
+            light += sent(l, lamp.towards) * lamp.power * (share * tree_transmittance(start, lamp.towards, 0.0, lamp.way));
     }
     return light;
 }
 
+// Chance, as a number of its own for each layer of open cloth.
+float chance_at(uint item, int layer)
+{
+    return numbers_of(mixed(item, uint(layer)), 1, kind.w).x;
+}
+
+// The first triangle that a ray does not pass through by chance.
+TreeHit hit_by_chance(vec3 start, vec3 d, float to, uint item)
+{
+    TreeHit hit;
+    float from = 0.0;
+    for (int layer = 0;; layer++) {
+        hit = tree_nearest(start, d, from, to);
+        if (hit.triangle == TREE_NO_TRIANGLE || layer == LAYERS_BEHIND || chance_at(item, layer) >= hit.open)
+            return hit;
+        from = hit.distance + eye.w;
+    }
+}
+
 // Follows a direction; what does not meet anything takes light from the sky, and what does goes on.
-vec3 follow(Lobes l, vec3 start, vec3 through, uint item, uint bits, inout Path path)
+vec3 follow(Lobes l, vec3 through, uint item, uint bits, inout Path path)
 {
     uint choice = kind.y == 0 ? item + uint(kind.w) : mixed(item, uint(kind.w));
     vec3 d = choose_direction(l, choice, numbers_of(item, kind.y, kind.w));
     float pdf = direction_pdf(l, d);
-    if (!(dot(d, l.normal) > 0.0 && pdf > 0.0))
+    if (!(is_lit_from(l, d) && pdf > 0.0))
         return vec3(0.0);
-    vec3 f = reflected(l, d);
+    vec3 f = sent(l, d), start = start_towards(l, d);
     float way = ground_way(disc, start, d);
     vec3 point = start + d * way;
     float cover = way >= 0.0 ? ground_opacity(disc, point.x, point.z) : 0.0, open = 1.0 - cover;
-    TreeHit hit = tree_nearest(start, d, 0.0, cover > 0.0 ? way : 1e30);
+    TreeHit hit = hit_by_chance(start, d, cover > 0.0 ? way : 1e30, mixed(item, 3u));
     path.way = vec4(d, point.x);
     path.through.w = point.z;
     path.triangle = uint(more.y);
@@ -240,6 +295,30 @@ vec3 follow(Lobes l, vec3 start, vec3 through, uint item, uint bits, inout Path 
     return open > 0.0 ? f * sky.radiance * (open / (float(1u << bits) * sky.pdf + pdf)) : vec3(0.0);
 }
 
+// Constants index the images: software GL reads the wrong one where only some pixels read.
+uint id_behind(int layer, ivec2 pixel)
+{
+    if (layer < 2)
+        return layer == 0 ? imageLoad(behind[0], pixel).r : imageLoad(behind[1], pixel).r;
+    return layer == 2 ? imageLoad(behind[2], pixel).r : imageLoad(behind[3], pixel).r;
+}
+
+// The ID of the nearest layer at a pixel, or of one behind, by a number whose rounds are even in each of them.
+uint seen_id(ivec2 pixel, uint item)
+{
+    float number = fract(float(item >> 8) / 16777216.0 + float(bitfieldReverse(uint(kind.w))) / 4294967296.0);
+    uint id = texelFetch(ids, pixel, 0).r;
+    for (int layer = 0; layer < layers - 1 && id != 0u; layer++) {
+        uint part = triangle_parts[(id & ~BACK) - 1u];
+        float open = (part & CARD_IS_OPEN) != 0u ? parts[part & 0xfffu].transmission.w : 0.0;
+        if (number >= open)
+            break;
+        number /= open;
+        id = id_behind(layer, pixel);
+    }
+    return id;
+}
+
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -249,7 +328,7 @@ void main()
     Place p;
     vec3 through = vec3(1.0);
     if (kind.y == 0) {
-        uint id = texelFetch(ids, pixel, 0).r;
+        uint id = seen_id(pixel, mixed(at, 4u));
         if (id == 0u && kind.x == 0) {
             paths[at].due = NOWHERE;
             imageStore(light_image, pixel, vec4(0.0));
@@ -267,12 +346,11 @@ void main()
     }
     Lobes l = lobes_of_place(see_place(p, triangle_parts[p.triangle] & 0xfffu));
     Path path = Path(vec4(0.0), vec4(0.0), 0u, NOWHERE);
-    vec3 start = ray_start(p, l.normal);
     uint item = mixed(at, uint(kind.y));
     float cover = kind.y == 0 ? l.s.cover : 1.0;
     through *= cover;
-    vec3 light = emitted(l) + from_texels(l, start, mixed(item, 1u), bits) + from_lamps(l, start);
-    light += follow(l, start, through, mixed(item, 2u), bits, path);
+    vec3 light = emitted(l) + from_texels(l, mixed(item, 1u), bits) + from_lamps(l);
+    light += follow(l, through, mixed(item, 2u), bits, path);
     paths[at] = path;
     vec4 before = kind.y == 0 ? vec4(vec3(0.0), cover) : imageLoad(light_image, pixel);
     imageStore(light_image, pixel, before + vec4(through * light, 0.0));

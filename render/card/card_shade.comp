@@ -9,6 +9,7 @@ layout(std430, binding = CARD_TILES) restrict readonly buffer Tiles
     uint tiles[];
 };
 #include "card_see.glsl"
+#include "card_exact.glsl"
 #ifndef NOTHING
 layout(std430, binding = CARD_TRIANGLE_PARTS) restrict readonly buffer TriangleParts
 {

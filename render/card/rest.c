@@ -52,6 +52,7 @@ static void light_class(tl_graphics_card *card, const struct tl_card_rest *reque
     glUniform4i(0, class, bounces, request->bounces, request->round);
     glUniform2f(1, 1 / (float)request->footprint, (float)card->traced_triangles);
     glUniform1i(2, request->environment->layout == TL_ENV_CUBE);
+    glUniform1i(3, card->layers);
     tl_gpu_dispatch((unsigned)card->frame.size[2], (unsigned)card->frame.size[3], 1);
     tl_gpu_barrier();
 }
@@ -75,6 +76,8 @@ bool tl_card_draw_round(tl_graphics_card *card, const struct tl_card_rest *reque
     glBindTextureUnit(6, card->sky_texels.id);
     glBindTextureUnit(7, card->sky_curve.id);
     glBindImageTexture(0, card->round.id, 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    for (int layer = 1; layer < card->layers; layer++)
+        glBindImageTexture((GLuint)layer, card->ids[layer].id, 0, GL_FALSE, 0, GL_READ_ONLY, GL_R32UI);
     for (int bounces = 0; bounces <= request->bounces; bounces++)
         for (int class = bounces > 0; class < card->class_count; class ++)
             light_class(card, request, class, bounces);

@@ -299,11 +299,6 @@ const char *tl_frame_card_refusal(const tl_frame *frame, const struct tl_render_
     return tl_card_refusal(frame->surfaces, frame->surface_count);
 }
 
-static bool has_holes(const tl_material *material)
-{
-    return material->openness > 0 || material->alpha_cutoff > 0;
-}
-
 /* Paths follow what ratios cannot hold: near mirrors, and light that bounces as often as it is to. */
 const char *tl_frame_rest_refusal(const tl_frame *frame, const struct tl_render_settings *settings)
 {
@@ -312,10 +307,6 @@ const char *tl_frame_rest_refusal(const tl_frame *frame, const struct tl_render_
         return "images of one round";
     if (settings->light.bounce == TL_BOUNCE_OFF && has_mirrors(frame, &settings->light))
         return "near mirrors of a scene whose light does not bounce (light.bounce)";
-    if (tl_materials_have(frame->surfaces, frame->surface_count, has_holes))
-        return "cloth with holes";
-    if (tl_materials_have(frame->surfaces, frame->surface_count, tl_material_transmits))
-        return "light that shines through cloth";
     followed.light.bounce = TL_BOUNCE_ALL;
     followed.light.lobes = 1;
     followed.light.reflect_scene = false;

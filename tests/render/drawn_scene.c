@@ -204,6 +204,21 @@ void have_ggx_facets(struct drawn_scene *drawn)
     drawn_scene_cloth(drawn)->gloss.facets = TL_FACETS_GGX;
 }
 
+/* So large that the CPU's picture, too, reads their map as it is. */
+void have_holes(struct drawn_scene *drawn)
+{
+    struct tl_map *map = &drawn_scene_cloth(drawn)->diffuse_map;
+    *map = drawn_scene_map(&drawn->maps[MAP_HOLES]);
+    map->transform.scale[0] = 0.9f;
+    map->transform.scale[1] = 0.6f;
+    drawn_scene_cloth(drawn)->alpha_cutoff = 0.5f;
+}
+
+void transmit(struct drawn_scene *drawn)
+{
+    drawn_scene_cloth(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
+}
+
 void be_open(struct drawn_scene *drawn)
 {
     drawn_scene_cloth(drawn)->openness = 0.3f;

@@ -25,7 +25,7 @@ struct tl_map drawn_scene_map(const tl_image *image);
 typedef void editor(struct drawn_scene *drawn);
 void drawn_scene_edit(struct drawn_scene *drawn, editor *change);
 editor be_matt, be_glossy, be_satin, be_fuzzy, be_woven, be_streaked, be_mapped, be_voile;
-editor have_warp_threads, have_threads, have_ggx_facets, be_open, glow;
+editor have_warp_threads, have_threads, have_ggx_facets, have_holes, transmit, be_open, glow;
 editor look_up; /* from below the sheet */
 
 /* 1 where a shape, not the ground, is seen. */

@@ -198,16 +198,6 @@ static void have_lamps_and_voile(struct drawn_scene *drawn)
     look_up(drawn);
 }
 
-/* So large that the CPU's picture, too, reads their map as it is. */
-static void have_holes(struct drawn_scene *drawn)
-{
-    struct tl_map *map = &drawn_scene_cloth(drawn)->diffuse_map;
-    *map = drawn_scene_map(&drawn->maps[MAP_HOLES]);
-    map->transform.scale[0] = 0.9f;
-    map->transform.scale[1] = 0.6f;
-    drawn_scene_cloth(drawn)->alpha_cutoff = 0.5f;
-}
-
 /* Holes that show the ball and the backs of the sheet. */
 static void have_clamped_holes(struct drawn_scene *drawn)
 {
@@ -222,11 +212,6 @@ static void have_a_large_hole(struct drawn_scene *drawn)
     have_holes(drawn);
     struct tl_map *map = &drawn_scene_cloth(drawn)->diffuse_map;
     map->transform = (struct tl_uv_transform){.scale = {0.07f, 0.12f}};
-}
-
-static void transmit(struct drawn_scene *drawn)
-{
-    drawn_scene_cloth(drawn)->transmission = (vec3s){{0.2f, 0.2f, 0.2f}};
 }
 
 static void look_up_at_voile(struct drawn_scene *drawn)

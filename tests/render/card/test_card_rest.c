@@ -68,6 +68,12 @@ static void have_lamps(struct drawn_scene *drawn)
     drawn->scene.frame.lamp_count = 2;
 }
 
+static void have_lamps_and_voile(struct drawn_scene *drawn)
+{
+    have_lamps(drawn);
+    be_voile(drawn);
+}
+
 /* They show the lit scene. */
 static void be_mirrors(struct drawn_scene *drawn)
 {
@@ -160,6 +166,11 @@ static const struct rest_case cases[] = {
     {"emission", glow, 1, 1, 0.012, 0.15},
     {"mirrors", be_mirrors, 1, 1, 0.012, 0.2},
     {"lamps", have_lamps, 1, 1, 0.012, 0.15},
+    {"holes", have_holes, 1, 1, 0.012, 0.15},
+    {"open", be_open, 1, 1, 0.012, 0.15},
+    {"transmission", transmit, 1, 1, 0.012, 0.15},
+    {"lamps through voile", have_lamps_and_voile, 1, 1, 0.012, 0.15},
+    {"voile, converged", be_voile, 4, 8, 0.005, 0.06},
     {"threads, converged", have_threads, 4, 8, 0.005, 0.06},
 };
 
@@ -381,8 +392,7 @@ static void test_refusals(void **state)
     static const struct {
         editor *edit;
         const char *text;
-    } refused[] = {{be_open, "cloth with holes at rest"},
-                   {have_dark_mirrors, "near mirrors of a scene whose light does not bounce"},
+    } refused[] = {{have_dark_mirrors, "near mirrors of a scene whose light does not bounce"},
                    {be_moving, "images of one round"}};
     const struct test_device *device = *state;
     struct drawn_scene drawn;
