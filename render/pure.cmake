@@ -11,7 +11,6 @@ add_library(toile_light STATIC
   brdf/sample.c
   brdf/lobe_fit.c
   brdf/material_lobes.c
-  brdf/fresnel.c
   brdf/normalise.c
   brdf/options.c
   detail/bake.c

@@ -1,12 +1,20 @@
 #include "render/brdf/brdf.h"
 
 #include "render/brdf/facets.h"
-#include "render/brdf/fresnel.h"
 #include "render/env/exponent.h"
 
-#include <math.h>
+typedef struct Cosines Cosines;
+typedef struct Frame Frame;
 
-#define PI ((float)M_PI)
+#include "render/gpu/terms_begin.h"
+#define power tl_cosine_power
+
+#include "render/brdf/models_terms.glsl"
+
+#undef power
+#include "render/gpu/terms_end.h"
+
+#include <math.h>
 
 static float finite_or(float x, float otherwise)
 {
@@ -140,94 +148,35 @@ float tl_brdf_masking(const struct tl_brdf *brdf, float cos_a, float cos_b, floa
 
 float tl_brdf_lobe_scale(const struct tl_brdf *brdf)
 {
-    float s = brdf->exponent;
-    switch (brdf->gloss.model) {
-    case TL_REFLECT_BLINN_PHONG:
-        return (4 * s + 2) / (8 * PI);
-    case TL_REFLECT_COSINE_LOBE:
-        return (s + 2) / (2 * PI);
-    case TL_REFLECT_BANKS:
-        return thread_scale(s);
-    default:
-        return (s + 1) / (2 * PI);
-    }
+    return lobe_scale(brdf->gloss.model, brdf->exponent);
 }
 
-/* D G / (pi cos b). The quotient G / cos b stays finite wherever G does, because both vanish with cos b. */
-static float torrance_sparrow(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
+static float ward(const struct tl_gloss *gloss, Cosines c)
 {
-    float tangent_squared = (at->h.x * at->h.x + at->h.y * at->h.y) / (at->h.z * at->h.z);
-    float masking = tl_brdf_masking(brdf, at->cos_a, at->cos_b, at->cos_t, at->h.z);
-    return tl_brdf_facets(brdf, tangent_squared) * masking / (PI * at->cos_b);
-}
-
-static float ward(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
-{
-    const float u = brdf->gloss.width_weft, v = brdf->gloss.width_warp;
-    const float steep = at->cos_t * at->h.z * at->h.z;
-    return ward_lobe(brdf->gloss.ward == TL_WARD_BOUNDED, at->h.x / at->h.z, at->h.y / at->h.z, steep * steep,
-                     at->cos_a, at->cos_b, u * u, v * v, 0);
-}
-
-static float half_power(const struct tl_brdf *brdf, const struct tl_brdf_angles *at)
-{
-    return tl_cosine_power(at->h.z, at->h.x * at->h.x + at->h.y * at->h.y, 4 * brdf->exponent);
-}
-
-static float thread_power(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
-{
-    float angle = tl_brdf_thread_angle(glms_vec3_dot(frame->tangent, l), glms_vec3_dot(frame->tangent, v));
-    float sine = sinf(angle);
-    return tl_cosine_power(cosf(angle), sine * sine, brdf->exponent);
-}
-
-/* The lobe without the Fresnel term. */
-static float lobe_of(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame,
-                     const struct tl_brdf_angles *at, vec3s l, vec3s v)
-{
-    switch (brdf->gloss.model) {
-    case TL_REFLECT_TORRANCE_SPARROW:
-        return torrance_sparrow(brdf, at);
-    case TL_REFLECT_WARD:
-        return ward(brdf, at);
-    case TL_REFLECT_BLINN_PHONG:
-        return tl_brdf_lobe_scale(brdf) * half_power(brdf, at);
-    case TL_REFLECT_BANKS:
-        return tl_brdf_lobe_scale(brdf) * thread_power(brdf, frame, l, v) * at->cos_a;
-    case TL_REFLECT_COSINE_LOBE:
-        return tl_brdf_lobe_scale(brdf) * at->cos_a *
-               tl_brdf_cosine_power(tl_brdf_mirror(frame->normal, v), l, brdf->exponent);
-    default:
-        return tl_brdf_lobe_scale(brdf) *
-               tl_brdf_cosine_power(tl_brdf_mirror(frame->normal, v), l, brdf->exponent);
-    }
+    const float u = gloss->width_weft, v = gloss->width_warp, steep = c.t * c.half_normal * c.half_normal;
+    return ward_lobe(gloss->ward == TL_WARD_BOUNDED, c.half_plane.x / c.half_normal,
+                     c.half_plane.y / c.half_normal, steep * steep, c.a, c.b, u * u, v * v, 0);
 }
 
 vec3s tl_brdf_fresnel(const struct tl_brdf *brdf, float cosine)
 {
     const struct tl_gloss *gloss = &brdf->gloss;
-    vec3s reflectance = brdf->f0;
-    for (int c = 0; brdf->is_inside && c < 3; c++)
-        reflectance.raw[c] = brdf->colour.raw[c] * (1 - tl_fresnel_schlick(brdf->f0.raw[c], cosine));
+    cosine = cosine > 0 ? fminf(cosine, 1) : 0; /* NaN: 0 */
     if (brdf->is_inside)
-        return reflectance;
-    if (gloss->fresnel == TL_FRESNEL_DIELECTRIC)
-        return glms_vec3_scale(reflectance, tl_fresnel_dielectric(gloss->index, cosine));
-    if (gloss->fresnel == TL_FRESNEL_CONDUCTOR)
-        return glms_vec3_scale(reflectance, tl_fresnel_conductor(gloss->index, gloss->extinction, cosine));
-    for (int c = 0; c < 3; c++)
-        reflectance.raw[c] = tl_fresnel_schlick(reflectance.raw[c], cosine);
-    return reflectance;
+        return glms_vec3_mul(brdf->colour, glms_vec3_sub(glms_vec3_one(), schlick_colour(brdf->f0, cosine)));
+    return fresnel_colour(gloss->fresnel, gloss->index, gloss->extinction, brdf->f0, cosine);
 }
 
 vec3s tl_brdf_gloss(const struct tl_brdf *brdf, const struct tl_brdf_frame *frame, vec3s l, vec3s v)
 {
+    const struct tl_gloss *gloss = &brdf->gloss;
     const struct tl_brdf_frame own = tl_brdf_own_frame(brdf, frame);
-    struct tl_brdf_angles at = tl_brdf_angles_of(&own, l, v);
-    if (!(at.cos_a > 0 && at.cos_b > 0 && at.h.z > 0))
+    const Cosines c = cosines_of((Frame){own.normal, own.tangent, own.bitangent}, l, v,
+                                 direction_or(glms_vec3_add(l, v), l));
+    if (!(c.a > 0 && c.b > 0 && c.half_normal > 0))
         return (vec3s){{0, 0, 0}};
-    bool by_view = brdf->gloss.model == TL_REFLECT_PHONG || brdf->gloss.model == TL_REFLECT_BANKS;
-    vec3s reflectance = tl_brdf_fresnel(brdf, by_view ? at.cos_b : at.cos_t);
-    float lobe = lobe_of(brdf, frame, &at, l, v);
-    return glms_vec3_scale(reflectance, finite_or(lobe, 0));
+    const float lobe = gloss->model == TL_REFLECT_WARD ? ward(gloss, c)
+                                                       : lobe_of(gloss->model, gloss->facets, gloss->masking,
+                                                                 c, brdf->exponent, gloss->width_weft);
+    return glms_vec3_scale(tl_brdf_fresnel(brdf, fresnel_cosine(gloss->model, c)), finite_or(lobe, 0));
 }

@@ -5,7 +5,6 @@
 #define TOILE_RENDER_BRDF_WARD_LANES_H
 
 #include "render/brdf/facets.h"
-#include "render/brdf/fresnel.h"
 #include "render/brdf/lobe_fit.h"
 
 struct tl_ward_lanes {

@@ -1,7 +1,7 @@
 // The material at a point, from what maps hold there, and the lobes of its gloss (render/shade). C fills Part in
 // materials.c.
 #include "surface_terms.glsl"
-#include "models.glsl"
+#include "models_terms.glsl"
 
 struct Part {
     vec4 diffuse;          // colour, glossiness

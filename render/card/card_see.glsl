@@ -86,7 +86,7 @@ vec3 model_under(Seen s, vec3 d, float radius)
     float wider = detail_facet_square(1.0 - s.surface.glossiness) - detail_facet_square(1.0 - s.part.diffuse.a);
     float width = sqrt(facet_square(s.part.ward[0].x, wider) + radius * radius / 8.0);
     float exponent = lobe_broadened_exponent(lobe_exponent(s.surface.glossiness), radius * 0.707106781);
-    return fresnel_of(model, fresnel_kind(s.part, 0), s.part.optics.xy, s.surface.f0, c) *
+    return fresnel_colour(fresnel_kind(s.part, 0), s.part.optics.x, s.part.optics.y, s.surface.f0, fresnel_cosine(model, c)) *
            lobe_of(model, int(s.part.table_first.y), int(s.part.table_first.z), c, exponent, width);
 }
 

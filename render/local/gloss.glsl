@@ -50,7 +50,7 @@ vec3 gloss(Cosines c, vec3 f0, float s, vec3 widening)
 #if TABLES > 0
     return tables_gloss(c, tables_product(c));
 #else
-    return fresnel_of(MODEL, FRESNEL, gloss_optics, f0, c) * lobe(c, s, widening);
+    return fresnel_colour(FRESNEL, gloss_optics.x, gloss_optics.y, f0, fresnel_cosine(MODEL, c)) * lobe(c, s, widening);
 #endif
 }
 

@@ -1,6 +1,6 @@
 // The current lamp, and the cosines at a point that it lights.
 #include "lamp_terms.glsl"
-#include "models.glsl"
+#include "models_terms.glsl"
 
 layout(location = 64) uniform mat4 view_projection;
 layout(location = 65) uniform vec3 eye;

@@ -3,7 +3,7 @@
 #include "app/lab/experiments/experiment.h"
 #include "app/report/report.h"
 #include "config/base/memory.h"
-#include "render/brdf/fresnel.h"
+#include "render/brdf/facets.h"
 #include "render/brdf/normalise.h"
 #include "render/brdf/power.h"
 #include "render/brdf/tables/table_error.h"
@@ -207,7 +207,7 @@ static void add_fresnel(cJSON *figures)
         cJSON *points = tl_report_add_series(series, names[k], false);
         for (int degrees = 0; degrees <= 90; degrees++)
             tl_report_add_point(points, degrees,
-                                (double)tl_fresnel_dielectric(indices[k], (float)cos(degrees * M_PI / 180)));
+                                (double)fresnel_dielectric(indices[k], (float)cos(degrees * M_PI / 180)));
     }
 }
 

@@ -1,7 +1,7 @@
 #include "app/lab/gallery/integral.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/fresnel.h"
+#include "render/brdf/facets.h"
 #include "render/env/cube.h"
 
 #include <math.h>
@@ -122,8 +122,8 @@ static vec3s reflectance_at(const struct tl_material_params *material, float cos
     vec3s f;
     for (int c = 0; c < 3; c++)
         f.raw[c] = material->fresnel == TL_FRESNEL_SCHLICK
-                       ? tl_fresnel_schlick(material->specular[c], cosine)
-                       : material->specular[c] * tl_fresnel_dielectric(material->index, cosine);
+                       ? schlick_reflectance(material->specular[c], schlick_share(cosine))
+                       : material->specular[c] * fresnel_dielectric(material->index, cosine);
     return f;
 }
 

@@ -1,7 +1,6 @@
 #include "render/brdf/tables/tables.h"
 
 #include "config/base/memory.h"
-#include "render/brdf/fresnel.h"
 #include "render/brdf/tables/table_error.h"
 
 #include "tests/testing.h"

@@ -1,6 +1,6 @@
 /* Light from the inside of threads under light from their surface: by brute force over the hemisphere. */
 #include "render/brdf/brdf.h"
-#include "render/brdf/fresnel.h"
+#include "render/brdf/facets.h"
 #include "render/brdf/lobe_fit.h"
 
 #include "config/base/memory.h"
@@ -145,7 +145,7 @@ static void test_colours(void **state)
     assert_near(white.x, white.z, 0.25 * (double)white.x);
     /* 1 - F by the surface's own F0, to the last digit */
     const struct tl_brdf *thread = &sum.items[1];
-    assert_near(tl_brdf_fresnel(thread, 0.4f).x, 1 - tl_fresnel_schlick(0.045f, 0.4f), 1e-6);
+    assert_near(tl_brdf_fresnel(thread, 0.4f).x, 1 - schlick_reflectance(0.045f, schlick_share(0.4f)), 1e-6);
 }
 
 /* Unresolved bumps and yarns widen a thread's lobe as they do Ward's facets, along u and v apart. */

@@ -5,7 +5,7 @@
 #include "cloth/mesh/topology.h"
 #include "cloth/tangents/tangent_frames.h"
 #include "config/base/memory.h"
-#include "render/brdf/fresnel.h"
+#include "render/brdf/facets.h"
 #include "render/env/exponent.h"
 #include "render/env/from_environment.h"
 #include "render/env/lobes.h"
@@ -170,7 +170,7 @@ static vec3s coated(const struct scene *scene, const struct tl_lobes *lobes, vec
                     vec3s below)
 {
     float share =
-        scene->sheet.material.coat * tl_fresnel_dielectric(1.5f, fmaxf(glms_vec3_dot(smooth, viewer), 0));
+        scene->sheet.material.coat * fresnel_dielectric(1.5f, fmaxf(glms_vec3_dot(smooth, viewer), 0));
     vec3s over = tl_lobes_fetch(lobes, mirror_of(smooth, viewer), tl_exponent_blend(tl_lobe_exponent(0.9f)));
     return glms_vec3_lerp(below, over, share);
 }

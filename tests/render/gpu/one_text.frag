@@ -7,6 +7,7 @@
 #include "layers_terms.glsl"
 #include "ground.glsl"
 #include "lobes_terms.glsl"
+#include "models_terms.glsl"
 #include "normalise_terms.glsl"
 #include "sample_terms.glsl"
 #include "spread_terms.glsl"

@@ -1,6 +1,6 @@
 // One number of each term that GLSL and C share, at a trial: the inputs come from a sequence in whole numbers, which both
 // compute to the bit.
-#define ONE_TEXT_NUMBERS 110
+#define ONE_TEXT_NUMBERS 113
 #define ONE_TEXT_TRIALS 512
 
 TERM float one_text(int number, uint trial)
@@ -111,6 +111,18 @@ TERM float one_text(int number, uint trial)
     vec2 chosen = facet_slope(squares, a.x, a.y), on_ground = ground_place(disc, 3.0f * b.x, 3.0f * b.y);
     vec3 about = lobe_direction(n, lobe_off_axis(s * s, c.x), c.y);
     vec3 moved = smooth_shift(v, n, direction_or(vec3(d.x, d.y, e.x), n), e.y);
+    Frame frame;
+    frame.n = n;
+    frame.t = thread_direction(n, vec3(d.x, d.y, e.x), 1.0f, 0.0f);
+    frame.b = cross(n, frame.t);
+    vec3 light = direction_or(vec3_add(n, vec3_scale(v, 0.7f)), n);
+    vec3 eye = direction_or(vec3_add(n, vec3(0.5f * d.x, 0.5f * e.x, 0.0f)), n);
+    Cosines cosines = cosines_of(frame, light, eye, direction_or(vec3_add(light, eye), light));
+    if (number > 109)
+        return number == 110   ? fresnel_colour(facets.fresnel, facets.index, facets.extinction, vec3(e.x, 0.1f, 1.0f), cosines.b).x
+               : number == 111 ? lobe_scale(int(5.99f * b.x), s)
+                               : min(lobe_of(int(5.99f * b.x), int(2.99f * a.y), int(2.99f * c.y), cosines, 1.0f + 20.0f * a.x,
+                                              weft), 5.0f);
     if (number > 102)
         return number == 103   ? lobe_off_axis(s * s, c.x)
                : number == 104 ? about.x + about.y - about.z

@@ -2,6 +2,7 @@
  * leaves to a driver. Its powers of two and logarithms may err by some units of the last place, its sines by
  * 2^-11 [OpenGL 4.5, GLSL 4.7.1]; differences grow where a term subtracts. */
 #include "render/bounce/bounced.h"
+#include "render/brdf/angles.h"
 #include "render/brdf/material_lobes.h"
 #include "render/brdf/normalise.h"
 #include "render/env/cube.h"
@@ -22,7 +23,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct Cosines Cosines;
+typedef struct Frame Frame;
+
 #include "render/gpu/terms_begin.h"
+#define power tl_cosine_power
+
+#include "render/brdf/models_terms.glsl"
 
 #include "render/brdf/sample_terms.glsl"
 
@@ -30,6 +37,7 @@
 
 #include "tests/render/gpu/one_text.glsl"
 
+#undef power
 #include "render/gpu/terms_end.h"
 
 /* Relative to the larger of the two and 1. */
