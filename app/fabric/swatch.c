@@ -49,9 +49,9 @@ static bool load_pictures(struct session *session, tl_error *error)
     return true;
 }
 
-static bool save(const struct session *session, const char *name, const tl_image *bytes, tl_error *error)
+static bool save(const char *folder, const char *name, const tl_image *bytes, tl_error *error)
 {
-    char *path = tl_format("%s/%s.png", session->arguments->output, name);
+    char *path = tl_format("%s/%s.png", folder, name);
     bool saved = tl_image_save_png(path, bytes, error);
     free(path);
     return saved;
@@ -71,29 +71,28 @@ static tl_image colours_of(const tl_image *albedo, float *brightest)
     return out;
 }
 
-static bool save_pictures(const struct session *session, tl_error *error)
+static bool save_pictures(const char *folder, const struct tl_swatch_maps *swatch, tl_error *error)
 {
     float brightest;
-    tl_image normals = tl_bake_encoded(&session->swatch.normal),
-             colours = colours_of(&session->swatch.albedo, &brightest);
+    tl_image normals = tl_bake_encoded(&swatch->normal), colours = colours_of(&swatch->albedo, &brightest);
     if (brightest > 1)
         tl_warn("the swatch sends back up to %.2f times the light: photograph white paper and give "
                 "`intensity` its "
                 "value",
                 (double)brightest);
-    bool saved = save(session, "normal", &normals, error) && save(session, "colour", &colours, error);
+    bool saved = save(folder, "normal", &normals, error) && save(folder, "colour", &colours, error);
     tl_image_release(&normals);
     tl_image_release(&colours);
     return saved;
 }
 
-static bool save_options(const struct session *session, tl_error *error)
+static bool save_options(const char *folder, const struct tl_swatch_rig *rig,
+                         const struct tl_swatch_maps *swatch, tl_error *error)
 {
     struct tl_writer writer;
-    const struct tl_swatch_maps *swatch = &session->swatch;
-    double width = (double)session->rig.width_mm,
+    double width = (double)rig->width_mm,
            specular = (double)(swatch->has_gloss ? fminf(swatch->specular, 1) : SPECULAR_DEFAULT);
-    char *path = tl_format("%s/%s", session->arguments->output, TL_FABRIC_OWN_FILE);
+    char *path = tl_format("%s/%s", folder, TL_FABRIC_OWN_FILE);
     bool saved = tl_writer_begin(&writer, path, error);
     if (saved) {
         fprintf(writer.stream,
@@ -109,17 +108,21 @@ static bool save_options(const struct session *session, tl_error *error)
                 "  diffuse: [1, 1, 1] # times colour.png\n"
                 "  specular: [%.4g, %.4g, %.4g] # %s\n"
                 "  glossiness: %.4g\n",
-                session->rig.count, width, width * session->pictures->height / session->pictures->width,
-                specular, specular, specular,
+                rig->count, width, width * swatch->normal.height / swatch->normal.width, specular, specular,
+                specular,
                 swatch->has_gloss ? "measured"
                                   : "not measured: the lamps stand too far off the mirror direction",
                 (double)(swatch->specular > 0 ? swatch->glossiness : GLOSS_DEFAULT));
         saved = tl_writer_commit(&writer, error);
     }
-    if (saved)
-        tl_info("%s: use it with --fabric %s/", path, session->arguments->output);
     free(path);
     return saved;
+}
+
+bool tl_fabric_swatch_save(const char *folder, const struct tl_swatch_rig *rig,
+                           const struct tl_swatch_maps *swatch, tl_error *error)
+{
+    return save_pictures(folder, swatch, error) && save_options(folder, rig, swatch, error);
 }
 
 static size_t worst_lamp(const struct session *session)
@@ -191,9 +194,10 @@ bool tl_fabric_swatch(const struct tl_arguments *arguments, tl_error *error)
     bool done = tl_swatch_rig_load(arguments->lights, &session.rig, error) &&
                 load_pictures(&session, error) &&
                 tl_swatch_solve(&session.rig, session.pictures, &session.swatch, error) &&
-                tl_folder_make(arguments->output, error) && save_pictures(&session, error) &&
-                save_options(&session, error);
+                tl_folder_make(arguments->output, error) &&
+                tl_fabric_swatch_save(arguments->output, &session.rig, &session.swatch, error);
     if (done) {
+        tl_info("%s/%s: use it with --fabric %s/", arguments->output, TL_FABRIC_OWN_FILE, arguments->output);
         warn(&session);
         (arguments->json ? print_json : print_table)(&session);
     }

@@ -6,9 +6,13 @@
 #define TOILE_APP_FABRIC_SWATCH_H
 
 #include "app/cli/arguments.h"
+#include "assets/swatch/swatch.h"
 
 /* Takes the positional arguments, one a lamp and in their order, --lights and -o. Prints what the lamps
  * leave. */
 bool tl_fabric_swatch(const struct tl_arguments *arguments, tl_error *error);
+/* Writes normal.png, colour.png and the file of options into a folder. */
+bool tl_fabric_swatch_save(const char *folder, const struct tl_swatch_rig *rig,
+                           const struct tl_swatch_maps *swatch, tl_error *error);
 
 #endif

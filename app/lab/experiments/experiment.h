@@ -102,6 +102,8 @@ struct tl_experiment {
     struct tl_experiment_claim claims[TL_EXPERIMENT_CLAIMS]; /* pictures: {0} ends them */
     bool baked; /* pictures: its objects are coarse meshes and maps that were baked of finer ones, files of
                    which rows name "@coarse.obj", "@fine.obj", "@normals.png" and "@heights.exr" */
+    bool photographed;    /* pictures: the exact weave is photographed from above and measured; rows wear the
+                             pictures in "@photographs-06" of six lamps */
     bool moving_sky;      /* pictures: its environment is a sequence of files, "@sky.####.exr" */
     bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
 };

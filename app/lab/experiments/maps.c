@@ -201,6 +201,7 @@ static const struct tl_experiment experiments[] = {
      .solid = "torus",
      .base = {UNSEWN, "light.method=maps", "maps.mode=mirror", "maps.size=128", "material.fresnel=dielectric",
               "material.specular=[1, 1, 1]"},
+     .by_flip = true,
      .ids = {"B6"},
      METHODS(techniques)},
     {.output = TL_OUTPUT_PICTURES,

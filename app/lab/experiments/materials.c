@@ -81,6 +81,15 @@ static const struct tl_technique factored[] = {
     {.picture = "Phong", .id = "A13", SET("material.model=phong")},
 };
 
+#define WORN "weave.picture_mm=32", "material.diffuse=[1, 1, 1]"
+
+static const struct tl_technique photographs[] = {
+    {.picture = "4 lamps", .id = "C15", SET("weave.pictures=@photographs-04", WORN)},
+    {.picture = "6 lamps", .id = "C15", SET("weave.pictures=@photographs-06", WORN)},
+    {.picture = "8 lamps", .id = "C15", SET("weave.pictures=@photographs-08", WORN)},
+    {.picture = "12 lamps", .id = "C15", SET("weave.pictures=@photographs-12", WORN)},
+};
+
 static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "c10",
@@ -138,6 +147,24 @@ static const struct tl_experiment experiments[] = {
      .reference = {.assignments = {"shading.reflectance=direct"}},
      .ids = {"A13"},
      METHODS(factored)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "c15",
+     .scene = "gallery",
+     .title = "C15  A fabric from photographs",
+     .source = "[Heidrich and Seidel 1999, 5; Woodham 1980]",
+     .text =
+         "A weave of two colours is drawn from above, 32 mm of it, under lamps around it, and these pictures "
+         "are measured as toile fabric PICTURES --lights does. The objects wear the normals and colours that "
+         "come of it, with the weave's own gloss, under another lamp.",
+     .exact_text = "the weave itself",
+     .solid = "torus",
+     .base = {LAMPLIT, UNSEWN, "material.glossiness=0.9", "material.specular=[0.06, 0.06, 0.06]"},
+     .reference = {.assignments = {"weave.pictures=", WOVEN("8", "1"), "weave.warp_tint=[1, 0.8, 0.6]",
+                                   "material.diffuse=[0.5, 0.3, 0.2]"}},
+     .photographed = true,
+     .side = 384,
+     .ids = {"C15"},
+     METHODS(photographs)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "coat",
      .title = "A clear coat",

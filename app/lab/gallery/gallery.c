@@ -222,8 +222,10 @@ static bool draw_section(struct gallery_drawing *drawing, const struct tl_experi
                          struct tl_gallery *out, tl_error *error)
 {
     struct tl_experiment_picture picture = {.experiment = section, .folder = drawing->folder};
-    bool done = (!section->baked || tl_baked_make(&picture, error)) &&
-                (!section->moving_sky || tl_moving_sky_make(&picture, error));
+    bool done =
+        (!section->baked || tl_baked_make(&picture, error)) &&
+        (!section->moving_sky || tl_moving_sky_make(&picture, error)) &&
+        (!section->photographed || tl_photographs_make(&drawing->shots, &picture, out->photographs, error));
     for (size_t number = 1; done && !(quick && number > 1) && tl_picture_next(&picture, TL_OUTPUT_PICTURES);
          number++) {
         struct tl_gallery_entry *entry = &out->entries[out->count++];

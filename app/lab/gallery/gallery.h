@@ -9,6 +9,7 @@
 
 #include "app/lab/experiments/picture.h"
 #include "app/lab/gallery/panels.h"
+#include "app/lab/gallery/photographs.h"
 
 #include <cjson/cJSON.h>
 
@@ -38,7 +39,8 @@ struct tl_gallery_entry {
 struct tl_gallery {
     struct tl_gallery_entry *entries;
     size_t count;
-    bool complete; /* not interrupted */
+    bool complete;                                                /* not interrupted */
+    struct tl_photographs_error photographs[TL_PHOTOGRAPHS_RIGS]; /* of the section that is photographed */
 };
 
 /* The error of a technique whose measured error contains the noise of a ray-traced picture, both relative.

@@ -3,8 +3,10 @@
 #include "app/lab/gallery/gallery_figures.h"
 #include "app/lab/gallery/shots.h"
 #include "app/report/report.h"
+#include "config/base/memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The section's title after its id. */
@@ -106,8 +108,30 @@ static void add_claims(cJSON *object, const struct tl_experiment *section)
     }
 }
 
-static void add_section(cJSON *sections, const struct tl_gallery_entry *first,
-                        const struct tl_gallery_entry *end)
+static void add_photographs(cJSON *figures, const struct tl_photographs_error errors[TL_PHOTOGRAPHS_RIGS])
+{
+    const struct tl_photographs_error *few = &errors[0], *many = &errors[TL_PHOTOGRAPHS_RIGS - 1];
+    char *caption =
+        tl_format("What photographs of the weave show against its own normals and colours: %d lamps "
+                  "leave %.2f degrees and %.2f %%, %d lamps %.2f degrees and %.2f %%: the normals of more "
+                  "lamps are %s.",
+                  few->lamps, few->normal_deg, 100 * few->albedo, many->lamps, many->normal_deg,
+                  100 * many->albedo, many->normal_deg < few->normal_deg ? "nearer" : "no nearer");
+    cJSON *series = tl_report_add_plot(
+        figures, &(const struct tl_report_plot){.x_label = "lamps",
+                                                .y_label = "mean angle, degrees; error of colours, %",
+                                                .caption = caption});
+    cJSON *angles = tl_report_add_series(series, "normals, degrees", false),
+          *colours = tl_report_add_series(series, "colours, %", false);
+    for (int i = 0; i < TL_PHOTOGRAPHS_RIGS; i++) {
+        tl_report_add_point(angles, errors[i].lamps, errors[i].normal_deg);
+        tl_report_add_point(colours, errors[i].lamps, 100 * errors[i].albedo);
+    }
+    free(caption);
+}
+
+static void add_section(cJSON *sections, const struct tl_gallery *gallery,
+                        const struct tl_gallery_entry *first, const struct tl_gallery_entry *end)
 {
     static const char *const motions[] = {[TL_MOTION_CAMERA] = "camera",
                                           [TL_MOTION_LAMP] = "lamp",
@@ -132,7 +156,10 @@ static void add_section(cJSON *sections, const struct tl_gallery_entry *first,
     cJSON *entries = cJSON_AddArrayToObject(object, "entries");
     for (const struct tl_gallery_entry *entry = first; entry < end; entry++)
         cJSON_AddItemToArray(entries, make_entry(entry, shows_times));
-    tl_gallery_add_figures(section->name, cJSON_AddArrayToObject(object, "figures"));
+    cJSON *figures = cJSON_AddArrayToObject(object, "figures");
+    tl_gallery_add_figures(section->name, figures);
+    if (section->photographed)
+        add_photographs(figures, gallery->photographs);
     cJSON_AddItemToArray(sections, object);
 }
 
@@ -145,7 +172,7 @@ cJSON *tl_gallery_data(const struct tl_gallery *gallery)
         for (end = first + 1; end < gallery->count && gallery->entries[end].picture.experiment ==
                                                           gallery->entries[first].picture.experiment;)
             end++;
-        add_section(sections, gallery->entries + first, gallery->entries + end);
+        add_section(sections, gallery, gallery->entries + first, gallery->entries + end);
     }
     return data;
 }

@@ -116,7 +116,7 @@ static tl_image show(const tl_image *light, float exposure_ev)
     return shown;
 }
 
-static const tl_image *layer_of(const struct tl_aovs *aovs, const char *channel)
+const tl_image *tl_shots_layer(const struct tl_aovs *aovs, const char *channel)
 {
     for (int i = 0; i < aovs->count; i++)
         if (strcmp(aovs->items[i].channels[0], channel) == 0)
@@ -124,27 +124,40 @@ static const tl_image *layer_of(const struct tl_aovs *aovs, const char *channel)
     return NULL;
 }
 
+static bool draw_layers(struct tl_viewpoint *viewpoint, tl_image *light, struct tl_aovs *aovs,
+                        tl_error *error)
+{
+    tl_frame frame = tl_session_frame(viewpoint->session);
+    frame.aovs = true;
+    frame.still = true;
+    return draw_frame(viewpoint, 0, &frame, error) && tl_renderer_read(viewpoint->renderer, light, error) &&
+           tl_renderer_read_aovs(viewpoint->renderer, aovs, error);
+}
+
+bool tl_shots_layers(struct tl_shots *shots, const struct tl_settings *settings, tl_image *light,
+                     struct tl_aovs *layers, tl_error *error)
+{
+    struct tl_viewpoint *viewpoint = &shots->viewpoints[TL_PICTURE_SOLID];
+    return set_up(viewpoint, settings, error) && draw_layers(viewpoint, light, layers, error);
+}
+
 /* Draws the samples of a picture twice its size, one a pixel, and sums the environment at each. */
 static bool draw_integral(struct tl_viewpoint *viewpoint, struct tl_gallery_shot *out, tl_error *error)
 {
     struct tl_aovs aovs = {0};
     tl_image covered = {0};
-    tl_frame frame = tl_session_frame(viewpoint->session);
-    frame.aovs = true;
-    frame.still = true;
-    bool drawn = draw_frame(viewpoint, 0, &frame, error) &&
-                 tl_renderer_read(viewpoint->renderer, &covered, error) &&
-                 tl_renderer_read_aovs(viewpoint->renderer, &aovs, error);
+    bool drawn = draw_layers(viewpoint, &covered, &aovs, error);
     if (drawn) {
+        const tl_frame frame = tl_session_frame(viewpoint->session);
         const struct tl_settings *settings = tl_session_settings(viewpoint->session);
         out->light =
             tl_integral_make(&(const struct tl_integral_request){.environment = frame.environment,
                                                                  .environment_yaw = frame.environment_yaw,
                                                                  .eye = frame.camera.eye,
                                                                  .settings = settings,
-                                                                 .normals = layer_of(&aovs, "N.x"),
-                                                                 .points = layer_of(&aovs, "P.x"),
-                                                                 .diffuse = layer_of(&aovs, "albedo.R"),
+                                                                 .normals = tl_shots_layer(&aovs, "N.x"),
+                                                                 .points = tl_shots_layer(&aovs, "P.x"),
+                                                                 .diffuse = tl_shots_layer(&aovs, "albedo.R"),
                                                                  .covered = &covered});
         out->shown = show(&out->light, settings->image.exposure_ev);
     }
