@@ -104,6 +104,7 @@ struct tl_experiment {
                    which rows name "@coarse.obj", "@fine.obj", "@normals.png" and "@heights.exr" */
     bool photographed;    /* pictures: the exact weave is photographed from above and measured; rows wear the
                              pictures in "@photographs-06" of six lamps */
+    bool sampled;         /* pictures: "@samples.txt" has samples of the exact picture's model */
     bool moving_sky;      /* pictures: its environment is a sequence of files, "@sky.####.exr" */
     bool reference_alone; /* the reference leaves out the technique's settings, so that all share one */
 };

@@ -90,6 +90,17 @@ static const struct tl_technique photographs[] = {
     {.picture = "12 lamps", .id = "C15", SET("weave.pictures=@photographs-12", WORN)},
 };
 
+#define GAUSSIAN "material.model=torrance_sparrow", "material.width_weft=0.2"
+#define SAMPLED  "material.samples=@samples.txt"
+
+static const struct tl_technique sampled[] = {
+    {.picture = "Gaussian facets, not sampled", .id = "A13", SET(GAUSSIAN)},
+    {.picture = "Gaussian facets", .id = "A13", SET(GAUSSIAN, SAMPLED)},
+    {.picture = "Ward", .id = "A13", SET(ELONGATED, SAMPLED)},
+    {.picture = "cosine lobe", .id = "A13", SET("material.model=cosine_lobe", SAMPLED)},
+    {.picture = "threads of Banks", .id = "A13", SET("material.model=banks", SAMPLED)},
+};
+
 static const struct tl_experiment experiments[] = {
     {.output = TL_OUTPUT_PICTURES,
      .name = "c10",
@@ -165,6 +176,24 @@ static const struct tl_experiment experiments[] = {
      .side = 384,
      .ids = {"C15"},
      METHODS(photographs)},
+    {.output = TL_OUTPUT_PICTURES,
+     .name = "a13_environment",
+     .scene = "gallery",
+     .title = "A13  Samples under an environment",
+     .source = "[Knuth et al. 2014, 6]",
+     .text = "20,000 samples of each model over even light. Lobes that are fitted to them once, even light, "
+             "a surface "
+             "and threads, are drawn as those of any cloth. The first picture has no samples, and the "
+             "error of light alone.",
+     .exact_text = "the model itself, ray traced",
+     .solid = "torus",
+     .base = {"scene.environment=studio", "light.method=pem", "material.glossiness=0.9", UNSEWN,
+              "material.diffuse=[0.3, 0.16, 0.1]", "material.specular=[0.15, 0.15, 0.15]"},
+     .reference = {.assignments = {TRACED, FEW_SAMPLES, "material.samples="}},
+     .sampled = true,
+     .side = 256,
+     .ids = {"A13"},
+     METHODS(sampled)},
     {.output = TL_OUTPUT_GOLDEN,
      .name = "coat",
      .title = "A clear coat",

@@ -3,6 +3,7 @@
 #include "app/lab/experiments/experiments.h"
 #include "app/lab/gallery/baked.h"
 #include "app/lab/gallery/moving_sky.h"
+#include "app/lab/gallery/sampled.h"
 #include "app/lab/gallery/shots.h"
 #include "app/lab/gallery/store.h"
 #include "app/report/folder.h"
@@ -230,7 +231,7 @@ static bool draw_section(struct gallery_drawing *drawing, const struct tl_experi
          number++) {
         struct tl_gallery_entry *entry = &out->entries[out->count++];
         *entry = make_entry(&picture, number);
-        done = draw_entry(drawing, entry, error);
+        done = (!section->sampled || tl_sampled_make(&picture, error)) && draw_entry(drawing, entry, error);
         if (!done)
             release_entry(&out->entries[--out->count]);
         tl_progress_update(&drawing->progress, (int)out->count, (int)drawing->total);

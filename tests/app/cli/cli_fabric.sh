@@ -79,12 +79,35 @@ grep -q 'picture_mm: 32$' swatch/fabric.yaml || fail "its scale: $(cat swatch/fa
 "$TOILE" render $over --fabric swatch/ --set weave.picture_mirror=none $(under 200 35) -o worn_swatch.exr || fail "it is not worn"
 off=$("$TOILE" compare worn_swatch.exr seventh.exr | sed -n 's/^relative RMSE *//p')
 awk -v off="$off" 'BEGIN { exit !(off < 0.08) }' || fail "the photographed weave looks different: $off"
+# Measured so, texel by texel, it is what an environment's regions light: the weave itself is traced.
+room="--set scene.environment=studio --set light.regions=24"
+"$TOILE" render $over $woven $room --set light.method=reference -o traced.exr || fail "no traced weave"
+"$TOILE" render $over --fabric swatch/ --set weave.picture_mirror=none $room --set light.method=pem -o roomed.exr || fail "no swatch in a room"
+off=$("$TOILE" compare roomed.exr traced.exr | sed -n 's/^relative RMSE *//p')
+awk -v off="$off" 'BEGIN { exit !(off < 0.05) }' || fail "the photographed weave looks different in a room: $off"
 refuse "pictures without lamps enough" '6 lamps for 4 pictures' fabric lit[0-3].exr --lights lights.yaml -o swatch
 refuse "photographs without an output" 'add -o' fabric lit?.exr --lights lights.yaml
 refuse "lamps that are missing" 'nowhere\.yaml.*no such file' fabric lit?.exr --lights nowhere.yaml -o swatch
 refuse "pictures of two sizes" 'worn\.exr: 32 x 32 texels, but lit0\.exr has 64 x 64' fabric lit[0-4].exr worn.exr --lights lights.yaml -o swatch
 head -5 lights.yaml >few.yaml
 refuse "three lamps" 'few\.yaml: lamps: 3 given: at least 4' fabric lit[0-2].exr --lights few.yaml -o swatch
+
+# ---- Measured reflectance ----
+
+# Even light is fitted exactly; light that goes back to where it came from is not, and a warning says so.
+samples() { # of 0.1 and an amount of that
+    awk -v amount="$1" 'BEGIN { print "theta_l phi_l theta_v phi_v value"; pi = atan2(0, -1) / 180
+        for (a = 0; a < 80; a += 16) for (b = 0; b < 360; b += 60) for (c = 0; c < 80; c += 16) for (d = 0; d < 360; d += 60) {
+            cosine = sin(a * pi) * sin(c * pi) * cos((b - d) * pi) + cos(a * pi) * cos(c * pi)
+            print a, b, c, d, 0.1 + amount * (cosine > 0 ? cosine ^ 20 : 0) } }'
+}
+for amount in 0 1; do
+    samples $amount >samples.txt
+    printed=$("$TOILE" render --garment sphere --avatar none --size 16x16 --set light.method=unshadowed $cheap_light \
+        --set material.samples=samples.txt -o samples.png 2>&1) || fail "samples are not drawn: $printed"
+    [ $amount = 1 ] || printf '%s' "$printed" | grep -q 'material of lobes, 0.0 %' || fail "even light is not even: $printed"
+    [ "$(printf '%s' "$printed" | grep -c 'no material of lobes')" = $amount ] || fail "warnings of a fit: $printed"
+done
 
 # ---- Fabrics of other programs ----
 

@@ -22,8 +22,9 @@ struct facets {
 #define FACETS .gloss.model = TL_REFLECT_TORRANCE_SPARROW, .gloss.facets
 #define WIDTHS .gloss.width_weft = 0.15f, .gloss.width_warp = 0.4f
 
-/* The fit has the forms of the first three exactly. `limit` is of the relative RMSE of light, a quarter more
- * than came out; the plain grey that stood for such cloth errs by 0.5 to 1.9. */
+/* The fit has the forms of the first three exactly. Phong's and Banks's are not reciprocal, and beyond its
+ * bound. `limit` is of the relative RMSE of light, a quarter more than came out; the plain grey that stood
+ * for such cloth errs by 0.5 to 1.9. */
 static const struct cloth {
     const char *name;
     double limit;
@@ -236,7 +237,7 @@ static void fits_are_lit_as_what_was_sampled(void **state)
         print_message("%-18s rest %.4f, light %.4f; grey %.2f\n", cloths[i].name, rest, off,
                       difference(without, wanted));
         assert_true(off < cloths[i].limit);
-        assert_true(rest < TL_MEASURED_LOBES_GOOD);
+        assert_true((rest < TL_MEASURED_LOBES_GOOD) == (cloths[i].limit < 0.1));
     }
     tl_environment_release(&studio);
 }
@@ -259,7 +260,7 @@ static void samples_may_lie_anywhere(void **state)
 }
 
 /* Light that goes back to where it came from is none of the forms: the rest is beyond the bound, and so is
- * the light beyond what the others err by. */
+ * the light. */
 static void what_does_not_fit_is_known(void **state)
 {
     (void)state;
