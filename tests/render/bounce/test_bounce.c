@@ -190,6 +190,47 @@ static void test_lamp(void **state)
     check(*state, scene, "lamp", TL_BOUNCE_ALL, AT_SAMPLES_ONLY, MATT);
 }
 
+/* The lamp is between the sheet and the wall, which shadows nothing that it lights; the wall shows its own
+ * back. */
+static void test_lined_wall(void **state)
+{
+    struct test_scene *scene = fold_scene(test_daylight, make_matt);
+    struct test_shape *wall = &scene->shapes[1];
+    scene->settings.reference.bounce_samples = 256;
+    test_shape_release(wall);
+    *wall = test_square((vec3s){{0, 0.55f, -0.5f}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, -1}}, 0.5f, CELLS / 2);
+    make_matt(&wall->material);
+    wall->material.double_sided = true;
+    wall->material.diffuse = (vec3s){{0.8f, 0.05f, 0.05f}};
+    wall->material.back = (struct tl_back){.is_given = true, .diffuse = {{0.05f, 0.8f, 0.4f}}};
+    scene->lamps[0] = test_lamp_at((vec3s){{0.1f, 0.6f, -0.3f}}, 1);
+    scene->frame.lamp_count = 1;
+    check(*state, scene, "lined", TL_BOUNCE_ALL, AT_SAMPLES_ONLY, MATT);
+}
+
+/* A lamp below the sheet lights the wall through it. */
+static void test_lamp_through_cloth(void **state)
+{
+    struct test_scene *scene = fold_scene(test_black, make_sheer);
+    scene->lamps[0] = test_lamp_at((vec3s){{0.1f, -0.4f, 0}}, 2);
+    scene->frame.lamp_count = 1;
+    check(*state, scene, "lamp_through", TL_BOUNCE_ALL, AT_SAMPLES_ONLY, MATT);
+}
+
+/* A glossy wall under a black roof, which keeps the sky from its gloss. */
+static void test_shaded_gloss(void **state)
+{
+    struct test_scene *scene = fold_scene(test_daylight, make_matt);
+    tl_material *wall = &scene->shapes[1].material;
+    wall->diffuse = (vec3s){{0.02f, 0.02f, 0.02f}};
+    wall->specular = (vec3s){{0.8f, 0.6f, 0.4f}};
+    wall->gloss = (struct tl_gloss){.model = TL_REFLECT_WARD, .width_weft = 0.3f, .width_warp = 0.3f};
+    tl_material *roof = test_scene_add(
+        scene, test_square((vec3s){{0, 1.3f, 0.3f}}, (vec3s){{1, 0, 0}}, (vec3s){{0, 0, 1}}, 0.7f, 4));
+    roof->diffuse = roof->specular = (vec3s){{0, 0, 0}};
+    check(*state, scene, "shaded_gloss", TL_BOUNCE_ALL, AT_SAMPLES_ONLY, MATT);
+}
+
 static double mean_in(struct test_device *device, struct test_scene *scene, int bounce)
 {
     scene->settings.light.bounce = bounce;
@@ -377,9 +418,12 @@ static void test_black_cloth(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_black_cloth),  cmocka_unit_test(test_sky),   cmocka_unit_test(test_sheer),
-        cmocka_unit_test(test_shining_wall), cmocka_unit_test(test_lamp),  cmocka_unit_test(test_buried_lamp),
-        cmocka_unit_test(test_ground),       cmocka_unit_test(test_split), cmocka_unit_test(test_lag),
+        cmocka_unit_test(test_black_cloth),  cmocka_unit_test(test_sky),
+        cmocka_unit_test(test_sheer),        cmocka_unit_test(test_shining_wall),
+        cmocka_unit_test(test_lamp),         cmocka_unit_test(test_buried_lamp),
+        cmocka_unit_test(test_lined_wall),   cmocka_unit_test(test_lamp_through_cloth),
+        cmocka_unit_test(test_shaded_gloss), cmocka_unit_test(test_ground),
+        cmocka_unit_test(test_split),        cmocka_unit_test(test_lag),
     };
     return cmocka_run_group_tests(tests, test_device_open, test_device_close);
 }

@@ -144,6 +144,42 @@ static void test_threads_in_even_light(void **state)
     scene_free(scene);
 }
 
+/* A coat reflects a twenty-fifth of light that falls straight on it, and the facets below keep the rest. */
+static void test_coat_over_facets(void **state)
+{
+    (void)state;
+    double base = 0;
+    for (int coat = 0; coat < 2; coat++) {
+        struct test_scene *scene =
+            scene_new(tl_environment_constant(1, 1, 1), (vec3s){{0, 0, 2}}, origin, 0.5f);
+        tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
+        material->specular = (vec3s){{0.5f, 0.5f, 0.5f}};
+        material->gloss = (struct tl_gloss){.model = TL_REFLECT_WARD, .width_weft = 0.3f, .width_warp = 0.2f};
+        material->coat = (float)coat;
+        material->coat_glossiness = 0.9f;
+        scene->settings.reference.lobe_samples = 512;
+        if (coat)
+            check(scene, 0.04 + 0.96 * base);
+        else
+            base = estimate_of(scene).mean;
+        scene_free(scene);
+    }
+}
+
+/* A thin sheet sends a lamp behind it to all sides: t E cos / pi. */
+static void test_lamp_behind_a_sheet(void **state)
+{
+    (void)state;
+    struct test_scene *scene =
+        scene_new(test_environment(16, 8, test_black), (vec3s){{0, 0, 2}}, origin, 0.5f);
+    tl_material *material = scene_add(scene, test_square(origin, x_axis, z_axis, 0.5f, 1));
+    material->transmission = (vec3s){{0.3f, 0.3f, 0.3f}};
+    scene->lamps[0] = test_lamp_towards((vec3s){{0, 0.6f, -0.8f}}, 5);
+    scene->frame.lamp_count = 1;
+    check(scene, 0.3 * (double)scene->lamps[0].irradiance.y * 0.8 / M_PI);
+    scene_free(scene);
+}
+
 /* The same seen obliquely with s = 1: the part of the lobe below the surface is lost. A cosine lobe whose
  * axis is at an angle a to the normal keeps (1 + cos a) / 2. */
 static void test_lobe_below_the_horizon(void **state)
@@ -567,6 +603,8 @@ int main(void)
         cmocka_unit_test(test_interrupt_keeps_what_is_done),
         cmocka_unit_test(test_furnace),
         cmocka_unit_test(test_threads_in_even_light),
+        cmocka_unit_test(test_coat_over_facets),
+        cmocka_unit_test(test_lamp_behind_a_sheet),
         cmocka_unit_test(test_lobe_below_the_horizon),
         cmocka_unit_test(test_geometric_terminator),
         cmocka_unit_test(test_under_a_disc),
