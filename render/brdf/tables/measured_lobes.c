@@ -59,7 +59,7 @@ static bool is_kept(size_t i, size_t count, size_t max)
 static struct lobe_rows rows_of(const struct tl_reflectance_samples *samples)
 {
     struct lobe_rows rows = {TL_NEW_ARRAY(struct lobe_row, samples->count), 0};
-    int *cells = TL_NEW_ARRAY(int, samples->count), *counts = TL_NEW_ARRAY(int, CELLS);
+    int *cells = TL_NEW_ARRAY(int, samples->count), *counts = TL_NEW_ARRAY(int, (size_t)CELLS);
     for (size_t i = 0; i < samples->count; i++) {
         const struct tl_reflectance_sample *sample = &samples->items[i];
         const vec3s h = glms_vec3_normalize(glms_vec3_add(sample->l, sample->v));
@@ -128,8 +128,8 @@ static void add_row(const struct lobe_row *row, const struct tl_gloss *surface, 
 {
     double columns[COLUMNS] = {(double)row->cos_a / M_PI};
     for (int k = 0; k < lobes; k++) {
-        columns[1 + 2 * k] =
-            (double)lobe_of(row, k == 0 ? surface : &surfaces[0], squares[2 * k], squares[2 * k + 1]);
+        const float *own = squares + (ptrdiff_t)2 * k;
+        columns[1 + 2 * k] = (double)lobe_of(row, k == 0 ? surface : &surfaces[0], own[0], own[1]);
         columns[2 + 2 * k] = columns[1 + 2 * k] * (double)row->share;
     }
     const double weight = (double)row->weight;
@@ -291,14 +291,15 @@ static bool is_round(const struct tl_gloss *surface)
 static void search(const struct lobe_rows *rows, double first, int lobes, struct lobe_trial *best)
 {
     evaluate(rows, lobes, best);
-    for (double step = first; step > FINEST; step /= 2)
-        for (bool moved = true; moved;) {
-            moved = false;
-            for (int i = 0; i < 2 * lobes; i++)
-                for (int sign = -1; sign <= 1; sign += 2)
-                    while (try_step(rows, lobes, i, sign * step, best))
-                        moved = true;
-        }
+    double step = first;
+    while (step > FINEST) {
+        bool moved = false;
+        for (int i = 0; i < 2 * lobes; i++)
+            for (int sign = -1; sign <= 1; sign += 2)
+                while (try_step(rows, lobes, i, sign * step, best))
+                    moved = true;
+        step = moved ? step : step / 2;
+    }
 }
 
 /* The best of the grid for the widths of lobes from `first` on. */

@@ -150,12 +150,14 @@ static vec3s from_angles(double theta, double phi)
 #define GRID 108
 static vec3s at_angles(int i)
 {
-    return from_angles((double)(i / 12) * M_PI / 18, (double)(i % 12) * M_PI / 6);
+    const int ring = i / 12;
+    return from_angles(ring * M_PI / 18, (i % 12) * M_PI / 6);
 }
 
 static struct tl_reflectance_samples grid_of(const struct formula *formula)
 {
-    struct tl_reflectance_samples samples = {TL_NEW_ARRAY(struct tl_reflectance_sample, GRID * GRID), 0};
+    struct tl_reflectance_samples samples = {TL_NEW_ARRAY(struct tl_reflectance_sample, (size_t)GRID * GRID),
+                                             0};
     for (int i = 0; i < GRID * GRID; i++)
         samples.items[samples.count++] = sample_of(formula, at_angles(i / GRID), at_angles(i % GRID));
     return samples;
@@ -172,7 +174,8 @@ static vec3s light_at(const struct formula *formula, const struct tl_brdf_frame 
     double sum[3] = {0};
     for (int i = 0; i < 2 * LIGHT_ROWS * LIGHT_ROWS; i++) {
         const double step = M_PI / LIGHT_ROWS, theta = step * (i % LIGHT_ROWS + 0.5);
-        const vec3s l = from_angles(theta, step * (i / LIGHT_ROWS + 0.5));
+        const int column = i / LIGHT_ROWS;
+        const vec3s l = from_angles(theta, step * (column + 0.5));
         const vec3s light =
             glms_vec3_mul(reflected(formula, frame, l, v), tl_environment_sample(environment, l));
         for (int c = 0; c < 3; c++)
