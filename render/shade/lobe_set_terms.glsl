@@ -8,7 +8,7 @@
 #define TL_LOBE_SET_GLOSSES 9
 #define TL_LOBE_SET_ROWS  48.02f // TL_LOBE_SET_COSINES - .98
 #define TL_LOBE_SET_FIRST 0.02f
-// Schlick's term is affine in F0 from here on; below, a reflectance is in proportion to this one (fresnel.h).
+// Schlick's term is affine in F0 from here on; below, a reflectance is in proportion to this one (facets_terms.glsl).
 #define TL_LOBE_SET_LOW_F0 0.02f
 
 // atan2 over [0, pi], y >= 0, within 2e-5 rad: a minimax polynomial of atan over [0, 1].

@@ -19,10 +19,18 @@ static vec3s daylight(vec3s d)
     return window ? (vec3s){{6, 6, 5}} : (vec3s){{sky, sky, sky}};
 }
 
+/* A sun of 2 degrees, which texels of 64 x 32 do not show. */
+static vec3s noon(vec3s d)
+{
+    bool sun = glms_vec3_dot(d, glms_vec3_normalize((vec3s){{0.7f, 0.6f, 0.4f}})) > 0.9994f;
+    return sun ? (vec3s){{1000, 1000, 900}} : (vec3s){{0.2f, 0.2f, 0.2f}};
+}
+
 /* A sheet that hangs over a ball. */
 static void scene_open(struct test_scene *scene, test_radiance *radiance)
 {
-    test_scene_open(scene, test_environment(64, 32, radiance), (vec3s){{0.6f, 1.4f, 1.8f}},
+    const int height = radiance == noon ? 128 : 32;
+    test_scene_open(scene, test_environment(2 * height, height, radiance), (vec3s){{0.6f, 1.4f, 1.8f}},
                     (vec3s){{0, 0.6f, 0}}, 40, WIDTH, HEIGHT);
     tl_material *sheet = test_scene_add(scene, test_sheet(0.9f, 0.6f, 0.05f, 2, 24));
     tl_material *ball = test_scene_add(scene, test_sphere((vec3s){{0, 0.4f, 0}}, 0.35f, 32));
@@ -165,6 +173,35 @@ static void test_against_the_oracle(void **state)
     }
 }
 
+/* A sun on diffuse lobes of their own: no worse than on Lambert's by more than what the light of
+ * the sky around it is off by, whose factor is a mean. */
+static void test_sun_on_diffuse_lobes(void **state)
+{
+    const struct test_device *device = *state;
+    static const struct feature diffuse[] = {{.name = "two lobes"},
+                                             {.name = "rough", .roughness = 0.7f},
+                                             {.name = "banks", .model = TL_REFLECT_BANKS}};
+    double lambert = 0;
+    for (size_t i = 0; i < TL_COUNT(diffuse); i++) {
+        struct test_scene scene;
+        struct tl_comparison comparison;
+        tl_error error = {0};
+        scene_open(&scene, noon);
+        set_feature(&diffuse[i], &scene.shapes[0].material);
+        scene.shapes[0].material.specular = (vec3s){{0, 0, 0}};
+        tl_image image = draw(device->renderer, &scene, TL_METHOD_PEM);
+        tl_image truth = draw(device->renderer, &scene, TL_METHOD_REFERENCE);
+        assert_ok(tl_image_compare(&image, &truth, -1, 0, &comparison, &error), error);
+        printf("sun on %-10s error %.2f %%, of the oracle %.2f %%\n", diffuse[i].name,
+               100 * comparison.rel_rmse, 100 * tl_renderer_standard_error(device->renderer));
+        lambert = i == 0 ? comparison.rel_rmse : lambert;
+        assert_true(comparison.rel_rmse < lambert + 0.02);
+        tl_image_release(&image);
+        tl_image_release(&truth);
+        test_scene_close(&scene);
+    }
+}
+
 /* Under light of 1 from everywhere nothing sends back more than 1, and open cloth shows what is behind it. */
 static void test_furnace(void **state)
 {
@@ -278,8 +315,9 @@ int main(void)
 {
     make_patches();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_the_oracle), cmocka_unit_test(test_furnace),
-        cmocka_unit_test(test_only_what_the_scene_requires), cmocka_unit_test(test_extremes)};
+        cmocka_unit_test(test_against_the_oracle), cmocka_unit_test(test_sun_on_diffuse_lobes),
+        cmocka_unit_test(test_furnace), cmocka_unit_test(test_only_what_the_scene_requires),
+        cmocka_unit_test(test_extremes)};
     const int failed = cmocka_run_group_tests_name("layered", tests, test_device_open, test_device_close);
     tl_image_release(&patches);
     return failed;
