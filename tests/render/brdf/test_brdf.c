@@ -1,5 +1,6 @@
 #include "render/brdf/brdf.h"
 #include "render/brdf/facets.h"
+#include "render/gpu/vectors.h"
 #include "render/reference/random.h"
 
 #include "config/base/memory.h"
@@ -7,6 +8,12 @@
 #include "tests/testing.h"
 
 #include <complex.h>
+
+#include "render/gpu/terms_begin.h"
+
+#include "render/brdf/sample_terms.glsl"
+
+#include "render/gpu/terms_end.h"
 
 #define PI 3.14159265358979323846
 
@@ -465,6 +472,30 @@ static void check_draws(const struct tl_brdf *brdf, vec3s v)
     assert_near(lost, DRAWS - total, 5 * sqrt(fabs(DRAWS - total)) + 0.002 * DRAWS);
 }
 
+/* Slopes whose axes lie across weft and warp: their moments are half the squared widths and product, and the
+ * pdf of their normals adds up to 1. */
+static void slopes_follow_their_squares(void **state)
+{
+    (void)state;
+    enum { SIDE = 512 };
+    const vec3s squares = {{0.3f, 0.1f, 0.12f}};
+    double xx = 0, yy = 0, xy = 0, sum = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float a = ((float)(i % SIDE) + 0.5f) / SIDE, b = ((float)(i / SIDE % SIDE) + 0.5f) / SIDE;
+        const vec2s slope = facet_slope(squares, a, b);
+        const float angle = 2 * (float)PI * b, sine = sqrtf(1 - a * a);
+        xx += (double)(slope.x * slope.x) / (SIDE * SIDE);
+        yy += (double)(slope.y * slope.y) / (SIDE * SIDE);
+        xy += (double)(slope.x * slope.y) / (SIDE * SIDE);
+        sum += 2 * PI / (SIDE * SIDE) *
+               (double)facet_slope_pdf(squares, (vec3s){{sine * cosf(angle), sine * sinf(angle), a}});
+    }
+    assert_near(xx, 0.15, 1e-3); /* the last of SIDE strata holds a tail */
+    assert_near(yy, 0.05, 1e-3);
+    assert_near(xy, 0.06, 1e-3);
+    assert_near(sum, 1, 1e-4);
+}
+
 static void samples_follow_their_pdf(void **state)
 {
     (void)state;
@@ -670,6 +701,7 @@ int main(void)
         cmocka_unit_test(banks_shines_along_the_cone),
         cmocka_unit_test(banks_on_a_disc_is_a_bow_tie),
         cmocka_unit_test(scales_are_the_formulas),
+        cmocka_unit_test(slopes_follow_their_squares),
         cmocka_unit_test(samples_follow_their_pdf),
         cmocka_unit_test(samples_estimate_the_energy),
         cmocka_unit_test(fresnel_is_the_closed_form),

@@ -66,6 +66,25 @@ static void test_visibility(void **state)
     assert_near(tl_ground_visibility(NULL, above, (vec3s){{0, -1, 0}}), 1, 0);
 }
 
+/* What a ray from above meets, all around and far out, is where the weights of its triangle put it. */
+static void test_meets_its_triangles(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4000; i++) {
+        const float far = 0.99f * ground.radius * powf((float)i / 4000, 2), turn = 2.4f * (float)i;
+        const vec3s from = {{ground.centre.x + far * cosf(turn), 1, ground.centre.z + far * sinf(turn)}};
+        vec3s point, sum = {{0, 0, 0}};
+        uint32_t triangle;
+        float weights[3];
+        assert_true(tl_ground_meet(&ground, from, (vec3s){{0, -1, 0}}, &point, &triangle, weights));
+        for (int k = 0; k < 3; k++)
+            sum = glms_vec3_add(
+                sum,
+                glms_vec3_scale(ground.positions[ground.indices[3 * triangle + (uint32_t)k]], weights[k]));
+        assert_near(glms_vec3_distance(sum, point), 0, 2e-4 * (double)ground.radius);
+    }
+}
+
 /* Lengths of shadow maps are the options' own for garments, and a constant share of what is smaller. */
 static void test_scale(void **state)
 {
@@ -83,6 +102,7 @@ int main(void)
         cmocka_unit_test(test_rings_are_close_under_the_figure),
         cmocka_unit_test(test_cover),
         cmocka_unit_test(test_visibility),
+        cmocka_unit_test(test_meets_its_triangles),
         cmocka_unit_test(test_scale),
     };
     return cmocka_run_group_tests(tests, make_ground, NULL);
