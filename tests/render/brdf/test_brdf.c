@@ -479,7 +479,7 @@ static void slopes_follow_their_squares(void **state)
     (void)state;
     enum { SIDE = 512 };
     const vec3s squares = {{0.3f, 0.1f, 0.12f}};
-    double xx = 0, yy = 0, xy = 0, sum = 0;
+    double xx = 0, yy = 0, xy = 0, sum = 0, by_pdf = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         const float a = ((float)(i % SIDE) + 0.5f) / SIDE, b = ((float)(i / SIDE % SIDE) + 0.5f) / SIDE;
         const vec2s slope = facet_slope(squares, a, b);
@@ -487,13 +487,16 @@ static void slopes_follow_their_squares(void **state)
         xx += (double)(slope.x * slope.x) / (SIDE * SIDE);
         yy += (double)(slope.y * slope.y) / (SIDE * SIDE);
         xy += (double)(slope.x * slope.y) / (SIDE * SIDE);
-        sum += 2 * PI / (SIDE * SIDE) *
-               (double)facet_slope_pdf(squares, (vec3s){{sine * cosf(angle), sine * sinf(angle), a}});
+        const vec3s h = {{sine * cosf(angle), sine * sinf(angle), a}};
+        const double share = 2 * PI / (SIDE * SIDE) * (double)facet_slope_pdf(squares, h);
+        sum += share;
+        by_pdf += share * (double)(h.x * h.y / (h.z * h.z));
     }
     assert_near(xx, 0.15, 1e-3); /* the last of SIDE strata holds a tail */
     assert_near(yy, 0.05, 1e-3);
     assert_near(xy, 0.06, 1e-3);
     assert_near(sum, 1, 1e-4);
+    assert_near(by_pdf, 0.06, 1e-3);
 }
 
 static void samples_follow_their_pdf(void **state)
