@@ -303,10 +303,11 @@ uint id_behind(int layer, ivec2 pixel)
     return layer == 2 ? imageLoad(behind[2], pixel).r : imageLoad(behind[3], pixel).r;
 }
 
-// The ID of the nearest layer at a pixel, or of one behind, by a number whose rounds are even in each of them.
+// The ID of the nearest layer at a pixel, or of one behind, by a number that is even over rounds, and over those among
+// them that share a direction's side.
 uint seen_id(ivec2 pixel, uint item)
 {
-    float number = fract(float(item >> 8) / 16777216.0 + float(bitfieldReverse(uint(kind.w))) / 4294967296.0);
+    float number = float((item + uint(kind.w) * 2654435769u) >> 8) / 16777216.0; // steps of the golden section
     uint id = texelFetch(ids, pixel, 0).r;
     for (int layer = 0; layer < layers - 1 && id != 0u; layer++) {
         uint part = triangle_parts[(id & ~BACK) - 1u];
