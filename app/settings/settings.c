@@ -458,10 +458,9 @@ static void warn_of_unused_options(const struct tl_settings *settings)
     else if (!by_maps && !shows_all && (layers || others))
         tl_warn(
             "material: model, coat, fuzz, transmission and openness are shown by light.visibility rays and "
-            "by light.method reference only: shadow maps know two plain lobes, and model where light comes "
-            "from "
-            "filter chains alone, as in preset paper; light.method maps shows coat and transmission, without "
-            "shadows");
+            "by light.method reference only: shadow maps know two plain lobes, and the gloss of model where "
+            "light comes from filter chains alone, as in preset paper; light.method maps shows coat and "
+            "transmission, without shadows");
     if (light->method == TL_METHOD_PEM && light->visibility == TL_VISIBILITY_RAYS &&
         light->composition != TL_COMPOSE_RATIO)
         tl_warn("light.composition: rays always compose by ratio; this option is for light.visibility vsm "
