@@ -15,7 +15,6 @@
 #include "render/shade/materials.h"
 
 #include <math.h>
-#include <string.h>
 
 /* The smallest and the largest of some numbers. In many lanes, because a budget asks for the facts of a frame
  * at other settings, too. */
@@ -219,7 +218,7 @@ static const char *lamps_refusal(const tl_frame *frame, const struct tl_shading_
     struct tl_lamp lamps[TL_LAMPS_MAX];
     if (tl_lamps_lit(frame, lamps) == 0)
         return NULL;
-    if (memcmp(shading, tl_shading_options.defaults, sizeof *shading) != 0)
+    if (!tl_options_equal(&tl_shading_options, shading, tl_shading_options.defaults))
         return "lamps whose shading is not exact (table shading)";
     return tl_materials_have(frame->surfaces, frame->surface_count, is_measured)
                ? "measured reflectance under lamps"

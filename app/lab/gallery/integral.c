@@ -20,7 +20,7 @@ static int columns_for(float exponent, int maximum)
 {
     double width = 1 / sqrt((double)fmaxf(exponent, 1));
     int columns = maximum;
-    while (columns % 2 == 0 && columns / 2 >= 2 * M_PI * 6 / width)
+    while (columns % 2 == 0 && columns >= 4 * M_PI * 6 / width)
         columns /= 2;
     return columns;
 }

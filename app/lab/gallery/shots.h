@@ -47,7 +47,7 @@ const struct tl_gallery_shot *tl_shots_exact(struct tl_shots *shots,
 bool tl_shots_layers(struct tl_shots *shots, const struct tl_settings *settings, tl_image *light,
                      struct tl_aovs *layers, tl_error *error);
 /* The layer whose first channel this is; NULL: there is none. */
-const tl_image *tl_shots_layer(const struct tl_aovs *layers, const char *channel);
+const tl_image *tl_shots_layer(const struct tl_aovs *aovs, const char *channel);
 
 /* Draws the experiment's motion, frames of the exact picture and of the technique. Release the frames in any
  * case. */
