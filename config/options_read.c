@@ -279,7 +279,7 @@ static char *read_path(const struct tl_option *row, const char *text, const char
                        const char **field)
 {
     bool name = row->choices && !tl_option_is_file_name(text);
-    const bool is_stdin = strcmp(text, "-") == 0; /* whoever opens it refuses it, where it is no file's place */
+    const bool is_stdin = strcmp(text, "-") == 0; /* readers of files refuse it when they open it */
     if (name && !is_stdin && !is_choice(row->choices, text))
         return refuse(row, text, "is no name known here");
     if (name || text[0] == '\0')
